@@ -1,0 +1,21 @@
+//! Compiled kernels of Vedette: pure functions on slices, each with a thin Python binding.
+
+use pyo3::prelude::*;
+
+pub mod coverage;
+pub mod distance;
+pub mod frontier;
+pub mod lidar;
+pub mod motion;
+pub mod visibility;
+
+#[pymodule]
+fn _kernels(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    coverage::register(m)?;
+    distance::register(m)?;
+    frontier::register(m)?;
+    lidar::register(m)?;
+    motion::register(m)?;
+    visibility::register(m)?;
+    Ok(())
+}

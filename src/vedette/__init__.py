@@ -1,0 +1,1 @@
+"""Vedette: a team of platforms gathers information together, with no central computer."""

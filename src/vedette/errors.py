@@ -1,0 +1,20 @@
+"""The one exception for what a user can get wrong."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class InputError(ValueError):
+    """Bad input, told in one line that names the file or field, the value and the remedy.
+
+    The command line prints the line and exits with status 2; a library caller sees a ``ValueError``.
+    """
+
+
+def nearest_name(name: str, known: Iterable[str]) -> str:
+    """Return ``" (did you mean 'x'?)"`` for the known name most like ``name``, or list them all."""
+    known = list(known)
+    close = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+    return f"did you mean {close[0]!r}?" if close else f"known: {', '.join(known)}"

@@ -1,0 +1,84 @@
+"""Where a grid lies in the world: resolution, origin and shape."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+UNKNOWN = 0
+FREE = 1
+OCCUPIED = 2
+
+
+@dataclass(frozen=True)
+class GridFrame:
+    """An axis-aligned grid in the team frame; row 0 is the lowest y, column 0 the lowest x.
+
+    The order is that of ``nav_msgs/OccupancyGrid``: cell ``(row, col)`` covers
+    ``[origin_x + col * resolution, origin_x + (col + 1) * resolution)`` in x, likewise rows in y.
+    """
+
+    resolution: float  # cell side [m]
+    rows: int
+    cols: int
+    origin_x: float = 0.0  # lower-left corner of cell (0, 0) [m], team frame
+    origin_y: float = 0.0
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """``(rows, cols)``."""
+        return self.rows, self.cols
+
+    @property
+    def size(self) -> int:
+        """Number of cells."""
+        return self.rows * self.cols
+
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        """``(x_min, x_max, y_min, y_max)`` [m], as matplotlib's ``imshow`` takes it."""
+        return (
+            self.origin_x,
+            self.origin_x + self.cols * self.resolution,
+            self.origin_y,
+            self.origin_y + self.rows * self.resolution,
+        )
+
+    def cell(self, x: float, y: float) -> tuple[int, int]:
+        """Return the ``(row, col)`` that holds the point; it may lie outside the grid."""
+        return (
+            int(np.floor((y - self.origin_y) / self.resolution)),
+            int(np.floor((x - self.origin_x) / self.resolution)),
+        )
+
+    def contains(self, x: float, y: float) -> bool:
+        """Tell whether the point lies in the grid."""
+        row, col = self.cell(x, y)
+        return 0 <= row < self.rows and 0 <= col < self.cols
+
+    def flat(self, x: float, y: float) -> int:
+        """Return the flat (row-major) index of the cell that holds a point inside the grid."""
+        row, col = self.cell(x, y)
+        return row * self.cols + col
+
+    def centres(self, flat: NDArray[np.integer]) -> NDArray[np.float64]:
+        """Return the ``(n, 2)`` cell centres ``[x, y]`` [m] of flat (row-major) cell indices."""
+        row, col = np.divmod(np.asarray(flat), self.cols)
+        return np.column_stack(
+            (
+                self.origin_x + (col + 0.5) * self.resolution,
+                self.origin_y + (row + 0.5) * self.resolution,
+            )
+        )
+
+    def coarse(self, factor: int) -> GridFrame:
+        """Return the frame whose cells are ``factor x factor`` of these, padded at the far edges."""
+        return GridFrame(
+            self.resolution * factor,
+            -(-self.rows // factor),
+            -(-self.cols // factor),
+            self.origin_x,
+            self.origin_y,
+        )
