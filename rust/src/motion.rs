@@ -1,5 +1,344 @@
+//! Local motion of disc robots: the distance to walls, and the choice of the next velocity.
+//!
+//! `steer` rolls out a small family of path followers (sideways offset, speed, look-ahead) and returns the first
+//! command of the cheapest one. All costs are seconds, so that progress, turning and courtesy trade off openly.
+
+use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-pub fn register(_m: &Bound<'_, PyModule>) -> PyResult<()> {
+/// Steps of a roll-out.
+const STEPS: usize = 20;
+/// The least clearance that is ever commanded: to walls, to other discs [m].
+const WALL_GUARD: f64 = 0.025;
+const DISC_GUARD: f64 = 0.05;
+/// Sideways offsets from the path [m], left positive; speeds as shares of the top speed.
+const OFFSETS: [f64; 11] = [0.0, -0.1, 0.1, -0.2, 0.2, -0.35, 0.35, -0.5, 0.5, -0.7, 0.7];
+const SPEEDS: [f64; 3] = [1.0, 0.6, 0.25];
+/// Look-ahead along the path [m]: the first is the usual one, the second follows sharp corners.
+const LOOKS: [f64; 2] = [0.4, 0.15];
+/// Over this last stretch offsets fade, so that every follower ends at the path's end [m].
+const FADE: f64 = 0.2;
+/// Costs [s/m], [s], [s per step].
+const COST_LATERAL: f64 = 0.4;
+const COST_CHANGE: f64 = 0.2;
+const COST_CLOSE: f64 = 0.5;
+const COST_WRONG_SIDE: f64 = 0.2;
+const COST_OUTSIDE: f64 = 0.3;
+/// Full speed below this heading error, none above that one [rad].
+const ALIGNED: f64 = 0.35;
+const ASKEW: f64 = 1.3;
+/// Tolerance of "does not get worse" [m].
+const SLACK: f64 = 1e-9;
+
+/// A boolean grid, row 0 at the lowest y.
+#[derive(Clone, Copy)]
+pub struct Grid<'a> {
+    pub cells: &'a [bool],
+    pub rows: usize,
+    pub cols: usize,
+    pub resolution: f64,
+}
+
+impl Grid<'_> {
+    fn at(&self, x: f64, y: f64) -> bool {
+        let (row, col) = ((y / self.resolution).floor(), (x / self.resolution).floor());
+        row >= 0.0
+            && col >= 0.0
+            && (row as usize) < self.rows
+            && (col as usize) < self.cols
+            && self.cells[row as usize * self.cols + col as usize]
+    }
+}
+
+/// Distance [m] from a point to the nearest true cell's square, capped at `reach`; outside the grid is true.
+pub fn clearance(solid: Grid, x: f64, y: f64, reach: f64) -> f64 {
+    let r = solid.resolution;
+    let (width, height) = (solid.cols as f64 * r, solid.rows as f64 * r);
+    let border = x.min(y).min(width - x).min(height - y).max(0.0);
+    let mut best = border.min(reach) * border.min(reach);
+    let low = |v: f64| ((v - reach) / r).floor().max(0.0) as usize;
+    let high = |v: f64, n: usize| (((v + reach) / r).floor() + 1.0).clamp(0.0, n as f64) as usize;
+    for row in low(y)..high(y, solid.rows) {
+        let dy = (row as f64 * r - y).max(y - (row + 1) as f64 * r).max(0.0);
+        if dy * dy >= best {
+            continue;
+        }
+        for col in low(x)..high(x, solid.cols) {
+            if solid.cells[row * solid.cols + col] {
+                let dx = (col as f64 * r - x).max(x - (col + 1) as f64 * r).max(0.0);
+                best = best.min(dx * dx + dy * dy);
+            }
+        }
+    }
+    best.sqrt()
+}
+
+/// A polyline with its arc length at each vertex.
+#[derive(Clone, Copy)]
+pub struct Path<'a> {
+    pub xy: &'a [f64],
+    pub arc: &'a [f64],
+}
+
+impl Path<'_> {
+    fn length(&self) -> f64 {
+        self.arc[self.arc.len() - 1]
+    }
+
+    fn segment(&self, s: f64) -> usize {
+        let after = self.arc.partition_point(|&a| a <= s);
+        after.clamp(1, self.arc.len() - 1) - 1
+    }
+
+    /// Point and unit direction at arc length `s`: `(x, y, tx, ty)`.
+    fn at(&self, s: f64) -> (f64, f64, f64, f64) {
+        let i = self.segment(s);
+        let span = self.arc[i + 1] - self.arc[i];
+        let (x, y) = (self.xy[2 * i], self.xy[2 * i + 1]);
+        let (tx, ty) = (
+            (self.xy[2 * i + 2] - x) / span,
+            (self.xy[2 * i + 3] - y) / span,
+        );
+        let along = (s - self.arc[i]).clamp(0.0, span);
+        (x + along * tx, y + along * ty, tx, ty)
+    }
+
+    /// Arc length of the point nearest to `(x, y)` among arc lengths `from..=to`, and its distance.
+    fn project(&self, x: f64, y: f64, from: f64, to: f64) -> (f64, f64) {
+        let (from, to) = (from.max(0.0), to.min(self.length()));
+        let mut best = (from, f64::INFINITY);
+        for i in self.segment(from)..self.arc.len() - 1 {
+            if self.arc[i] > to {
+                break;
+            }
+            let span = self.arc[i + 1] - self.arc[i];
+            let (ax, ay) = (self.xy[2 * i], self.xy[2 * i + 1]);
+            let (tx, ty) = (
+                (self.xy[2 * i + 2] - ax) / span,
+                (self.xy[2 * i + 3] - ay) / span,
+            );
+            let along = ((x - ax) * tx + (y - ay) * ty)
+                .clamp((from - self.arc[i]).max(0.0), (to - self.arc[i]).min(span));
+            let (dx, dy) = (x - ax - along * tx, y - ay - along * ty);
+            let distance = norm(dx, dy);
+            if distance < best.1 {
+                best = (self.arc[i] + along, distance);
+            }
+        }
+        best
+    }
+}
+
+/// One robot's limits: radius [m], top speed [m/s], top turn rate [rad/s], control period [s].
+#[derive(Clone, Copy)]
+pub struct Limits {
+    pub radius: f64,
+    pub speed: f64,
+    pub turn_rate: f64,
+    pub period: f64,
+}
+
+/// A follower of the path: `offset` [m] to its left, `speed` [m/s], `look` [m] ahead.
+#[derive(Clone, Copy)]
+struct Follower {
+    offset: f64,
+    speed: f64,
+    look: f64,
+}
+
+/// What a robot steers by.
+#[derive(Clone, Copy)]
+pub struct Scene<'a> {
+    pub solid: Grid<'a>,
+    pub traversable: Grid<'a>,
+    pub path: Path<'a>,
+    /// Rows `x, y, vx, vy, radius, courtesy`: the others, and the gap one would rather keep to them [m].
+    pub others: &'a [f64],
+    pub limits: Limits,
+}
+
+#[derive(Clone, Copy)]
+pub struct Command {
+    pub speed: f64,
+    pub turn: f64,
+    pub arc: f64,
+    pub offset: f64,
+    pub cost: f64,
+}
+
+fn norm(x: f64, y: f64) -> f64 {
+    (x * x + y * y).sqrt()
+}
+
+fn wrap(angle: f64) -> f64 {
+    angle.sin().atan2(angle.cos())
+}
+
+impl Scene<'_> {
+    /// Velocity of a follower at a pose: `(speed, turn, heading error)`.
+    fn follow(&self, f: Follower, pose: (f64, f64, f64), s: f64) -> (f64, f64, f64) {
+        let total = self.path.length();
+        let ahead = (s + f.look).min(total);
+        let (px, py, tx, ty) = self.path.at(ahead);
+        let offset = f.offset * ((total - ahead) / FADE).min(1.0);
+        let (dx, dy) = (px - offset * ty - pose.0, py + offset * tx - pose.1);
+        let distance = norm(dx, dy);
+        if distance < 1e-6 {
+            return (0.0, 0.0, 0.0);
+        }
+        let error = wrap(dy.atan2(dx) - pose.2);
+        let l = self.limits;
+        let turn = (error / l.period).clamp(-l.turn_rate, l.turn_rate);
+        let aligned = ((error.cos() - ASKEW.cos()) / (ALIGNED.cos() - ASKEW.cos())).clamp(0.0, 1.0);
+        let stop = if ahead >= total { distance / l.period } else { f64::INFINITY };
+        ((f.speed * aligned).min(stop), turn, error)
+    }
+
+    /// Least gap to another disc at time `t` from a point, and whether the step keeps the guard (or does not close in).
+    fn gap(&self, from: (f64, f64), to: (f64, f64), step: usize) -> (bool, f64, f64) {
+        let (mut free, mut close, mut wrong) = (true, 0.0f64, 0.0f64);
+        let t = step as f64 * self.limits.period;
+        for o in self.others.chunks_exact(6) {
+            let reach = self.limits.radius + o[4];
+            let gap = |p: (f64, f64), t: f64| norm(p.0 - o[0] - t * o[2], p.1 - o[1] - t * o[3]) - reach;
+            // The first step is judged against where the other is: it may stay there.
+            let (before, after) = if step == 1 {
+                (gap(from, 0.0), gap(to, 0.0))
+            } else {
+                (gap(from, t - self.limits.period), gap(to, t))
+            };
+            if after < DISC_GUARD && after < before + SLACK {
+                free = false;
+            }
+            let near = ((o[5] - after) / o[5]).max(0.0);
+            if near > close {
+                close = near;
+                let (mx, my) = (to.0 - from.0, to.1 - from.1);
+                let (rx, ry) = (o[0] + t * o[2] - to.0, o[1] + t * o[3] - to.1);
+                let head_on = mx * o[2] + my * o[3] < -0.5 * norm(mx, my) * norm(o[2], o[3]);
+                wrong = if head_on && mx * ry - my * rx < 0.0 { 1.0 } else { 0.0 };
+            }
+        }
+        (free, close, wrong)
+    }
+
+    /// Roll a follower out and price it [s]; also tell whether nothing was in its way.
+    fn price(&self, f: Follower, start: (f64, f64, f64), s: f64, last_offset: f64) -> (Command, bool) {
+        let l = self.limits;
+        let (mut x, mut y, mut heading, mut s) = (start.0, start.1, start.2, s);
+        let mut command = Command { speed: 0.0, turn: 0.0, arc: s, offset: f.offset, cost: 0.0 };
+        let (mut close, mut wrong) = (0.0f64, 0.0f64);
+        let mut was_outside = !self.traversable.at(x, y);
+        let (mut outside, mut held, mut error) = (0usize, false, 0.0);
+        let mut wall = clearance(self.solid, x, y, l.radius + WALL_GUARD);
+        for step in 1..=STEPS {
+            let (v, w, e) = self.follow(f, (x, y, heading), s);
+            let middle = heading + 0.5 * w * l.period;
+            let (nx, ny) = (x + v * l.period * middle.cos(), y + v * l.period * middle.sin());
+            error = e;
+            if step == 1 {
+                command.turn = w;
+            }
+            let is_outside = !self.traversable.at(nx, ny);
+            let (free, near, side) = self.gap((x, y), (nx, ny), step);
+            let mut go = free && (was_outside || !is_outside);
+            if go {
+                let next = clearance(self.solid, nx, ny, l.radius + WALL_GUARD);
+                go = next >= (l.radius + WALL_GUARD).min(wall) - SLACK;
+                wall = if go { next } else { wall };
+            }
+            heading += w * l.period;
+            if go {
+                if near > close {
+                    (close, wrong) = (near, side);
+                }
+                was_outside = is_outside;
+                (x, y) = (nx, ny);
+                s = self.path.project(x, y, s - 0.1, s + 0.5).0;
+            }
+            held |= !go;
+            outside += usize::from(was_outside);
+            if step == 1 && go {
+                command.speed = v;
+                command.arc = s;
+            }
+        }
+        let (arc, lateral) = self.path.project(x, y, s - 0.1, s + 0.5);
+        command.cost = (self.path.length() - arc) / l.speed
+            + error.abs() / l.turn_rate
+            + COST_LATERAL * lateral
+            + COST_CHANGE * (f.offset - last_offset).abs()
+            + COST_CLOSE * close
+            + COST_WRONG_SIDE * wrong
+            + COST_OUTSIDE * outside as f64;
+        (command, !held && close == 0.0 && outside == 0)
+    }
+}
+
+/// The command whose roll-out costs least; the plain follower at once where nothing is in its way.
+pub fn steer(scene: Scene, pose: (f64, f64, f64), s: f64, last_offset: f64) -> Command {
+    let (s, _) = scene.path.project(pose.0, pose.1, s - 0.5, s + 1.0);
+    let top = scene.limits.speed;
+    let plain = Follower { offset: 0.0, speed: top, look: LOOKS[0] };
+    let (mut best, easy) = scene.price(plain, pose, s, last_offset);
+    if easy {
+        return best;
+    }
+    for look in LOOKS {
+        for offset in OFFSETS {
+            for share in SPEEDS {
+                let f = Follower { offset, speed: share * top, look };
+                let (command, _) = scene.price(f, pose, s, last_offset);
+                if command.cost < best.cost - SLACK {
+                    best = command;
+                }
+            }
+        }
+    }
+    let (stay, _) = scene.price(Follower { offset: last_offset, speed: 0.0, look: LOOKS[0] }, pose, s, last_offset);
+    if stay.cost < best.cost - SLACK {
+        best = stay;
+    }
+    best
+}
+
+fn grid<'a>(array: &'a PyReadonlyArray2<bool>, resolution: f64) -> PyResult<Grid<'a>> {
+    let (rows, cols) = (array.shape()[0], array.shape()[1]);
+    Ok(Grid { cells: array.as_slice()?, rows, cols, resolution })
+}
+
+#[pyfunction(name = "clearance")]
+fn py_clearance(solid: PyReadonlyArray2<bool>, resolution: f64, x: f64, y: f64, reach: f64) -> PyResult<f64> {
+    Ok(clearance(grid(&solid, resolution)?, x, y, reach))
+}
+
+#[pyfunction(name = "steer")]
+#[allow(clippy::too_many_arguments)]
+fn py_steer(
+    solid: PyReadonlyArray2<bool>,
+    traversable: PyReadonlyArray2<bool>,
+    resolution: f64,
+    pose: (f64, f64, f64),
+    path: PyReadonlyArray2<f64>,
+    arc: PyReadonlyArray1<f64>,
+    progress: (f64, f64),
+    others: PyReadonlyArray2<f64>,
+    limits: (f64, f64, f64, f64),
+) -> PyResult<(f64, f64, f64, f64, f64)> {
+    let (radius, speed, turn_rate, period) = limits;
+    let scene = Scene {
+        solid: grid(&solid, resolution)?,
+        traversable: grid(&traversable, resolution)?,
+        path: Path { xy: path.as_slice()?, arc: arc.as_slice()? },
+        others: others.as_slice()?,
+        limits: Limits { radius, speed, turn_rate, period },
+    };
+    let c = steer(scene, pose, progress.0, progress.1);
+    Ok((c.speed, c.turn, c.arc, c.offset, c.cost))
+}
+
+pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add_function(wrap_pyfunction!(py_clearance, m)?)?;
+    m.add_function(wrap_pyfunction!(py_steer, m)?)?;
     Ok(())
 }

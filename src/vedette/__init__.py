@@ -1,1 +1,35 @@
 """Vedette: a team of platforms gathers information together, with no central computer."""
+
+from vedette.errors import InputError
+from vedette.negotiation import Negotiation, Tree, negotiate
+from vedette.problem import (
+    Codec,
+    CountedCoverage,
+    Coverage,
+    Exhaustive,
+    Invertible,
+    LogDet,
+    Objective,
+    Platform,
+    bound,
+    counted,
+    exhaustive,
+)
+
+__all__ = [
+    "Codec",
+    "CountedCoverage",
+    "Coverage",
+    "Exhaustive",
+    "InputError",
+    "Invertible",
+    "LogDet",
+    "Negotiation",
+    "Objective",
+    "Platform",
+    "Tree",
+    "bound",
+    "counted",
+    "exhaustive",
+    "negotiate",
+]

@@ -2,14 +2,40 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+import re
+from dataclasses import dataclass, fields
+from pathlib import Path
+from reprlib import repr as repr_short
+from typing import Any
+
+import yaml
+
+from vedette.errors import InputError, nearest_name
+
+_RANGES = {  # field: lowest, highest, unit
+    "speed": (0.01, 10.0, "m/s"),
+    "turn_rate": (0.05, 20.0, "rad/s"),
+    "radius": (0.02, 5.0, "m"),
+    "range": (0.2, 200.0, "m"),
+    "view": (1.0, 360.0, "deg"),
+    "beams": (8, 4096, "beams"),
+    "rate": (0.2, 50.0, "Hz"),
+    "range_noise": (0.0, 1.0, "m"),
+}
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}")
+_MAX_FILE = 1_000_000  # [characters]
 
 
 @dataclass(frozen=True)
 class PlatformSpec:
-    """One robot: a disc that drives and turns in place, with a planar lidar at its centre."""
+    """One robot: a disc that drives and turns in place, with a planar lidar at its centre.
 
-    name: str = "robot-1"
+    Raises:
+        InputError: a field has the wrong type or is out of its range; the line names field, value and range.
+    """
+
+    name: str = "robot-1"  # letters, digits, '-', '_' and '.', for it becomes part of file and topic names
     speed: float = 0.5  # top speed [m/s]
     turn_rate: float = 1.5  # top turn rate [rad/s]
     radius: float = 0.2  # of the disc [m]
@@ -19,3 +45,103 @@ class PlatformSpec:
     rate: float = 5.0  # scans a second [Hz]
     range_noise: float = 0.01  # standard deviation of a range [m]
     start: tuple[float, ...] | None = None  # x, y[, heading] [m, m, deg], team frame; None: chosen
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.name, str) or not _NAME.fullmatch(self.name):
+            raise InputError(
+                f"name must be letters, digits, '-', '_' or '.', at most 64; got {repr_short(self.name)}"
+            )
+        for field, (low, high, unit) in _RANGES.items():
+            value = getattr(self, field)
+            if not _is_number(value) or not low <= value <= high:
+                raise InputError(f"{field} must be {low:g} to {high:g} {unit}; got {repr_short(value)}")
+        if self.beams != int(self.beams):
+            raise InputError(f"beams must be a whole number; got {self.beams!r}")
+        if self.start is not None and not (
+            isinstance(self.start, tuple) and len(self.start) in (2, 3) and all(map(_is_number, self.start))
+        ):
+            raise InputError(f"start must be [x, y] or [x, y, heading in deg]; got {repr_short(self.start)}")
+
+
+def load_team(path: Path | str) -> list[PlatformSpec]:
+    """Read a team file: YAML with one list, ``platforms``, of which every field has a default.
+
+    Units are those of :class:`PlatformSpec`: metres, m/s, rad/s, Hz, and degrees for ``view`` and the heading
+    in ``start``. A platform without a name is called ``robot-N``, N its place in the list from 1::
+
+        platforms:
+          - {name: scout, speed: 1.0, range: 12, start: [2.0, 3.5, 90]}
+          - {}
+
+    Raises:
+        InputError: unreadable, not YAML, no platforms, an unknown field (with the nearest valid name), a
+            wrong type, a value out of range, a name used twice; the line names file, platform and field.
+    """
+    path = Path(path)
+    specs: list[PlatformSpec] = []
+    names: set[str] = set()
+    for number, entry in enumerate(_platforms(path), start=1):
+        where = f"{path}: platform {number}"
+        specs.append(_spec(where, f"robot-{number}", entry))
+        if specs[-1].name in names:
+            raise InputError(f"{where}: the name {specs[-1].name!r} is used twice; names must differ")
+        names.add(specs[-1].name)
+    return specs
+
+
+def _platforms(path: Path) -> list[Any]:
+    try:
+        with path.open(encoding="utf-8") as file:
+            content = yaml.safe_load(file.read(_MAX_FILE))
+    except OSError as error:
+        raise InputError(f"cannot read team file {path}: {error.strerror or error}") from error
+    except yaml.MarkedYAMLError as error:
+        line = f", line {error.problem_mark.line + 1}" if error.problem_mark else ""
+        raise InputError(f"{path}{line}: not valid YAML; a team file is a list under 'platforms:'") from error
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        raise InputError(f"{path}: not a YAML text; a team file is a list under 'platforms:'") from error
+    if not isinstance(content, dict) or not isinstance(content.get("platforms", []), list):
+        raise InputError(f"{path}: a team file is a list under 'platforms:'; found something else")
+    for key in content:
+        if key != "platforms":
+            raise InputError(
+                f"{path}: unknown key {repr_short(key)}; {nearest_name(str(key), ['platforms'])}"
+            )
+    if not content.get("platforms"):
+        raise InputError(f"{path}: no platforms; list at least one under 'platforms:', for instance '- {{}}'")
+    return list(content["platforms"])
+
+
+def _spec(where: str, name: str, entry: Any) -> PlatformSpec:
+    entry = {} if entry is None else entry
+    if not isinstance(entry, dict):
+        raise InputError(f"{where}: must be 'field: value' pairs; got {repr_short(entry)}")
+    known = [field.name for field in fields(PlatformSpec)]
+    for key in entry:
+        if key not in known:
+            raise InputError(f"{where}: unknown field {repr_short(key)}; {nearest_name(str(key), known)}")
+    values = {"name": name} | {key: _plain(key, value) for key, value in entry.items()}
+    try:
+        return PlatformSpec(**values)
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from error
+
+
+def _plain(field: str, value: Any) -> Any:
+    """Return the value in the field's own type where that loses nothing; else as it is, to be refused."""
+    if field == "start" and isinstance(value, list):
+        return tuple(_plain("", part) for part in value)
+    if isinstance(value, str) and field != "name":
+        try:
+            value = float(value)  # the YAML reader takes 5e-2 for text
+        except ValueError:
+            return value
+    if field == "beams":
+        return int(value) if isinstance(value, float) and value.is_integer() else value
+    return float(value) if _is_number(value) else value
+
+
+def _is_number(value: Any) -> bool:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    return math.isfinite(value) if isinstance(value, float) else abs(value) < 10**300

@@ -1,0 +1,5 @@
+"""The agent: one state machine a robot, run alike by the simulator and by a network process."""
+
+from vedette.agent.agent import Agent, State, step
+
+__all__ = ["Agent", "State", "step"]

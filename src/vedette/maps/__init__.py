@@ -1,5 +1,6 @@
 """Grid maps in the team frame, and their files."""
 
 from vedette.maps.frame import FREE, OCCUPIED, UNKNOWN, GridFrame
+from vedette.maps.map_server import read_map, write_map
 
-__all__ = ["FREE", "OCCUPIED", "UNKNOWN", "GridFrame"]
+__all__ = ["FREE", "OCCUPIED", "UNKNOWN", "GridFrame", "read_map", "write_map"]

@@ -1,0 +1,27 @@
+"""How a team agrees on strategies by messages on a tree."""
+
+from vedette.negotiation.chooser import Chooser
+from vedette.negotiation.jacobi import JacobiNode
+from vedette.negotiation.messages import Message, Outcome, decode, encode
+from vedette.negotiation.negotiate import SCHEMES, Negotiation, Step, negotiate
+from vedette.negotiation.node import Negotiator, Participant, Send
+from vedette.negotiation.token import TokenNode
+from vedette.negotiation.tree import Tree
+
+__all__ = [
+    "SCHEMES",
+    "Chooser",
+    "JacobiNode",
+    "Message",
+    "Negotiation",
+    "Negotiator",
+    "Outcome",
+    "Participant",
+    "Send",
+    "Step",
+    "TokenNode",
+    "Tree",
+    "decode",
+    "encode",
+    "negotiate",
+]

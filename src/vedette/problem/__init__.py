@@ -1,0 +1,22 @@
+"""The team's problem: objectives, the exhaustive reference and the bound."""
+
+from vedette.problem.bound import bound, slack
+from vedette.problem.coverage import CountedCoverage, Coverage, counted
+from vedette.problem.exhaustive import Exhaustive, exhaustive
+from vedette.problem.logdet import LogDet
+from vedette.problem.objective import Codec, Invertible, Objective, Platform
+
+__all__ = [
+    "Codec",
+    "CountedCoverage",
+    "Coverage",
+    "Exhaustive",
+    "Invertible",
+    "LogDet",
+    "Objective",
+    "Platform",
+    "bound",
+    "counted",
+    "exhaustive",
+    "slack",
+]

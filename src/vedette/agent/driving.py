@@ -1,0 +1,106 @@
+"""Driving: where the robot is going, and whom it lets pass on the way."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.agent.effects import Drive, Route
+from vedette.agent.events import Pose
+from vedette.agent.mates import Mate
+from vedette.agent.rightofway import HORIZON, Intent, give_way
+from vedette.maps import GridFrame
+from vedette.team import PlatformSpec
+
+YIELD_LIMIT = 12.0  # a robot that had to make room for so long looks for other work [s]
+
+
+@dataclass
+class Driver:
+    """Holds the route that the robot wants, and the refuge it may have to take instead."""
+
+    robot: int
+    spec: PlatformSpec
+    frame: GridFrame  # of the map
+    wanted: Route | None = None
+    refuge: NDArray[np.float64] | None = None  # (L, 2) [m], team frame, while making room
+    yielding_since: float = 0.0
+
+    @property
+    def yielding(self) -> bool:
+        """Tell whether the robot is making room for another."""
+        return self.refuge is not None
+
+    def go(self, route: Route | None) -> Drive:
+        """Want this route from now on; None: stand."""
+        self.wanted, self.refuge = route, None
+        return Drive(route)
+
+    def look_out(self, pose: Pose, mates: list[Mate], standing: Route, now: float) -> Drive | None:
+        """Make room if right of way demands it, and go on when the mate has passed.
+
+        ``standing``: the map to move aside on while no route is wanted.
+        """
+        route = self.wanted or standing
+        corner = np.array((self.frame.origin_x, self.frame.origin_y))
+        me = self._intent(self.robot, pose.x, pose.y, self.ahead(pose), pose.slowed, corner)
+        others = [
+            self._intent(mate.robot, mate.x, mate.y, mate.path, mate.slowed, corner)
+            for mate in mates
+            if not mate.silent
+        ]
+        refuge = give_way(route.passable, self.frame.resolution, me, others)
+        if refuge is None:
+            if not self.yielding:
+                return None
+            self.refuge = None
+            return Drive(self.wanted)
+        if not self.yielding:
+            self.yielding_since = now
+        self.refuge = refuge + corner
+        return Drive(Route(self.refuge, route.passable))
+
+    def ahead(self, pose: Pose) -> NDArray[np.float64]:
+        """Return what is left of the wanted path, ``(L, 2)`` [m], team frame, for the next few metres."""
+        if self.wanted is None:
+            return np.empty((0, 2))
+        return remaining(self.wanted.path, pose.x, pose.y, HORIZON)
+
+    def beaconed(self, pose: Pose) -> NDArray[np.float64]:
+        """Return the next few metres that the robot will really drive, ``(L, 2)`` [m], team frame."""
+        if self.refuge is not None:
+            return remaining(self.refuge, pose.x, pose.y, HORIZON)
+        return self.ahead(pose)
+
+    def _intent(
+        self,
+        robot: int,
+        x: float,
+        y: float,
+        path: NDArray[np.float64],
+        slowed: float,
+        corner: NDArray[np.float64],
+    ) -> Intent:
+        return Intent(
+            robot, x - corner[0], y - corner[1], path - corner, self.spec.radius, self.spec.speed, slowed
+        )
+
+
+def remaining(path: NDArray[np.float64], x: float, y: float, length: float) -> NDArray[np.float64]:
+    """Return the path from its point nearest (x, y) on, at most ``length`` [m] of it."""
+    if len(path) < 2:
+        return path
+    start, step = path[:-1], np.diff(path, axis=0)
+    square = np.maximum((step**2).sum(axis=1), 1e-12)
+    along = np.clip((((x, y) - start) * step).sum(axis=1) / square, 0.0, 1.0)
+    foot = start + along[:, None] * step
+    leg = int(np.argmin(np.hypot(*(foot - (x, y)).T)))
+    rest = np.vstack((foot[leg], path[leg + 1 :]))
+    arc = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(rest, axis=0).T))))
+    if arc[-1] <= length:
+        return rest
+    inside = arc < length
+    last = [np.interp(length, arc, rest[:, 0]), np.interp(length, arc, rest[:, 1])]
+    return np.vstack((rest[inside], last))

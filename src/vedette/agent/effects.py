@@ -1,0 +1,54 @@
+"""What an agent asks for; whoever runs it carries these out in order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Traffic(Enum):
+    """What a message is for; traffic is counted by kind."""
+
+    NEGOTIATION = "negotiation"
+    FUSION = "fusion"
+    BEACONS = "beacons"
+
+
+@dataclass(frozen=True)
+class Send:
+    """Send bytes to a neighbour on the tree."""
+
+    to: int
+    traffic: Traffic
+    payload: bytes
+
+
+@dataclass(frozen=True, eq=False)
+class Route:
+    """A way to drive, and the map it was found on."""
+
+    path: NDArray[np.float64]  # (L, 2) [m], team frame
+    passable: NDArray[np.bool_]  # (R, C) where the robot's centre may be, over the whole map
+
+
+@dataclass(frozen=True, eq=False)
+class Drive:
+    """Follow a route; None: stand still."""
+
+    route: Route | None
+
+
+@dataclass(frozen=True, eq=False)
+class Job:
+    """Heavy computing, to run outside ``step``; ``JobDone(key)`` comes back when it has."""
+
+    key: tuple[int, int]
+    run: Callable[[], None]
+
+
+Effect: TypeAlias = Send | Drive | Job

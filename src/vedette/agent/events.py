@@ -1,0 +1,65 @@
+"""What an agent is told; whoever runs it delivers these in order of time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class Message:
+    """Bytes from a neighbour on the tree."""
+
+    sender: int
+    payload: bytes
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Where the robot is; comes at least ten times a second, and keeps the agent's time going."""
+
+    x: float  # [m], team frame
+    y: float
+    heading: float  # [rad]
+    slowed: float = 0.0  # time without progress on its way [s]
+
+
+@dataclass(frozen=True, eq=False)
+class Scan:
+    """One sweep of the lidar, taken at the latest pose."""
+
+    angles: NDArray[np.float64]  # (B,) [rad], team frame
+    ranges: NDArray[np.float64]  # (B,) [m]; inf where nothing came back
+
+
+@dataclass(frozen=True)
+class Arrived:
+    """The robot is at the end of the path it was given."""
+
+
+@dataclass(frozen=True)
+class Stuck:
+    """The robot has made no progress for a while, though it should."""
+
+
+@dataclass(frozen=True)
+class JobDone:
+    """A job has run."""
+
+    key: tuple[int, int]
+
+
+@dataclass(frozen=True)
+class TreeChanged:
+    """The team's tree is another one now; messages of older epochs are void."""
+
+    epoch: int
+    parent: int | None  # None at the root
+    neighbours: tuple[int, ...]
+    size: int  # robots on the tree
+
+
+Event: TypeAlias = Message | Pose | Scan | Arrived | Stuck | JobDone | TreeChanged

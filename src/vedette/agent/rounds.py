@@ -1,0 +1,258 @@
+"""Rounds: the team brings its evidence together, freezes it, negotiates, and everybody has a new strategy.
+
+``Begin`` goes down the tree; evidence flows up, each robot's news ahead of its ``Flushed``; from the root it
+flows down ahead of ``Freeze``. On links that lose nothing, everybody then holds the same belief. Whatever is
+lost, a round ends by its time-out and the robots keep their strategies.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from vedette.agent.effects import Effect, Job, Send, Traffic
+from vedette.agent.events import Pose, TreeChanged
+from vedette.agent.mates import Mate
+from vedette.agent.messages import Begin, Call, Evidence, Flushed, Freeze, Negotiate, encode
+from vedette.agent.mission import Mission
+from vedette.agent.participant import RoundParticipant
+from vedette.negotiation import JacobiNode, Negotiator, Outcome, TokenNode, messages
+
+INTERVAL = 1.0  # least time between the ends and beginnings of rounds [s]
+PERIOD = 4.0  # a round at least so often while the mission lasts [s]
+CALL_AGAIN = 1.0  # a call not answered is repeated after so long [s]
+MAX_SWEEPS = 12
+
+
+def patience(size: int) -> float:
+    """Return how long a round of so many robots may last [s]."""
+    return 1.0 + 0.3 * size
+
+
+@dataclass(frozen=True)
+class Decision:
+    """What a finished round says, besides the strategies themselves."""
+
+    time: float
+    outcome: Outcome
+    approximate: bool  # this robot's belief was not the root's
+
+
+@dataclass
+class _Round:
+    """One round as this robot sees it."""
+
+    sequence: int
+    began: float
+    waiting: set[int]  # children that have not flushed yet
+    belief: Any = None
+    approximate: bool = False
+    preparing: bool = False
+    participant: RoundParticipant | None = None
+    negotiator: Negotiator[Any] | None = None
+    early: list[tuple[int, bytes]] = field(default_factory=list)  # negotiation messages before we were ready
+
+
+@dataclass
+class Rounds:
+    """One robot's part in the team's rounds."""
+
+    mission: Mission
+    scheme: str  # "token" or "jacobi"
+    decided: Callable[[Decision], None]
+    tree: TreeChanged = field(default_factory=lambda: TreeChanged(0, None, (), 1))
+    decisions: int = 0
+    sweeps: int = 0
+    bound_ratios: list[float] = field(default_factory=list)
+    blocked: bool = False  # the robot could not go on: its mates count as obstacles in the next round
+    _round: _Round | None = None
+    _sequence: int = 0
+    _wanted: bool = False
+    _called: float = -1e9
+    _ended: float = -1e9
+
+    @property
+    def busy(self) -> bool:
+        """Tell whether a round is going on."""
+        return self._round is not None
+
+    @property
+    def stamp(self) -> tuple[int, int]:
+        """Epoch and sequence number of the round going on, or of the last one."""
+        return self.tree.epoch, self._sequence
+
+    def join(self, tree: TreeChanged) -> None:
+        """Take part on another tree; what went on on the old one is void."""
+        self.tree = tree
+        self._round = None
+        self._sequence = 0
+        self._wanted = True
+        self._called = -1e9
+
+    def want(self) -> None:
+        """Ask for a round as soon as one may begin."""
+        self._wanted = True
+
+    def tick(self, now: float) -> list[Effect]:
+        """Do what is due: end a round that takes too long, call or begin one that is wanted."""
+        late = 1.0 if self.tree.parent is None else 1.5  # the root gives up first
+        if self._round and now > self._round.began + late * patience(self.tree.size):
+            self._end(now)
+            self._wanted = True
+        if self._round or now < self._ended + INTERVAL:
+            return []
+        if self.tree.parent is None:
+            return self._begin(now) if self._wanted or now >= self._ended + PERIOD else []
+        if self._wanted and now >= self._called + CALL_AGAIN:
+            self._called = now
+            return [self._say(self.tree.parent, Call(self.tree.epoch))]
+        return []
+
+    # -- the round's phases ------------------------------------------------------------------------
+
+    def call(self, now: float) -> list[Effect]:
+        """Pass a call on towards the root."""
+        self._wanted = True
+        return self.tick(now)
+
+    def _begin(self, now: float) -> list[Effect]:
+        return self.begin(Begin(self.tree.epoch, self._sequence + 1), now)
+
+    def begin(self, message: Begin, now: float) -> list[Effect]:
+        """Enter a round: hand the word on, and flush what this robot knows once its children have."""
+        if message.epoch != self.tree.epoch or message.sequence <= self._sequence:
+            return []
+        self._sequence = message.sequence
+        self._wanted = False
+        self._round = _Round(message.sequence, now, set(self._children))
+        self.mission.publish(now)
+        effects: list[Effect] = [self._say(child, message) for child in self._children]
+        return effects + self._flush(now)
+
+    def flushed(self, sender: int, message: Flushed, now: float) -> list[Effect]:
+        """Note that a child's part of the tree has been heard."""
+        if not self._matches(message.epoch, message.sequence):
+            return []
+        assert self._round
+        self._round.waiting.discard(sender)
+        return self._flush(now)
+
+    def _flush(self, now: float) -> list[Effect]:
+        assert self._round
+        if self._round.waiting or self._round.belief is not None:
+            return []
+        if self.tree.parent is None:
+            return self._freeze(self.mission.fusion.digest, now)
+        news = self.news(self.tree.parent, now)
+        return [*news, self._say(self.tree.parent, Flushed(self.tree.epoch, self._round.sequence))]
+
+    def freeze(self, message: Freeze, now: float) -> list[Effect]:
+        """Everything known has arrived: freeze it."""
+        if not self._matches(message.epoch, message.sequence):
+            return []
+        return self._freeze(message.digest, now)
+
+    def _freeze(self, digest: int, now: float) -> list[Effect]:
+        assert self._round
+        effects: list[Effect] = []
+        for child in self._children:
+            effects += self.news(child, now)
+            effects.append(self._say(child, Freeze(self.tree.epoch, self._round.sequence, digest)))
+        self._round.approximate = self.mission.fusion.digest != digest
+        self._round.belief = self.mission.freeze()
+        return effects
+
+    def preparation(self, pose: Pose, mates: list[Mate]) -> Job | None:
+        """Return the job to do between freezing and negotiating, once."""
+        round_ = self._round
+        if round_ is None or round_.belief is None or round_.preparing:
+            return None
+        round_.preparing = True
+        belief, blocked = round_.belief, self.blocked
+        return Job(
+            (self.tree.epoch, round_.sequence),
+            lambda: self.mission.prepare(belief, pose, mates, blocked),
+        )
+
+    def prepared(self, key: tuple[int, int], now: float) -> list[Effect]:
+        """Start negotiating."""
+        if not self._matches(*key):
+            return []
+        round_ = self._round
+        assert round_
+        self.blocked = False
+        round_.participant = RoundParticipant(self.mission, round_.belief)
+        node = TokenNode if self.scheme == "token" else JacobiNode
+        round_.negotiator = node(
+            self.tree.neighbours, self.tree.parent, round_.participant, max_sweeps=MAX_SWEEPS
+        )
+        effects = self._send(round_.negotiator.start(), now)
+        for sender, data in round_.early:
+            effects += self._negotiate(sender, data, now)
+        return effects
+
+    def negotiate(self, sender: int, message: Negotiate, now: float) -> list[Effect]:
+        """Take in a negotiation message."""
+        if not self._matches(message.epoch, message.sequence):
+            return []
+        assert self._round
+        if self._round.negotiator is None:
+            self._round.early.append((sender, message.data))
+            return []
+        return self._negotiate(sender, message.data, now)
+
+    def _negotiate(self, sender: int, data: bytes, now: float) -> list[Effect]:
+        if self._round is None or self._round.negotiator is None:
+            return []
+        message = messages.decode(data, self.mission.codec)
+        return self._send(self._round.negotiator.receive(sender, message), now)
+
+    def _send(self, sends: list[Any], now: float) -> list[Effect]:
+        round_ = self._round
+        assert round_
+        assert round_.negotiator
+        assert round_.participant
+        effects: list[Effect] = [
+            self._say(
+                send.to,
+                Negotiate(
+                    self.tree.epoch, round_.sequence, messages.encode(send.message, self.mission.codec)
+                ),
+            )
+            for send in sends
+        ]
+        outcome = round_.negotiator.finished
+        if outcome is not None:
+            self.mission.strategy = round_.participant.chosen
+            self.decisions += 1
+            self.sweeps += outcome.sweeps
+            if outcome.bound is not None and outcome.bound > 0:
+                self.bound_ratios.append(outcome.value / outcome.bound)
+            approximate = round_.approximate
+            self._end(now)
+            self.decided(Decision(now, outcome, approximate))
+        return effects
+
+    def _end(self, now: float) -> None:
+        self._round = None
+        self._ended = now
+
+    # -- links --------------------------------------------------------------------------------------
+
+    @property
+    def _children(self) -> list[int]:
+        return [k for k in self.tree.neighbours if k != self.tree.parent]
+
+    def _matches(self, epoch: int, sequence: int) -> bool:
+        return (
+            self._round is not None and epoch == self.tree.epoch and sequence == self._round.sequence
+        )
+
+    def _say(self, to: int, message: Call | Begin | Flushed | Freeze | Negotiate) -> Send:
+        return Send(to, Traffic.NEGOTIATION, encode(message))
+
+    def news(self, neighbour: int, now: float) -> list[Effect]:
+        """Return what a neighbour lacks of the evidence, if anything."""
+        data = self.mission.fusion.outgoing(neighbour, now)
+        return [] if data is None else [Send(neighbour, Traffic.FUSION, encode(Evidence(data)))]

@@ -1,0 +1,134 @@
+"""What a round of mapping is decided on: a frozen team map, the worth of its unknown cells, its frontiers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.domains.mapping.layers import TimeLayers
+from vedette.kernels.frontier import find_frontiers
+from vedette.maps import FREE, UNKNOWN, GridFrame
+
+PLANNING_CELL = 0.2  # [m]; coarser costs quality, finer only bytes (docs/theory.md, section 6)
+MIN_FRONTIER = 0.25  # shortest frontier worth a name [m]
+LN2 = float(np.log(2.0))  # entropy of a cell with P = 0.5 [nats]
+
+
+@dataclass(frozen=True, eq=False)
+class MapBelief:
+    """The team map in the window that planning needs; equal for all robots with equal evidence."""
+
+    frame: GridFrame  # of the window
+    classes: NDArray[np.uint8]  # (R, C) of the window
+    planning: GridFrame  # of the planning cells, over the whole map
+    factor: int  # side of a planning cell [cells]
+    first: tuple[int, int]  # planning cell (row, col) at the window's corner
+    unknown: NDArray[np.uint16]  # (r, c) unknown cells of each planning cell in the window
+    weights: NDArray[np.float32]  # (planning.size,) worth of each planning cell [nats]
+    frontier_cells: NDArray[np.int64]  # (M,) flat cells of the window, by cluster
+    frontier_starts: NDArray[np.int64]  # (K + 1,)
+    layers: TimeLayers
+    counts: NDArray[np.int64]  # (4, BINS) the team's sightings
+
+    def planning_cells(self, local: NDArray[np.uint32]) -> NDArray[np.uint32]:
+        """Map the window's flat planning cells to those of the whole map."""
+        row, col = np.divmod(local, self.unknown.shape[1])
+        return ((row + self.first[0]) * self.planning.cols + col + self.first[1]).astype(np.uint32)
+
+
+def planning_factor(resolution: float) -> int:
+    """Return how many cells a planning cell is wide."""
+    return max(1, round(PLANNING_CELL / resolution))
+
+
+def freeze(
+    classes: NDArray[np.uint8],
+    frame: GridFrame,
+    *,
+    reach: float,
+    extent: float,
+    hidden: float,
+    layers: TimeLayers,
+    counts: NDArray[np.int64],
+) -> MapBelief:
+    """Snapshot a team map for a round.
+
+    A planning cell is worth ln 2 for each unknown cell in it (paper, section 4.1, P = 0.5), and the unknown cells
+    that touch a frontier carry the hidden area expected behind it.  docs/theory.md (V24)
+
+    Args:
+        classes: (R, C) team map; copied.
+        frame: where it lies.
+        reach: how far beyond what is known the sensors may see [m].
+        extent: longest frontier before it is split [m].
+        hidden: area expected behind a frontier [m^2].
+        layers: the time layers of the objective.
+        counts: (4, BINS) the team's sightings.
+    """
+    factor = planning_factor(frame.resolution)
+    planning = frame.coarse(factor)
+    rows, cols = _window(classes, factor, int(np.ceil(reach / frame.resolution)))
+    crop = np.ascontiguousarray(classes[rows, cols])
+    window = GridFrame(
+        frame.resolution,
+        *crop.shape,
+        frame.origin_x + cols.start * frame.resolution,
+        frame.origin_y + rows.start * frame.resolution,
+    )
+    smallest = max(1, round(MIN_FRONTIER / frame.resolution))
+    cells, starts = find_frontiers(crop, smallest, max(2, round(extent / frame.resolution)))
+    unknown = _block_sum(crop == UNKNOWN, factor)
+    local = unknown.astype(np.float32) * LN2
+    if hidden > 0:
+        local += LN2 * hidden / frame.resolution**2 * _behind(crop, cells, starts, factor)
+    first = (rows.start // factor, cols.start // factor)
+    weights = np.zeros(planning.shape, np.float32)
+    weights[first[0] : first[0] + local.shape[0], first[1] : first[1] + local.shape[1]] = local
+    return MapBelief(
+        window, crop, planning, factor, first, unknown, weights.ravel(), cells, starts, layers, counts
+    )
+
+
+def _window(classes: NDArray[np.uint8], factor: int, reach: int) -> tuple[slice, slice]:
+    """The known part, grown by the sensor's reach and aligned to planning cells."""
+
+    def span(known: NDArray[np.bool_], size: int) -> slice:
+        where = np.flatnonzero(known)
+        if not len(where):
+            return slice(0, size)
+        start = max(0, int(where[0]) - reach) // factor * factor
+        return slice(start, min(size, -(-(int(where[-1]) + 1 + reach) // factor) * factor))
+
+    return span(classes.any(axis=1), classes.shape[0]), span(classes.any(axis=0), classes.shape[1])
+
+
+def _block_sum(mask: NDArray[np.bool_], factor: int) -> NDArray[np.uint16]:
+    rows, cols = mask.shape
+    if rows % factor or cols % factor:
+        mask = np.pad(mask, ((0, -rows % factor), (0, -cols % factor)))
+    total = np.zeros((mask.shape[0] // factor, mask.shape[1] // factor), np.uint16)
+    for row in range(factor):
+        for col in range(factor):
+            total += mask[row::factor, col::factor]
+    return total
+
+
+def _behind(
+    classes: NDArray[np.uint8], cells: NDArray[np.int64], starts: NDArray[np.int64], factor: int
+) -> NDArray[np.float32]:
+    """Share one unit a frontier among the planning cells of the unknown cells that touch it."""
+    rows, cols = classes.shape
+    padded = np.pad(classes, 1, constant_values=FREE)
+    row, col = np.divmod(cells, cols)
+    cluster = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
+    around = np.array([(-1, 0), (1, 0), (0, -1), (0, 1)])
+    r = row[:, None] + around[:, 0]
+    c = col[:, None] + around[:, 1]
+    touches = padded[r + 1, c + 1] == UNKNOWN
+    owner = np.broadcast_to(cluster[:, None], touches.shape)[touches]
+    share = 1.0 / np.bincount(owner, minlength=len(starts) - 1)[owner]
+    shape = (-(-rows // factor), -(-cols // factor))
+    flat = r[touches] // factor * shape[1] + c[touches] // factor
+    return np.bincount(flat, share, minlength=shape[0] * shape[1]).reshape(shape).astype(np.float32)

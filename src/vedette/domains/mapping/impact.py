@@ -1,0 +1,119 @@
+"""The impact of a mapping strategy: quantised log-misses per planning cell and time layer, sparse."""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.kernels.coverage import CERTAIN, LAYERS, STEPS_PER_NAT, Keys, Misses
+
+# Shares are rounded to eighths: neighbouring cells then mostly agree, and messages deflate well.
+_LEVELS = np.array([round(-np.log1p(-k / 8) * STEPS_PER_NAT) for k in range(8)] + [64], np.uint8)
+MIN_SHARE = 1 / 16  # a smaller share rounds to nothing
+
+
+@dataclass(frozen=True, eq=False)
+class Impact:
+    """Log-misses that start in a time layer; an absent entry is a miss probability of 1 (identity)."""
+
+    keys: Keys  # (M,) strictly increasing, planning cell * LAYERS + layer
+    misses: Misses  # (M,) log-miss in steps of 1/16 nat, 1..255
+
+    def __eq__(self, other: object) -> bool:
+        return (
+            isinstance(other, Impact)
+            and np.array_equal(self.keys, other.keys)
+            and np.array_equal(self.misses, other.misses)
+        )
+
+    def __hash__(self) -> int:
+        return hash((self.keys.tobytes(), self.misses.tobytes()))
+
+    @property
+    def sparse(self) -> tuple[Keys, Misses]:
+        """The two arrays, as the kernels take them."""
+        return self.keys, self.misses
+
+
+NOTHING = Impact(np.empty(0, np.uint32), np.empty(0, np.uint8))
+
+
+def quantise(share: NDArray[np.float32]) -> Misses:
+    """Round probabilities of being seen to the nearest log-miss level, once."""
+    return _LEVELS[np.rint(np.clip(share, 0, 1) * 8).astype(np.intp)]
+
+
+def final_miss(impact: Impact, size: int) -> NDArray[np.float32]:
+    """Miss probability of every planning cell after the last layer, shape (size,)."""
+    total = np.bincount(impact.keys // LAYERS, impact.misses, minlength=size)
+    return np.where(total >= CERTAIN, 0.0, np.exp(-total / STEPS_PER_NAT)).astype(np.float32)
+
+
+class ImpactCodec:
+    """Impacts as bytes: planning cells by gaps, layers and log-misses apart, deflated."""
+
+    def __init__(self, cells: int) -> None:
+        self._cells = cells
+
+    def encode(self, impact: Impact) -> bytes:
+        """Return at most ``bound`` bytes for any impact over this many planning cells."""
+        order = np.argsort(impact.keys % LAYERS, kind="stable")
+        layer = (impact.keys[order] % LAYERS).astype(np.uint8)
+        cell = (impact.keys[order] // LAYERS).astype(np.int64)
+        counts = np.bincount(layer, minlength=LAYERS).astype("<u4")
+        gap = np.diff(cell, prepend=0)
+        gap[np.cumsum(counts)[:-1][counts[1:] > 0]] = cell[np.cumsum(counts)[:-1][counts[1:] > 0]]
+        small = np.minimum(gap, 255).astype(np.uint8)
+        large = gap[gap >= 255].astype("<u4")
+        body = b"".join(
+            (counts.tobytes(), small.tobytes(), impact.misses[order].tobytes(), large.tobytes())
+        )
+        return zlib.compress(body, 6, wbits=-15)
+
+    def decode(self, payload: bytes) -> Impact:
+        """Return the impact.
+
+        Raises:
+            ValueError: the payload is not an impact over this many planning cells.
+        """
+        limit = 4 * LAYERS + 6 * self._cells * LAYERS
+        try:
+            unpacker = zlib.decompressobj(wbits=-15)
+            body = unpacker.decompress(payload, limit)
+        except zlib.error as error:
+            raise ValueError(f"impact does not inflate: {error}") from None
+        if not unpacker.eof or len(body) < 4 * LAYERS:
+            raise ValueError("impact is cut short or too large")
+        counts = np.frombuffer(body, "<u4", LAYERS).astype(np.int64)
+        total = int(counts.sum())
+        if len(body) < 4 * LAYERS + 2 * total:
+            raise ValueError("impact has fewer entries than it declares")
+        small = np.frombuffer(body, np.uint8, total, 4 * LAYERS)
+        misses = np.frombuffer(body, np.uint8, total, 4 * LAYERS + total)
+        large = body[4 * LAYERS + 2 * total :]
+        wide = small == 255
+        if len(large) != 4 * int(np.count_nonzero(wide)):
+            raise ValueError("impact has the wrong number of wide gaps")
+        gap = small.astype(np.int64)
+        gap[wide] = np.frombuffer(large, "<u4")
+        cell = np.cumsum(gap)
+        firsts = (np.cumsum(counts) - counts)[counts > 0]
+        before = np.where(firsts > 0, cell[firsts - 1], 0)
+        cell -= np.repeat(before, counts[counts > 0])
+        if total and (cell.min() < 0 or cell.max() >= self._cells or misses.min() == 0):
+            raise ValueError("impact has a cell outside the map or an empty entry")
+        keys = cell * LAYERS + np.repeat(np.arange(LAYERS), counts)
+        order = np.argsort(keys, kind="stable")
+        keys = keys[order]
+        if np.any(np.diff(keys) <= 0):
+            raise ValueError("impact has the same cell and layer twice")
+        return Impact(keys.astype(np.uint32), misses[order])
+
+    @property
+    def bound(self) -> int:
+        """Largest encoding of any impact over this many planning cells [bytes]; no team size in it."""
+        raw = 4 * LAYERS + 6 * self._cells * LAYERS
+        return raw + 5 * (raw // 16383 + 1) + 64

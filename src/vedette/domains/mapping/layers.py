@@ -1,0 +1,53 @@
+"""Time layers: what an observation is worth by when it is made."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.kernels.coverage import LAYERS
+
+FIRST_EDGE = 2.0  # [s]
+RATIO = 1.45  # between successive edges: 2 s ... 527 s
+
+
+@dataclass(frozen=True, eq=False)
+class TimeLayers:
+    """``worth(t) = sum of weights[b] over layers b with edges[b] >= t``: a non-increasing step function.
+
+    An observation that arrives in layer b counts in b and in every later layer, so a planning cell first
+    seen in layer b contributes ``worth(edges[b])`` of its weight, however many see it later: variable horizons
+    stay partially separable.  docs/theory.md (V22)
+    """
+
+    edges: NDArray[np.float64]  # (LAYERS,) upper edge of each layer [s]; the last takes all later arrivals
+    weights: NDArray[np.float64]  # (LAYERS,)
+
+    def layer(self, arrival: float) -> int:
+        """Return the layer of an arrival [s] after the round's t0: the first whose edge is not before it."""
+        return min(int(np.searchsorted(self.edges, arrival)), LAYERS - 1)
+
+
+def _edges() -> NDArray[np.float64]:
+    return FIRST_EDGE * RATIO ** np.arange(LAYERS)
+
+
+def _layers(worth: NDArray[np.float64]) -> TimeLayers:
+    return TimeLayers(_edges(), worth - np.append(worth[1:], 0.0))
+
+
+def discounted(tau: float) -> TimeLayers:
+    """Worth ``exp(-t / tau)``, with ``tau`` in seconds."""
+    return _layers(np.exp(-_edges() / tau))
+
+
+def rate() -> TimeLayers:
+    """Worth ``1 / t``: the paper's rate of uncertainty reduction, eq. (42), as docs/theory.md (V23) reads it."""
+    return _layers(1.0 / _edges())
+
+
+def plain() -> TimeLayers:
+    """Worth 1 whenever it is made: the paper's expected posterior entropy, eq. (41)."""
+    return _layers(np.ones(LAYERS))

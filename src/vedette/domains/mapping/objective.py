@@ -1,0 +1,47 @@
+"""The team's mapping objective: the entropy that the team's strategies are expected to remove, by time layers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.domains.mapping.belief import MapBelief
+from vedette.domains.mapping.impact import NOTHING, Impact
+from vedette.kernels import coverage
+
+
+class MappingObjective:
+    """``psi(impact) = sum_s H_s sum_b w_b (1 - prod_i m_i(s, b))``  [nats].
+
+    With one layer this is the paper's eq. (41) in gain form; with weights ``1/t_b - 1/t_{b+1}`` it is its eq.
+    (42) made exactly partially separable.  docs/theory.md (V21)-(V23)
+    """
+
+    monotone = True
+    submodular = True
+
+    def nothing(self, belief: MapBelief) -> Impact:
+        """Return the impact of a team that observes nothing."""
+        return NOTHING
+
+    def combine(self, a: Impact, b: Impact) -> Impact:
+        """``a * b``: products of miss probabilities, as saturating sums of log-misses; paper, eq. (40)."""
+        return Impact(*coverage.combine(*a.sparse, *b.sparse))
+
+    def value(self, belief: MapBelief, impact: Impact) -> float:
+        """Expected weighted entropy reduction [nats]."""
+        return float(self._marginals(belief, NOTHING, [impact])[0])
+
+    def values(self, belief: MapBelief, others: Impact, own: Sequence[Impact]) -> NDArray[np.float64]:
+        """``value(others * own_k)`` for every k, by one kernel call."""
+        return self.value(belief, others) + self._marginals(belief, others, own)
+
+    def _marginals(self, belief: MapBelief, others: Impact, own: Sequence[Impact]) -> NDArray[np.float64]:
+        starts = np.cumsum([0, *(len(impact.keys) for impact in own)], dtype=np.int64)
+        keys = np.concatenate([NOTHING.keys, *(impact.keys for impact in own)])
+        misses = np.concatenate([NOTHING.misses, *(impact.misses for impact in own)])
+        return coverage.marginals(
+            belief.weights, belief.layers.weights, others.sparse, starts, keys, misses
+        )

@@ -1,0 +1,203 @@
+"""One mapping robot: the tours it can make, what they would reveal, and its best reply to the team."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.domains.mapping.belief import MapBelief
+from vedette.domains.mapping.impact import NOTHING, Impact
+from vedette.domains.mapping.sightings import SightingModel, beam_model, measured_model
+from vedette.domains.mapping.stops import Disc, Ground, Stops, find_stops, survey, unknown_near
+from vedette.kernels import coverage
+from vedette.kernels.coverage import CERTAIN, LAYERS
+from vedette.team import PlatformSpec
+
+LEAST_AREA = 0.02  # a stop must promise this much [m^2]
+HYSTERESIS = 0.03  # a new strategy must gain this share more than the present one
+LEFT_ALONE = 0.5  # a frontier this near a place that is left alone is left alone too [m]
+SAME_PLACE = 1.2  # a frontier this near a stop of the last round is the same one [m]
+
+
+@dataclass(frozen=True, eq=False)
+class Tour:
+    """A strategy: the stops to visit, in order."""
+
+    targets: NDArray[np.float64]  # (L, 2) the frontiers' middles [m], team frame
+    views: NDArray[np.float64]  # (L, 2) where to stand [m], team frame
+    arrivals: NDArray[np.float64]  # (L,) after the round's t0 [s]
+    unknown: NDArray[np.int64]  # (L,) cells unknown near each frontier when planned
+    stops: NDArray[np.int64]  # (L,) index among the round's stops
+
+    def __len__(self) -> int:
+        return len(self.targets)
+
+    def after_first(self) -> Tour:
+        """Return the tour without its first stop."""
+        return Tour(
+            self.targets[1:], self.views[1:], self.arrivals[1:], self.unknown[1:], self.stops[1:]
+        )
+
+
+_NONE = np.empty(0, np.int64)
+STAY = Tour(np.empty((0, 2)), np.empty((0, 2)), np.empty(0), _NONE, _NONE)
+
+
+@dataclass(frozen=True)
+class GivenUp:
+    """A frontier that a visit did not change: left alone until the map near it does."""
+
+    x: float
+    y: float
+    unknown: int  # cells unknown near it when it was given up
+
+
+@dataclass(eq=False)
+class MappingPlatform:
+    """A robot with a lidar: strategies are tours of frontiers under the team's time-layered objective.
+
+    ``place`` says where it is before ``prepare``; a round then works on what ``prepare`` found.
+    """
+
+    spec: PlatformSpec
+    max_stops: int = 6
+    measured: str = "unknown"  # sighting model: "unknown" length or "distance" (the paper's), or "beam"
+    x: float = 0.0
+    y: float = 0.0
+    obstacles: list[Disc] = field(default_factory=list)
+    team: list[tuple[int, float, float]] = field(default_factory=list)  # id, x, y of all, itself included
+    now: float = 0.0
+    visited: list[tuple[float, float, int]] = field(default_factory=list)  # x, y, unknown near it before
+    given_up: list[GivenUp] = field(default_factory=list)
+    avoided: list[tuple[float, float, float]] = field(default_factory=list)  # x, y, until [s]
+    ground: Ground | None = None
+    stops: Stops | None = None
+
+    def place(
+        self,
+        x: float,
+        y: float,
+        obstacles: list[Disc],
+        team: list[tuple[int, float, float]],
+        now: float,
+    ) -> None:
+        """Say where the robot and its team-mates are [m], team frame, which discs do not move, what time it is."""
+        self.x, self.y, self.obstacles, self.team, self.now = x, y, obstacles, team, now
+
+    def model(self, belief: MapBelief) -> SightingModel:
+        """Return the sighting model that the belief's counts give this robot's sensor."""
+        cells = int(np.ceil(self.spec.range / belief.frame.resolution))
+        if self.measured == "beam":
+            return beam_model(cells)
+        return measured_model(
+            belief.counts, belief.frame.resolution, cells, by_distance=self.measured == "distance"
+        )
+
+    def prepare(self, belief: MapBelief) -> None:
+        """Survey the ground and find the stops; the slow part, before the round."""
+        self.ground = survey(belief, self.spec, self.x, self.y, self.obstacles)
+        least = max(LEAST_AREA, 0.5 * belief.frame.resolution**2)
+        stops = find_stops(belief, self.ground, self.spec, self.model(belief), least)
+        self._update_given_up(belief)
+        self.stops = self._without_left_alone(stops)
+
+    def _update_given_up(self, belief: MapBelief) -> None:
+        """Give up frontiers that a visit did not change; take up again those whose surroundings changed."""
+
+        def unchanged(x: float, y: float, before: int) -> bool:
+            return before - unknown_near(belief.classes, belief.frame, x, y) <= max(2, before // 8)
+
+        self.given_up = [spot for spot in self.given_up if unchanged(spot.x, spot.y, spot.unknown)]
+        for x, y, before in self.visited:
+            now_unknown = unknown_near(belief.classes, belief.frame, x, y)
+            if now_unknown and unchanged(x, y, before):
+                self.given_up.append(GivenUp(x, y, now_unknown))
+        self.visited.clear()
+
+    def _without_left_alone(self, stops: Stops) -> Stops:
+        """Make the stops at given-up or avoided places unreachable, which keeps the arrays aligned."""
+        self.avoided = [spot for spot in self.avoided if spot[2] > self.now]
+        first_leg, legs = stops.first_leg.copy(), stops.legs.copy()
+        for x, y in [(spot.x, spot.y) for spot in self.given_up] + [spot[:2] for spot in self.avoided]:
+            near = np.hypot(stops.targets[:, 0] - x, stops.targets[:, 1] - y) < LEFT_ALONE
+            first_leg[near] = np.inf
+            legs[:, near] = np.inf
+        return replace(stops, first_leg=first_leg, legs=legs)
+
+    def carry_over(self, strategy: Tour) -> Tour:
+        """Restate last round's tour over this round's stops: same places, new arrival times."""
+        assert self.stops is not None
+        order: list[int] = []
+        for x, y in strategy.targets:
+            if not len(self.stops):
+                break
+            away = np.hypot(self.stops.targets[:, 0] - x, self.stops.targets[:, 1] - y)
+            nearest = int(np.argmin(away))
+            if away[nearest] <= SAME_PLACE and nearest not in order:
+                order.append(nearest)
+        return self.tour(np.array(order, np.int64))
+
+    def tour(self, order: NDArray[np.int64]) -> Tour:
+        """Return the tour over these stops, cut before the first that cannot be reached."""
+        assert self.stops is not None
+        if not len(order):
+            return STAY
+        legs = np.concatenate(
+            ([self.stops.first_leg[order[0]]], self.stops.legs[order[:-1], order[1:]])
+        ).astype(np.float64)
+        arrivals = np.cumsum(legs)
+        order = order[: int(np.isfinite(arrivals).sum())]
+        return Tour(
+            self.stops.targets[order],
+            self.stops.views[order],
+            arrivals[: len(order)],
+            self.stops.unknown[order],
+            order,
+        )
+
+    def impact(self, belief: MapBelief, strategy: Tour) -> Impact:
+        """What the tour would reveal, each stop's footprint in the layer of its arrival; paper, eq. (39)."""
+        if not len(strategy):
+            return NOTHING
+        assert self.stops is not None
+        marks = self.stops.footprints
+        keys, misses = [], []
+        for stop, arrival in zip(strategy.stops, strategy.arrivals, strict=True):
+            row = slice(marks.starts[stop], marks.starts[stop + 1])
+            keys.append(marks.cells[row] * np.uint32(LAYERS) + np.uint32(belief.layers.layer(arrival)))
+            misses.append(marks.misses[row])
+        distinct, where = np.unique(np.concatenate(keys), return_inverse=True)
+        total = np.bincount(where, np.concatenate(misses), minlength=len(distinct))
+        return Impact(distinct.astype(np.uint32), np.minimum(total, CERTAIN).astype(np.uint8))
+
+    def reply(self, belief: MapBelief, others: Impact, current: Tour) -> Tour:
+        """Best tour found against the rest of the team; the present one unless clearly beaten; paper, eq. (30)."""
+        assert self.stops is not None
+        order, gain, present = coverage.best_tour(
+            belief.weights,
+            belief.layers.weights,
+            belief.layers.edges,
+            others.sparse,
+            self.stops.footprints,
+            self.stops.first_leg,
+            self.stops.legs,
+            current.stops,
+            self.max_stops,
+        )
+        return self.tour(order) if gain > present * (1.0 + HYSTERESIS) else current
+
+    def slack(self, belief: MapBelief, team: Impact) -> float:
+        """No strategy of this robot adds more than this to the team's impact [nats]; docs/theory.md (V26)."""
+        assert self.stops is not None
+        return coverage.most_any_tour_adds(
+            belief.weights,
+            belief.layers.weights,
+            belief.layers.edges,
+            team.sparse,
+            self.stops.footprints,
+            self.stops.first_leg,
+            self.stops.legs,
+            self.max_stops,
+        )

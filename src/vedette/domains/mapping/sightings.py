@@ -1,0 +1,69 @@
+"""How likely a scan is to see an unknown cell: the beam model, and the paper's measured one (Fig. 3)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+BIN = 0.25  # [m]
+BINS = 96  # 24 m; longer sensors share the last bin
+PRIOR_TRIALS = 20.0  # weight of the prior in each bin
+PRIOR_DEPTH = 3.0  # mean free path of the prior [m]
+P_OCCUPIED = 0.5  # prior of an unknown cell
+
+
+@dataclass(frozen=True, eq=False)
+class SightingModel:
+    """Probability that a scan reveals an unknown cell that no known obstacle hides, by the cell's depth."""
+
+    table: NDArray[np.float32]  # (T,) by depth [cells]; the last entry holds beyond
+    by_distance: bool  # depth is the distance from the sensor; otherwise the unknown length crossed before
+
+
+def beam_model(cells: int) -> SightingModel:
+    """``(1 - P)^k`` behind k unknown cells: the exact beam product on the grid; paper, eqs. (32) and (36).
+
+    With 0.1 m cells it falls to 1e-3 within a metre, far below what rooms really show (paper, Fig. 3).
+    """
+    return SightingModel(((1.0 - P_OCCUPIED) ** np.arange(cells + 1)).astype(np.float32), by_distance=False)
+
+
+def empty_counts() -> NDArray[np.int64]:
+    """Return counts of no scan: rows tried and seen by distance, tried and seen by unknown length."""
+    return np.zeros((4, BINS), np.int64)
+
+
+def measured_model(
+    counts: NDArray[np.int64], resolution: float, cells: int, *, by_distance: bool
+) -> SightingModel:
+    """Learned share of unknown cells seen at each depth; additive counts, so a team pools them; paper, Fig. 3.
+
+    Each bin is shrunk to ``exp(-depth / 3 m)`` with the weight of 20 trials, and the curve is made
+    non-increasing by pooling adjacent violators.  docs/theory.md (V25)
+
+    Args:
+        counts: (4, BINS) as ``kernels.lidar.count_sightings`` sums them.
+        resolution: cell side [m].
+        cells: depth of the table [cells].
+        by_distance: use the rows by distance (the paper's) instead of by unknown length.
+    """
+    tried, seen = counts[0:2] if by_distance else counts[2:4]
+    depth = (np.arange(BINS) + 0.5) * BIN
+    prior = np.exp(-depth / PRIOR_DEPTH)
+    share = (seen + PRIOR_TRIALS * prior) / (tried + PRIOR_TRIALS)
+    share = non_increasing(share, tried + PRIOR_TRIALS)
+    at = (np.arange(cells + 1) + 0.5) * resolution
+    return SightingModel(np.interp(at, depth, share).astype(np.float32), by_distance)
+
+
+def non_increasing(values: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Weighted least-squares fit that never rises, by pooling adjacent violators."""
+    pools: list[tuple[float, float, int]] = []
+    for value, weight in zip(values.tolist(), weights.tolist(), strict=True):
+        pools.append((value, weight, 1))
+        while len(pools) > 1 and pools[-2][0] < pools[-1][0]:
+            (v2, w2, n2), (v1, w1, n1) = pools.pop(), pools.pop()
+            pools.append(((v1 * w1 + v2 * w2) / (w1 + w2), w1 + w2, n1 + n2))
+    return np.repeat([value for value, _, _ in pools], [length for _, _, length in pools])

@@ -1,0 +1,149 @@
+"""What one robot could do in a round: the stops it can reach, what each would reveal, how long each leg takes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.domains.mapping.belief import MapBelief
+from vedette.domains.mapping.impact import MIN_SHARE, quantise
+from vedette.domains.mapping.sightings import SightingModel
+from vedette.kernels import coverage, distance, frontier
+from vedette.kernels.coverage import Footprints
+from vedette.maps import UNKNOWN, GridFrame
+from vedette.team import PlatformSpec
+
+MOST_STOPS = 48  # nearest first; the rest waits for a later round
+VIEW_REACH = 2.0  # how far from a frontier to look for a place to see it from [m]
+CLEARANCE = 0.05  # kept to everything that is not known free, beyond the radius [m]
+Disc = tuple[float, float, float]  # x, y, radius [m], team frame
+
+
+@dataclass(frozen=True, eq=False)
+class Ground:
+    """Where one robot can drive, and how far everything is from it."""
+
+    passable: NDArray[np.bool_]  # (R, C) of the belief's window
+    field: NDArray[np.float32]  # (R, C) path length from the robot [m], inf where unreachable
+
+
+@dataclass(frozen=True, eq=False)
+class Stops:
+    """K candidate viewpoints, one a frontier."""
+
+    targets: NDArray[np.float64]  # (K, 2) the frontier's middle [m], team frame
+    views: NDArray[np.float64]  # (K, 2) where to stand [m], team frame
+    unknown: NDArray[np.int64]  # (K,) unknown cells near the frontier, to tell whether a visit changed it
+    footprints: Footprints
+    first_leg: NDArray[np.float32]  # (K,) travel time from here [s]
+    legs: NDArray[np.float32]  # (K, K) travel time between [s]
+
+    def __len__(self) -> int:
+        return len(self.targets)
+
+
+def survey(belief: MapBelief, spec: PlatformSpec, x: float, y: float, discs: list[Disc]) -> Ground:
+    """Find where a robot at (x, y) can drive in the belief's window, around discs that stand still."""
+    frame = belief.frame
+    passable = frontier.traversable(belief.classes, spec.radius + CLEARANCE, frame.resolution)
+    for disc in discs:
+        block(passable, belief, disc, spec.radius + CLEARANCE)
+    row, col = np.clip(frame.cell(x, y), 0, (frame.rows - 1, frame.cols - 1))
+    source = int(row * frame.cols + col)
+    return Ground(passable, distance.distance_field(passable, source, frame.resolution, None))
+
+
+def block(passable: NDArray[np.bool_], belief: MapBelief, disc: Disc, radius: float) -> None:
+    """Make the cells impassable whose centres a robot of this radius cannot occupy beside the disc."""
+    frame = belief.frame
+    x, y, size = disc
+    rows = frame.origin_y + (np.arange(frame.rows) + 0.5) * frame.resolution - y
+    cols = frame.origin_x + (np.arange(frame.cols) + 0.5) * frame.resolution - x
+    passable[rows[:, None] ** 2 + cols**2 < (size + radius) ** 2] = False
+
+
+def unknown_near(classes: NDArray[np.uint8], frame: GridFrame, x: float, y: float) -> int:
+    """Count the unknown cells in a square of about 1.2 m around a point."""
+    reach = max(1, round(0.6 / frame.resolution))
+    row, col = frame.cell(x, y)
+    window = classes[max(0, row - reach) : row + reach + 1, max(0, col - reach) : col + reach + 1]
+    return int(np.count_nonzero(window == UNKNOWN))
+
+
+def find_stops(
+    belief: MapBelief, ground: Ground, spec: PlatformSpec, model: SightingModel, least_area: float
+) -> Stops:
+    """Turn the belief's frontiers into stops that reveal at least ``least_area`` [m^2] in expectation."""
+    frame = belief.frame
+    reach = max(2, round(VIEW_REACH / frame.resolution))
+    targets, views = coverage.viewpoints(
+        ground.field, belief.classes, belief.frontier_cells, belief.frontier_starts, reach
+    )
+    keep = np.flatnonzero(views >= 0)
+    legs = ground.field.ravel()[views[keep]]
+    keep = np.sort(keep[np.argsort(legs, kind="stable")[:MOST_STOPS]])
+    targets, views = targets[keep], views[keep]
+    starts, cells, shares = _footprints(belief, spec, model, targets, views)
+    area = np.add.reduceat(
+        np.append(shares * belief.unknown.ravel()[cells], 0.0), starts[:-1]
+    ) * (np.diff(starts) > 0)
+    enough = area * frame.resolution**2 >= least_area
+    starts, cells, shares = _select(starts, cells, shares, enough)
+    targets, views = targets[enough], views[enough]
+    target_points, view_points = frame.centres(targets), frame.centres(views)
+    return Stops(
+        target_points,
+        view_points,
+        np.array([unknown_near(belief.classes, frame, x, y) for x, y in target_points], np.int64),
+        Footprints(starts, belief.planning_cells(cells), quantise(shares)),
+        ground.field.ravel()[views] / np.float32(spec.speed),
+        _legs(belief, ground, views) / np.float32(spec.speed),
+    )
+
+
+def _footprints(
+    belief: MapBelief,
+    spec: PlatformSpec,
+    model: SightingModel,
+    targets: NDArray[np.int64],
+    views: NDArray[np.int64],
+) -> tuple[NDArray[np.int64], NDArray[np.uint32], NDArray[np.float32]]:
+    cols = belief.frame.cols
+    toward = np.arctan2(targets // cols - views // cols, targets % cols - views % cols)
+    return coverage.footprints(
+        belief.classes,
+        views,
+        toward,
+        spec.range / belief.frame.resolution,
+        float(np.radians(spec.view)),
+        model.table,
+        model.by_distance,
+        belief.factor,
+        MIN_SHARE,
+    )
+
+
+def _select(
+    starts: NDArray[np.int64],
+    cells: NDArray[np.uint32],
+    shares: NDArray[np.float32],
+    rows: NDArray[np.bool_],
+) -> tuple[NDArray[np.int64], NDArray[np.uint32], NDArray[np.float32]]:
+    sizes = np.diff(starts)
+    entries = np.repeat(rows, sizes)
+    return np.concatenate(([0], np.cumsum(sizes[rows]))), cells[entries], shares[entries]
+
+
+def _legs(belief: MapBelief, ground: Ground, views: NDArray[np.int64]) -> NDArray[np.float32]:
+    """Path lengths between viewpoints, on the planning grid: a planning cell is passable if any of it is."""
+    factor, cols = belief.factor, belief.frame.cols
+    rows_over, cols_over = -belief.frame.rows % factor, -cols % factor
+    padded = np.pad(ground.passable, ((0, rows_over), (0, cols_over)))
+    coarse = np.zeros(belief.unknown.shape, bool)
+    for row in range(factor):
+        for col in range(factor):
+            coarse |= padded[row::factor, col::factor]
+    cells = views // cols // factor * coarse.shape[1] + views % cols // factor
+    return distance.distance_matrix(coarse, cells, belief.planning.resolution, np.inf)

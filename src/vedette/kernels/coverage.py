@@ -1,0 +1,170 @@
+"""Time-layered coverage: viewpoints, footprints, sparse impacts and the best reply by tours.
+
+A sparse impact is two parallel arrays: ``keys`` uint32, strictly increasing,
+``planning_cell * LAYERS + layer``, and ``misses`` uint8, the log-miss that starts in that layer, in steps of
+1/16 nat, saturating at 255, which means a certain sighting.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette import _kernels
+
+LAYERS: int = _kernels.LAYERS
+STEPS_PER_NAT = 16.0
+CERTAIN = 255
+
+Keys = NDArray[np.uint32]
+Misses = NDArray[np.uint8]
+
+
+@dataclass(frozen=True, eq=False)
+class Footprints:
+    """What scans from K viewpoints would reveal, as rows of a sparse matrix."""
+
+    starts: NDArray[np.int64]  # (K + 1,) bounds of each viewpoint's entries
+    cells: NDArray[np.uint32]  # (M,) planning cells, ascending in each row
+    misses: Misses  # (M,) log-miss
+
+
+def viewpoints(
+    field: NDArray[np.float32],
+    classes: NDArray[np.uint8],
+    cells: NDArray[np.int64],
+    starts: NDArray[np.int64],
+    reach: int,
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """For each cluster of cells: its representative, and the nearest reachable cell that sees it.
+
+    Args:
+        field: (R, C) path length from the platform [m], inf where it cannot stand.
+        classes: (R, C) cell classes.
+        cells, starts: clusters as ``find_frontiers`` returns them.
+        reach: how far from the representative to look [cells].
+
+    Returns:
+        (K,) the member nearest each centroid, and (K,) the viewpoint's cell, -1 where there is none.
+    """
+    return _kernels.viewpoints(field, classes, cells, starts, reach)
+
+
+def footprints(
+    classes: NDArray[np.uint8],
+    views: NDArray[np.int64],
+    facing: NDArray[np.float64],
+    range_cells: float,
+    view: float,
+    table: NDArray[np.float32],
+    by_distance: bool,
+    factor: int,
+    floor: float,
+) -> tuple[NDArray[np.int64], NDArray[np.uint32], NDArray[np.float32]]:
+    """Expected share of each planning cell's unknown cells that a scan from each viewpoint reveals.
+
+    Args:
+        classes: (R, C) cell classes; rays stop at occupied cells.
+        views: (K,) flat cells of the viewpoints.
+        facing: (K,) headings [rad]; ``view`` is the field of view about them [rad].
+        range_cells: sensor range [cells].
+        table: (T,) probability of seeing an unknown cell at each depth [cells]; the last entry holds beyond.
+        by_distance: depth is the distance from the sensor; otherwise the unknown length crossed before.
+        factor: side of a planning cell [cells].
+        floor: shares below it are left out.
+
+    Returns:
+        starts (K + 1,), planning cells (M,) and shares (M,).
+    """
+    return _kernels.footprints(classes, views, facing, range_cells, view, table, by_distance, factor, floor)
+
+
+def combine(keys_a: Keys, misses_a: Misses, keys_b: Keys, misses_b: Misses) -> tuple[Keys, Misses]:
+    """``a * b``: log-misses add, saturating; exactly associative and commutative.  docs/theory.md (V20)"""
+    return _kernels.combine(keys_a, misses_a, keys_b, misses_b)
+
+
+def marginals(
+    weights: NDArray[np.float32],
+    layer_weights: NDArray[np.float64],
+    others: tuple[Keys, Misses],
+    starts: NDArray[np.int64],
+    keys: Keys,
+    misses: Misses,
+) -> NDArray[np.float64]:
+    """``value(others * own_k) - value(others)`` for K sparse impacts given as rows.
+
+    Args:
+        weights: (N,) worth of each planning cell [nats].
+        layer_weights: (LAYERS,) weight of each time layer.
+        others: the rest of the team's sparse impact.
+        starts, keys, misses: (K + 1,), (M,), (M,) the candidates.
+    """
+    return _kernels.marginals(weights, layer_weights, *others, starts, keys, misses)
+
+
+def best_tour(
+    weights: NDArray[np.float32],
+    layer_weights: NDArray[np.float64],
+    edges: NDArray[np.float64],
+    others: tuple[Keys, Misses],
+    footprints: Footprints,
+    first_leg: NDArray[np.float32],
+    legs: NDArray[np.float32],
+    current: NDArray[np.int64],
+    max_stops: int,
+) -> tuple[NDArray[np.int64], float, float]:
+    """The best tour found against the rest of the team, by greedy insertion and 2-opt.
+
+    Args:
+        weights, layer_weights, others: as for ``marginals``.
+        edges: (LAYERS,) upper edge of each time layer [s]; an arrival belongs to the first layer it fits.
+        footprints: what each stop reveals.
+        first_leg: (K,) travel time to each stop [s], inf where it cannot be reached.
+        legs: (K, K) travel time between stops [s].
+        current: stops of the present tour, in order.
+        max_stops: longest tour.
+
+    Returns:
+        the tour, its marginal value, and the marginal value of the present tour.
+    """
+    return _kernels.best_tour(
+        weights,
+        layer_weights,
+        edges,
+        *others,
+        footprints.starts,
+        footprints.cells,
+        footprints.misses,
+        first_leg,
+        legs,
+        current,
+        max_stops,
+    )
+
+
+def most_any_tour_adds(
+    weights: NDArray[np.float32],
+    layer_weights: NDArray[np.float64],
+    edges: NDArray[np.float64],
+    team: tuple[Keys, Misses],
+    footprints: Footprints,
+    first_leg: NDArray[np.float32],
+    legs: NDArray[np.float32],
+    max_stops: int,
+) -> float:
+    """An upper bound on what any tour adds to the team's impact.  docs/theory.md (V26)"""
+    return _kernels.most_any_tour_adds(
+        weights,
+        layer_weights,
+        edges,
+        *team,
+        footprints.starts,
+        footprints.cells,
+        footprints.misses,
+        first_leg,
+        legs,
+        max_stops,
+    )

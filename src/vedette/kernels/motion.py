@@ -1,0 +1,67 @@
+"""Local motion of disc robots: distance to walls, and the next velocity along a path."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette import _kernels
+
+
+class Limits(NamedTuple):
+    """What a robot's body can do, and how often it is told."""
+
+    radius: float  # [m]
+    speed: float  # top speed [m/s]
+    turn_rate: float  # top turn rate [rad/s]
+    period: float  # time for which a command holds [s]
+
+
+class Command(NamedTuple):
+    """What ``steer`` chose."""
+
+    speed: float  # [m/s], along the heading after half the turn
+    turn: float  # [rad/s], counter-clockwise positive
+    arc: float  # arc length reached on the path after one period [m]
+    offset: float  # sideways offset from the path that is being followed [m], left positive
+    cost: float  # predicted time to the path's end, penalties included [s]
+
+
+def clearance(solid: NDArray[np.bool_], resolution: float, x: float, y: float, reach: float) -> float:
+    """Distance from the point to the nearest solid cell's square, capped at ``reach`` [m].
+
+    ``solid`` is ``(R, C)``; outside the grid is solid. ``x, y`` [m] from the grid's lower-left corner.
+    """
+    return _kernels.clearance(solid, resolution, x, y, reach)
+
+
+def steer(
+    solid: NDArray[np.bool_],
+    traversable: NDArray[np.bool_],
+    resolution: float,
+    pose: tuple[float, float, float],
+    path: NDArray[np.float64],
+    arc: NDArray[np.float64],
+    progress: tuple[float, float],
+    others: NDArray[np.float64],
+    limits: Limits,
+) -> Command:
+    """Choose the command whose 2 s roll-out has the least ``time to go + penalties``.
+
+    The roll-outs are followers of the path with different sideways offsets, speeds and look-aheads (a dynamic
+    window in path coordinates): each turns towards its point ahead and slows down while it is askew. A roll-out
+    holds where it would leave the traversable cells, come within 5 cm of a disc (others move on at constant
+    velocity) or, in its first half second, within 2.5 cm of a wall; unless that is no worse than before. So
+    every candidate is safe, and waiting is what a blocked one does. The plain follower is taken at once where
+    nothing is in its way. Head-on, robots keep to the right.
+
+    ``solid`` ``(R, C)``: the true walls, as a ring of proximity sensors around the body feels them.
+    ``traversable`` ``(R, C)``: cells where the map allows the robot's centre.
+    ``pose``: x, y [m] from the grid's lower-left corner, heading [rad]. ``path`` ``(L, 2)`` [m], L >= 2, no two
+    consecutive points equal; ``arc`` ``(L,)`` its arc length at each point [m].
+    ``progress``: arc length reached and offset followed so far, both from the last command (0, 0 at first).
+    ``others`` ``(D, 6)``: x, y, vx, vy, radius, and the gap one would rather keep (> 0) [m, m/s].
+    """
+    return Command(*_kernels.steer(solid, traversable, resolution, pose, path, arc, progress, others, limits))

@@ -1,0 +1,75 @@
+"""Read an image as grey levels, whatever its depth and channels."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, UnidentifiedImageError
+
+from vedette.errors import InputError
+
+MAX_SIDE = 8000  # accepted [pixels]
+_FORMATS = ("PPM", "PNG", "BMP", "JPEG")
+
+
+@dataclass(frozen=True, eq=False)
+class Levels:
+    """Grey levels of an image, bottom row first."""
+
+    colour: NDArray[np.uint16]  # (rows, cols): sum over the colour channels
+    full: int  # the sum of a white pixel
+    alpha: NDArray[np.uint8] | None  # (rows, cols), 255 opaque; None: the image has no alpha
+
+
+def read_levels(path: Path) -> Levels:
+    """Read a PGM (P2, P5), PNG, BMP or JPEG of 1 to 16 bits a channel, grey or colour, with or without alpha.
+
+    Raises:
+        InputError: missing, unreadable, not an image, empty, or more than ``MAX_SIDE`` pixels a side.
+    """
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # the sides are checked below
+            with Image.open(path, formats=_FORMATS) as image:
+                _check_sides(path, image)
+                return _levels(image)
+    except Image.DecompressionBombError as error:
+        raise InputError(f"{path} is too large: at most {MAX_SIDE} pixels a side") from error
+    except UnidentifiedImageError as error:
+        if path.stat().st_size == 0:
+            raise InputError(f"{path} is not a map: the file is empty") from error
+        raise InputError(f"{path} is not a map: neither a .yaml nor a PGM, PNG, BMP or JPEG image") from error
+    except InputError:
+        raise
+    except (OSError, ValueError, SyntaxError, EOFError) as error:  # Pillow's ways to say: damaged
+        reason = getattr(error, "strerror", None) or "the image is damaged"
+        raise InputError(f"cannot read map {path}: {reason}") from error
+
+
+def _check_sides(path: Path, image: Image.Image) -> None:
+    width, height = image.size
+    if width == 0 or height == 0:
+        raise InputError(f"{path} is not a map: the image is empty")
+    if max(width, height) > MAX_SIDE:
+        raise InputError(f"{path} is too large: {width}x{height}; at most {MAX_SIDE} pixels a side")
+
+
+def _levels(image: Image.Image) -> Levels:
+    if image.mode.startswith("I"):  # 16 bits of grey
+        pixels = np.asarray(image)[::-1]
+        return Levels(np.ascontiguousarray(pixels, np.uint16), 65535, None)
+    alpha: NDArray[np.uint8] | None = None
+    if "A" in image.mode or "transparency" in image.info:
+        image = image.convert("RGBA")
+        alpha = np.ascontiguousarray(np.asarray(image.getchannel("A"))[::-1])
+        image = image.convert("RGB")
+    elif image.mode not in ("L", "RGB"):
+        image = image.convert("L" if image.mode == "1" else "RGB")
+    pixels = np.asarray(image)[::-1]
+    if pixels.ndim == 2:
+        return Levels(pixels.astype(np.uint16), 255, alpha)
+    return Levels(pixels.sum(axis=2, dtype=np.uint16), 3 * 255, alpha)

@@ -1,0 +1,255 @@
+"""Exploring a building: the mapping domain and a way of fusing, put together for the agent."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.agent.effects import Route
+from vedette.agent.events import Pose, Scan
+from vedette.agent.mates import Mate
+from vedette.domains.mapping.belief import MapBelief, freeze, planning_factor
+from vedette.domains.mapping.impact import Impact, ImpactCodec
+from vedette.domains.mapping.objective import MappingObjective
+from vedette.domains.mapping.planners import Planner
+from vedette.domains.mapping.platform import STAY, MappingPlatform, Tour
+from vedette.domains.mapping.sightings import BIN, BINS, empty_counts
+from vedette.domains.mapping.stops import CLEARANCE, Disc, unknown_near
+from vedette.fusion import Fusion
+from vedette.kernels import distance, frontier, lidar
+from vedette.maps import GridFrame
+from vedette.team import PlatformSpec
+
+GAIN_HIT, GAIN_MISS, CLAMP = 4, 2, 20  # log-odds of one observation and of all [0.2 nats]
+SIGHTING_STRIDE = 8  # one beam in so many teaches the sighting model
+COUNTS_PERIOD = 10.0  # the model's counts are shared at most so often [s]
+MATE_MARGIN = 0.15  # a return this near a mate's rim is the mate [m]
+AVOID_TIME = 20.0  # a stop that could not be carried out is left alone for so long [s]
+SERVED_SHARE = 0.4  # a frontier with less than this of its unknown cells left has lost its point
+
+
+@dataclass(eq=False)
+class Exploration:
+    """One robot's share of exploring; ``vedette.agent.mission.Mission``."""
+
+    frame: GridFrame
+    spec: PlatformSpec
+    planner: Planner
+    fusion: Fusion
+    strategy: Tour = STAY
+    objective: MappingObjective = field(default_factory=MappingObjective)
+    codec: ImpactCodec = field(init=False)
+    platform: MappingPlatform = field(init=False)
+    log_odds: NDArray[np.int8] = field(init=False)  # (R, C) own evidence
+    counts: NDArray[np.int64] = field(init=False)  # (4, BINS) own sightings
+    _changed: list[NDArray[np.int64]] = field(default_factory=list)  # cells whose own class changed
+    _counts_due: float = 0.0
+    _now: float = 0.0
+    _passable: tuple[int, NDArray[np.bool_]] | None = None  # by the map's digest
+
+    def __post_init__(self) -> None:
+        self.codec = ImpactCodec(self.frame.coarse(planning_factor(self.frame.resolution)).size)
+        self.platform = self.planner.platform(self.spec)
+        self.log_odds = np.zeros(self.frame.shape, np.int8)
+        self.counts = empty_counts()
+
+    # -- evidence -----------------------------------------------------------------------------------
+
+    def observe(self, scan: Scan, pose: Pose, mates: Sequence[Mate], now: float) -> None:
+        """Add a scan to the robot's own evidence; returns from team-mates are not obstacles."""
+        self._now = now
+        ranges = np.minimum(scan.ranges, self.spec.range)
+        hits = scan.ranges < self.spec.range
+        for mate in mates:
+            self._leave_out(mate, pose, scan.angles, ranges, hits)
+        x, y = pose.x - self.frame.origin_x, pose.y - self.frame.origin_y
+        resolution = self.frame.resolution
+        seen = lidar.count_sightings(
+            self.log_odds,
+            resolution,
+            x,
+            y,
+            scan.angles,
+            ranges,
+            hits,
+            self.spec.range,
+            BIN,
+            SIGHTING_STRIDE,
+        )
+        self.counts[:, : seen.shape[1]] += seen[:, :BINS]
+        changed = lidar.integrate_scan(
+            self.log_odds,
+            resolution,
+            x,
+            y,
+            scan.angles,
+            ranges,
+            hits,
+            GAIN_HIT,
+            GAIN_MISS,
+            CLAMP,
+            0.25 * resolution,
+        )
+        if len(changed):
+            self._changed.append(changed)
+
+    def _leave_out(
+        self,
+        mate: Mate,
+        pose: Pose,
+        angles: NDArray[np.float64],
+        ranges: NDArray[np.float64],
+        hits: NDArray[np.bool_],
+    ) -> None:
+        """Turn returns from a mate's body into free space up to just before it."""
+        dx, dy = mate.x - pose.x, mate.y - pose.y
+        moved = self.spec.speed * min(mate.age, 0.5)
+        reach = self.spec.radius + MATE_MARGIN + moved
+        if np.hypot(dx, dy) > self.spec.range + reach:
+            return
+        off = np.hypot(ranges * np.cos(angles) - dx, ranges * np.sin(angles) - dy)
+        body = hits & (off < reach)
+        hits[body] = False
+        ranges[body] = np.maximum(ranges[body] - self.frame.resolution, 0.0)
+
+    def publish(self, now: float) -> None:
+        """Hand the own evidence to fusion."""
+        counts = None
+        if now >= self._counts_due:
+            self._counts_due = now + COUNTS_PERIOD
+            counts = self.counts.ravel().copy()
+        changed = np.unique(np.concatenate(self._changed)) if self._changed else None
+        self._changed.clear()
+        if changed is not None or counts is not None:
+            self.fusion.publish(self.log_odds, changed, counts)
+
+    # -- planning -----------------------------------------------------------------------------------
+
+    def freeze(self) -> MapBelief:
+        """Snapshot the team map for a round."""
+        return freeze(
+            self.fusion.classes,
+            self.frame,
+            reach=self.spec.range,
+            extent=max(2.5, 0.35 * self.spec.range),
+            hidden=self.planner.hidden,
+            layers=self.planner.layers,
+            counts=self.fusion.counts.reshape(4, BINS).copy(),
+        )
+
+    def prepare(self, belief: MapBelief, pose: Pose, mates: Sequence[Mate], blocked: bool) -> None:
+        """Find the stops of a round and restate the present tour over them."""
+        team = [(mate.robot, mate.x, mate.y) for mate in mates if not mate.silent]
+        self.platform.place(
+            pose.x, pose.y, self._discs(pose, mates, blocked), [(-1, pose.x, pose.y), *team], self._now
+        )
+        self.platform.prepare(belief)
+        self.strategy = self.platform.carry_over(self.strategy)
+
+    def _discs(self, pose: Pose, mates: Sequence[Mate], blocked: bool) -> list[Disc]:
+        """Mates that stand in the way: the silent ones, and for a robot that is blocked all those near it."""
+        return [
+            (mate.x, mate.y, self.spec.radius)
+            for mate in mates
+            if mate.silent or (blocked and np.hypot(mate.x - pose.x, mate.y - pose.y) < 3.0)
+        ]
+
+    def key(self, strategy: Tour) -> Hashable:
+        """Name a tour by its stops."""
+        return tuple(strategy.stops.tolist())
+
+    def impact(self, belief: MapBelief, strategy: Tour) -> Impact:
+        """Return what a tour would reveal."""
+        return self.platform.impact(belief, strategy)
+
+    def reply(self, belief: MapBelief, others: Impact, current: Tour) -> Tour:
+        """Return the best tour against the rest of the team."""
+        return self.platform.reply(belief, others, current)
+
+    def nothing(self, belief: MapBelief) -> Impact:
+        """Identity of ``*``."""
+        return self.objective.nothing(belief)
+
+    def combine(self, a: Impact, b: Impact) -> Impact:
+        """``a * b``."""
+        return self.objective.combine(a, b)
+
+    def value(self, belief: MapBelief, impact: Impact) -> float:
+        """``psi(impact)`` [nats]."""
+        return self.objective.value(belief, impact)
+
+    def slack(self, belief: MapBelief, base: Impact) -> float:
+        """Return the most that a tour of this robot adds to ``base`` [nats]."""
+        return self.platform.slack(belief, base)
+
+    # -- driving ------------------------------------------------------------------------------------
+
+    def goal(self) -> tuple[float, float] | None:
+        """Return the next viewpoint of the tour."""
+        if not len(self.strategy):
+            return None
+        x, y = self.strategy.views[0].tolist()
+        return x, y
+
+    def served(self) -> bool:
+        """Tell whether most of what the next stop was to reveal is known by now."""
+        if not len(self.strategy):
+            return False
+        planned = int(self.strategy.unknown[0])
+        return self._unknown_at(self.strategy.targets[0]) < SERVED_SHARE * planned
+
+    def _unknown_at(self, target: NDArray[np.float64]) -> int:
+        return unknown_near(self.fusion.classes, self.frame, *target)
+
+    def reached(self, now: float) -> None:
+        """Go on to the tour's next stop; the next round sees whether this one changed the map."""
+        if len(self.strategy):
+            x, y = self.strategy.targets[0].tolist()
+            self.platform.visited.append((x, y, int(self.strategy.unknown[0])))
+            self.strategy = self.strategy.after_first()
+
+    def release(self, now: float) -> None:
+        """Drop the tour, and leave its first stop alone for a while."""
+        if len(self.strategy):
+            x, y = self.strategy.targets[0].tolist()
+            self.platform.avoided.append((x, y, now + AVOID_TIME))
+        self.strategy = STAY
+
+    def route(
+        self, pose: Pose, goal: tuple[float, float], mates: Sequence[Mate], blocked: bool
+    ) -> Route | None:
+        """Return the shortest way to a goal on the newest team map, straightened; None if there is none."""
+        passable = self._passable_now()
+        for x, y, radius in self._discs(pose, mates, blocked):
+            passable = passable & ~self._disc(x, y, radius + self.spec.radius + CLEARANCE)
+        source, target = self._cell(pose.x, pose.y), self._cell(*goal)
+        span = distance.distance_field(passable, source, self.frame.resolution, np.array([target]))
+        cells = distance.path_to(span, passable, target)
+        if not len(cells):
+            return None
+        path = self.frame.centres(distance.shortcut(passable, cells))
+        path[0] = pose.x, pose.y
+        return Route(path, passable)
+
+    def _cell(self, x: float, y: float) -> int:
+        row, col = self.frame.cell(x, y)
+        return min(max(row, 0), self.frame.rows - 1) * self.frame.cols + min(max(col, 0), self.frame.cols - 1)
+
+    def _passable_now(self) -> NDArray[np.bool_]:
+        digest = self.fusion.digest
+        if self._passable is None or self._passable[0] != digest:
+            free = frontier.traversable(
+                self.fusion.classes, self.spec.radius + CLEARANCE, self.frame.resolution
+            )
+            self._passable = digest, free
+        return self._passable[1]
+
+    def _disc(self, x: float, y: float, radius: float) -> NDArray[np.bool_]:
+        frame = self.frame
+        rows = frame.origin_y + (np.arange(frame.rows) + 0.5) * frame.resolution - y
+        cols = frame.origin_x + (np.arange(frame.cols) + 0.5) * frame.resolution - x
+        return rows[:, None] ** 2 + cols**2 < radius**2
+

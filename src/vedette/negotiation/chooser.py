@@ -1,0 +1,78 @@
+"""A platform that chooses from a list of candidate impacts."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+from typing import Generic
+
+import numpy as np
+
+from vedette.problem.bound import slack
+from vedette.problem.checked import value_of, values_of
+from vedette.problem.objective import BeliefT, ImpactT, Objective
+
+
+class Chooser(Generic[BeliefT, ImpactT]):
+    """``v_i = argmax_k psi(own_k * a_{-i})``, kept unless another is better by more than epsilon.
+
+    A strategy is an index; without one the impact is nothing, and the first reply takes the best candidate
+    even at no gain. Equal candidates: the lowest index. Source: docs/theory.md (V9).
+    """
+
+    def __init__(
+        self,
+        objective: Objective[BeliefT, ImpactT],
+        belief: BeliefT,
+        candidates: Sequence[ImpactT],
+        *,
+        start: int | None = None,
+        epsilon: float = 1e-9,
+    ) -> None:
+        """Sit down with at least one candidate; epsilon is relative to the value where that exceeds 1."""
+        self.index = start
+        self._objective = objective
+        self._belief = belief
+        self._candidates = candidates
+        self._epsilon = epsilon
+
+    @property
+    def strategy(self) -> int | None:
+        """Index of the present candidate, ``None`` while there is none."""
+        return self.index
+
+    @property
+    def impact(self) -> ImpactT:
+        """Impact of the present candidate."""
+        return self.nothing() if self.index is None else self._candidates[self.index]
+
+    def adopt(self, strategy: Hashable) -> None:
+        """Take up a strategy that this platform had before."""
+        assert strategy is None or isinstance(strategy, int)
+        self.index = strategy
+
+    def reply(self, others: ImpactT) -> bool:
+        """Take up the best candidate against the rest of the team if it is strictly better; tell if so."""
+        values = values_of(self._objective, self._belief, others, self._candidates)
+        best = int(np.argmax(values))
+        if self.index is not None:
+            present = values[self.index]
+            if values[best] - present <= self._epsilon * max(1.0, abs(present)):
+                return False
+        self.index = best
+        return True
+
+    def nothing(self) -> ImpactT:
+        """Identity of ``*``."""
+        return self._objective.nothing(self._belief)
+
+    def combine(self, a: ImpactT, b: ImpactT) -> ImpactT:
+        """``a * b``."""
+        return self._objective.combine(a, b)
+
+    def value(self, team: ImpactT) -> float:
+        """``psi(team)``."""
+        return value_of(self._objective, self._belief, team)
+
+    def slack(self, base: ImpactT) -> float:
+        """Most that any candidate would add to ``base``; infinite unless monotone and submodular."""
+        return slack(self._objective, self._belief, base, self._candidates)

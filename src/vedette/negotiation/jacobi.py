@@ -1,0 +1,157 @@
+"""All at once, as the paper does: everybody replies to the last iterate; the root watches for cycles."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Hashable, Sequence
+from typing import Generic
+
+from vedette.errors import InputError
+from vedette.negotiation.messages import Down, Message, Outcome, Stop, Up
+from vedette.negotiation.node import Links, Participant, Send
+from vedette.problem.bound import tightest
+from vedette.problem.objective import ImpactT
+
+
+class JacobiNode(Generic[ImpactT]):
+    """``v_i <- argmax psi(Y_i(v_i) * a_{-i})`` for all i at once, from the last iterate's ``a_{-i}``.
+
+    An iterate goes up the tree and comes down it, ``2 (n - 1)`` messages. Simultaneous replies may cycle:
+    every iterate's strategies are remembered, a recurrence is proved by everybody's saying when they had
+    their present ones before, and the round ends at the best iterate.
+    Source: paper, Table 1, eqs. (29)-(31); docs/theory.md (V13).
+    """
+
+    def __init__(
+        self,
+        neighbours: Sequence[int],
+        parent: int | None,
+        own: Participant[ImpactT],
+        *,
+        epsilon: float = 1e-9,
+        max_sweeps: int = 50,
+        remove: Callable[[ImpactT, ImpactT], ImpactT] | None = None,
+    ) -> None:
+        """Join a round.
+
+        Args:
+            neighbours: on the tree.
+            parent: the neighbour towards the root, ``None`` at the root.
+            own: the platform.
+            epsilon: values closer than this are equal, relative to the value where that exceeds 1.
+            max_sweeps: the root ends the round after so many replies.
+            remove: ``total * own^-1``. With it the team's total goes down the tree and everybody removes
+                its own impact (paper, Fig. 1); without it each gets the rest of the team, and no inverse
+                is needed.
+        """
+        self.finished: Outcome | None = None
+        self.values: list[float] = []  # at the root: the team's value at each iterate
+        self._own = own
+        self._links = Links(own, neighbours)
+        self._parent = parent
+        self._children = tuple(k for k in neighbours if k != parent)
+        self._epsilon = epsilon
+        self._max_sweeps = max_sweeps
+        self._remove = remove
+        self._started = False
+        self._strategies: list[Hashable] = []  # own, at each iterate
+        self._reports: dict[int, Up[ImpactT]] = {}
+        self._ceiling = math.inf  # own part of it
+        self._slack = math.inf  # own, against the last iterate that came down
+        self._slacks: list[float] = []  # at the root: the team's, at each iterate but the present
+        self._first = 0  # at the root: first iterate at which everybody had a strategy
+
+    def start(self) -> list[Send[ImpactT]]:
+        """Begin, once the own impact is ready; messages may have arrived before."""
+        self._started = True
+        self._ceiling = self._own.slack(self._own.nothing())
+        self._strategies.append(self._own.strategy)
+        return self._report()
+
+    def receive(self, sender: int, message: Message[ImpactT]) -> list[Send[ImpactT]]:
+        """Take in a neighbour's message; ``InputError`` if it breaks the protocol."""
+        self._links.check(sender)
+        if self.finished is not None:
+            return []
+        match message:
+            case Up(mu=mu) if sender in self._children and sender not in self._reports:
+                self._links.receive(sender, mu)
+                self._reports[sender] = message
+                return self._report()
+            case Down(mu=mu) if sender == self._parent and self._started:
+                if self._remove is None:
+                    self._links.receive(sender, mu)
+                return self._next_iterate(message)
+            case Stop() if sender == self._parent and self._started:
+                return self._end(message)
+        raise InputError(f"message {type(message).__name__} from {sender} is out of turn; drop it")
+
+    def _report(self) -> list[Send[ImpactT]]:
+        """Send this iterate up once all children have reported it; the root decides what comes down."""
+        if not self._started or len(self._reports) < len(self._children):
+            return []
+        reports = tuple(self._reports.values())
+        self._reports.clear()
+        now = self._strategies[-1]
+        same = {m for m, then in enumerate(self._strategies) if then is not None and then == now}
+        summary: Up[ImpactT] = Up(
+            mu=None if self._parent is None else self._links.outgoing(self._parent),
+            ceiling=self._ceiling + sum(report.ceiling for report in reports),
+            slack=self._slack + sum(report.slack for report in reports),
+            same=tuple(sorted(same.intersection(*(report.same for report in reports)))),
+        )
+        return self._decide(summary) if self._parent is None else [Send(self._parent, summary)]
+
+    def _decide(self, summary: Up[ImpactT]) -> list[Send[ImpactT]]:
+        """At the root: begin the next iterate, or stop at a fixed point, a cycle, the ceiling or the cap."""
+        total = self._own.combine(self._links.others(), self._own.impact)
+        self.values.append(self._own.value(total))
+        now = len(self.values) - 1
+        complete = now in summary.same  # everybody has a strategy
+        if now == 0:
+            self._first = 0 if complete else 1
+        else:
+            self._slacks.append(summary.slack)
+        before = max((m for m in summary.same if m < now), default=None)
+        margin = self._epsilon * max(1.0, abs(self.values[now]))
+        optimal = complete and self.values[now] >= summary.ceiling - margin
+        if before is None and not optimal and now < self._max_sweeps:
+            return self._next_iterate(Down(total))
+        best = max(range(self._first, now + 1), key=self.values.__getitem__)  # the first among equals
+        settled = before == now - 1 and self.values[now] >= self.values[best] - margin
+        if settled:
+            best = now - 1  # the same strategies, and their slack is known
+        value = self.values[best]
+        above = [value + self._slacks[best]] if best < now else []
+        outcome = Outcome(
+            value=value,
+            bound=tightest(value, summary.ceiling, *above),
+            sweeps=now,
+            converged=settled or value >= summary.ceiling - margin,
+            cycle=0 if before in (None, now - 1) else now - before,
+        )
+        return self._end(Stop(outcome, best))
+
+    def _next_iterate(self, down: Down[ImpactT]) -> list[Send[ImpactT]]:
+        """Pass this iterate down, then reply to it (paper, Table 1, steps 4 and 5)."""
+        if self._remove is None:
+            onwards = [Send(k, Down(self._links.outgoing(k))) for k in self._children]
+            others = self._links.others()
+        elif down.mu is not None:
+            onwards = [Send(k, down) for k in self._children]
+            others = self._remove(down.mu, self._own.impact)  # paper, eq. (31)
+        else:
+            raise InputError("negotiation message Down without the team's total; drop it")
+        self._slack = self._own.slack(self._own.combine(others, self._own.impact))
+        if self._own.reply(others):
+            self._links.changed()
+        self._strategies.append(self._own.strategy)
+        return onwards + self._report()
+
+    def _end(self, stop: Stop) -> list[Send[ImpactT]]:
+        """Take up the best iterate's strategy again and tell the children."""
+        if stop.iterate is None or stop.iterate >= len(self._strategies):
+            raise InputError(f"negotiation message Stop at iterate {stop.iterate}, never reached; drop it")
+        self._own.adopt(self._strategies[stop.iterate])
+        self.finished = stop.outcome
+        return [Send(k, stop) for k in self._children]

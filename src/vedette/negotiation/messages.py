@@ -1,0 +1,123 @@
+"""What platforms say to each other in a round, and how it travels as bytes."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping, Set
+from typing import Annotated, Any, Generic, TypeAlias, cast
+
+import msgspec
+
+from vedette.errors import InputError
+from vedette.problem.objective import Codec, ImpactT
+
+Count = Annotated[int, msgspec.Meta(ge=0)]
+
+
+class Outcome(msgspec.Struct, frozen=True, array_like=True):
+    """How a round ended; the same at every platform."""
+
+    value: float  # of the team's choice, in the objective's unit
+    bound: float | None  # the optimum is no higher; None: nothing is known
+    sweeps: Count  # in which platforms replied
+    converged: bool  # nobody can gain more than epsilon by changing alone
+    cycle: Count = 0  # period of the cycle that Jacobi ran into, 0 if none
+
+
+class Tally(msgspec.Struct, frozen=True, array_like=True):
+    """What the token counts on its way round; exact for the team's present choice."""
+
+    turns: Count  # taken so far, one a platform in every sweep
+    quiet: Count  # platforms in a row that are content with the present choice
+    value: float  # of the present choice
+    slack: float  # sum over those quiet platforms, docs/theory.md (V12)
+    size: Count  # of the team
+    ceiling: float  # optimum <= ceiling, known from the start, docs/theory.md (V12)
+
+
+# In every message, mu is the sender's part of the tree combined, docs/theory.md (V5);
+# None says: as the last mu on this link in this round.
+
+
+class Gather(msgspec.Struct, Generic[ImpactT], frozen=True, array_like=True, tag=0, eq=False):
+    """Towards the root, once, before the token starts."""
+
+    mu: ImpactT | None
+    size: Count  # platforms combined in mu
+    ceiling: float  # their sum
+
+
+class Token(msgspec.Struct, Generic[ImpactT], frozen=True, array_like=True, tag=1, eq=False):
+    """The right to choose, handed along the Euler tour."""
+
+    mu: ImpactT | None
+    tally: Tally
+
+
+class Up(msgspec.Struct, Generic[ImpactT], frozen=True, array_like=True, tag=2, eq=False):
+    """Towards the root, once an iterate (paper, Fig. 1)."""
+
+    mu: ImpactT | None
+    ceiling: float  # sum over the platforms combined in mu
+    slack: float  # likewise, against the team's previous iterate; infinite at the first
+    same: tuple[Count, ...]  # iterates at which all of them had their present strategies, this one included
+
+
+class Down(msgspec.Struct, Generic[ImpactT], frozen=True, array_like=True, tag=3, eq=False):
+    """Away from the root, once an iterate: the rest of the team, or with an inverse the whole of it."""
+
+    mu: ImpactT | None
+
+
+class Stop(msgspec.Struct, frozen=True, array_like=True, tag=4):
+    """To everybody, once: the round is over."""
+
+    outcome: Outcome
+    iterate: Count | None = None  # whose strategies everybody takes up again; None: the present ones
+
+
+Message: TypeAlias = Gather[ImpactT] | Token[ImpactT] | Up[ImpactT] | Down[ImpactT] | Stop
+
+_DECODER: msgspec.msgpack.Decoder[Message[bytes]] = msgspec.msgpack.Decoder(
+    Gather[bytes] | Token[bytes] | Up[bytes] | Down[bytes] | Stop
+)
+
+
+def encode(message: Message[ImpactT], codec: Codec[ImpactT]) -> bytes:
+    """Return the message as MessagePack, its impact encoded by the codec."""
+    if isinstance(message, Stop) or message.mu is None:
+        return msgspec.msgpack.encode(message)
+    return msgspec.msgpack.encode(msgspec.structs.replace(message, mu=codec.encode(message.mu)))
+
+
+def decode(data: bytes, codec: Codec[ImpactT]) -> Message[ImpactT]:
+    """Return the message that ``encode`` was given; ``InputError`` if it is malformed."""
+    try:
+        message: Any = _DECODER.decode(data)
+        if not isinstance(message, Stop) and message.mu is not None:
+            message = msgspec.structs.replace(message, mu=codec.decode(message.mu))
+    except (msgspec.MsgspecError, ValueError) as error:
+        raise InputError(f"negotiation message of {len(data)} bytes is malformed: {error}") from error
+    return cast("Message[ImpactT]", message)
+
+
+def size(message: Message[ImpactT]) -> int:
+    """Return the message's length in bytes where there is no codec: MessagePack around ``plain_size``."""
+    if isinstance(message, Stop) or message.mu is None:
+        return len(msgspec.msgpack.encode(message))
+    return len(msgspec.msgpack.encode(msgspec.structs.replace(message, mu=b""))) + plain_size(message.mu)
+
+
+def plain_size(impact: object) -> int:
+    """Return an impact's plain length: arrays their bytes, collections their items', anything else 8."""
+    if isinstance(impact, str | bytes):
+        return len(impact)
+    if isinstance(nbytes := getattr(impact, "nbytes", None), int):
+        return nbytes
+    if isinstance(impact, Mapping):
+        return sum(plain_size(key) + plain_size(item) for key, item in impact.items())
+    if isinstance(impact, list | tuple | Set):
+        return sum(plain_size(item) for item in impact)
+    if dataclasses.is_dataclass(impact):
+        return sum(plain_size(getattr(impact, field.name)) for field in dataclasses.fields(impact))
+    return 8

@@ -1,0 +1,188 @@
+"""A whole negotiation in one process: every platform's node, and the post between them."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import reduce
+
+from vedette.errors import InputError, nearest_name
+from vedette.negotiation import messages
+from vedette.negotiation.chooser import Chooser
+from vedette.negotiation.jacobi import JacobiNode
+from vedette.negotiation.node import Negotiator, Send
+from vedette.negotiation.token import TokenNode
+from vedette.negotiation.tree import Tree
+from vedette.problem.checked import check_candidates, value_of
+from vedette.problem.objective import BeliefT, Codec, ImpactT, Invertible, Objective
+
+SCHEMES = ("token", "jacobi")
+
+
+@dataclass(frozen=True)
+class Step:
+    """The team's value after somebody's turn (token) or at an iterate (jacobi)."""
+
+    sweep: int  # 0: at the start
+    platform: int | None  # whose turn it was; None: everybody's
+    value: float
+
+
+@dataclass(frozen=True)
+class Negotiation:
+    """What a team agreed on, and what that took."""
+
+    choice: tuple[int, ...]  # candidate index of each platform
+    value: float  # of the choice, in the objective's unit
+    bound: float | None  # the optimum is no higher; None: the objective declares too little
+    sweeps: int  # in which platforms replied
+    messages: int  # sent in all
+    bytes: int  # of all messages
+    history: tuple[Step, ...]
+    converged: bool  # nobody can gain more than epsilon by changing alone
+    cycle: int  # period of the cycle that Jacobi ran into, 0 if none
+
+
+def negotiate(
+    objective: Objective[BeliefT, ImpactT],
+    belief: BeliefT,
+    candidates: Sequence[Sequence[ImpactT]],
+    tree: Tree,
+    scheme: str = "token",
+    *,
+    start: Sequence[int] | None = None,
+    epsilon: float = 1e-9,
+    max_sweeps: int = 50,
+    inverse: bool = False,
+    codec: Codec[ImpactT] | None = None,
+) -> Negotiation:
+    """Let every platform choose one of its candidates by messages on a tree, towards ``max psi``.
+
+    Each platform sees its own candidates and its neighbours' messages, nothing else (paper, section 3.4).
+
+    Args:
+        objective: the team's ``*`` and ``psi``.
+        belief: what the value depends on; the same for all.
+        candidates: ``candidates[i]`` is the list of platform i's impacts.
+        tree: who talks to whom.
+        scheme: ``token``, one after the other, never lowers the value; ``jacobi``, all at once (paper,
+            Table 1), ends at its best iterate.
+        start: everybody's first candidate index; without it nobody observes until its first reply, so
+            that the first token sweep is the sequential greedy choice.
+        epsilon: a platform changes only for more than this, relative to the value where that exceeds 1.
+        max_sweeps: the round ends after so many.
+        inverse: with ``jacobi`` on a chain, send the team's total down it and let everybody remove its
+            own impact by ``objective.remove`` (paper, Fig. 1).
+        codec: how impacts travel; without it they are handed over and their plain size is counted.
+
+    Raises:
+        InputError: bad arguments, or an objective whose value is not a finite number.
+    """
+    _check(candidates, tree, scheme, start, epsilon, max_sweeps)
+    remove = _remover(objective, tree, scheme) if inverse else None
+    seats = [
+        Chooser(objective, belief, own, start=None if start is None else start[i], epsilon=epsilon)
+        for i, own in enumerate(candidates)
+    ]
+    root = next(i for i in range(tree.n) if len(tree.neighbours(i)) <= 1) if inverse else 0  # a chain's end
+    parents = tree.parents(root)
+    before = reduce(objective.combine, (seat.impact for seat in seats))
+    nodes: list[TokenNode[ImpactT] | JacobiNode[ImpactT]] = []
+    for i, seat in enumerate(seats):
+        links, parent = tree.neighbours(i), parents[i]
+        nodes.append(
+            TokenNode(links, parent, seat, epsilon=epsilon, max_sweeps=max_sweeps)
+            if scheme == "token"
+            else JacobiNode(links, parent, seat, epsilon=epsilon, max_sweeps=max_sweeps, remove=remove)
+        )
+    sent, size = _deliver(nodes, codec)
+    outcome = nodes[root].finished
+    assert outcome is not None  # max_sweeps ends every round
+    return Negotiation(
+        choice=tuple(seat.index or 0 for seat in seats),
+        value=outcome.value,
+        bound=outcome.bound,
+        sweeps=outcome.sweeps,
+        messages=sent,
+        bytes=size,
+        history=(Step(0, None, value_of(objective, belief, before)), *_steps(nodes)),
+        converged=outcome.converged,
+        cycle=outcome.cycle,
+    )
+
+
+def _deliver(nodes: Sequence[Negotiator[ImpactT]], codec: Codec[ImpactT] | None) -> tuple[int, int]:
+    """Start all nodes and carry their messages, oldest first; return how many and how many bytes."""
+    post: deque[tuple[int, Send[ImpactT]]] = deque()
+    for i, node in enumerate(nodes):
+        post.extend((i, send) for send in node.start())
+    sent = size = 0
+    while post:
+        sender, send = post.popleft()
+        message = send.message
+        sent += 1
+        if codec is None:
+            size += messages.size(message)
+        else:
+            data = messages.encode(message, codec)
+            size += len(data)
+            message = messages.decode(data, codec)
+        post.extend((send.to, reply) for reply in nodes[send.to].receive(sender, message))
+    return sent, size
+
+
+def _steps(nodes: Sequence[TokenNode[ImpactT] | JacobiNode[ImpactT]]) -> list[Step]:
+    """Return the values after the start, in the order in which they came about."""
+    n = len(nodes)
+    iterates: list[Step] = []
+    turns: list[tuple[int, int, float]] = []
+    for i, node in enumerate(nodes):
+        if isinstance(node, TokenNode):
+            turns.extend((k, i, value) for k, value in node.turns)
+        else:  # only the root has any
+            iterates.extend(Step(sweep, None, value) for sweep, value in enumerate(node.values) if sweep > 0)
+    return iterates + [Step(-(-k // n), i, value) for k, i, value in sorted(turns)]
+
+
+def _remover(
+    objective: Objective[BeliefT, ImpactT], tree: Tree, scheme: str
+) -> Callable[[ImpactT, ImpactT], ImpactT]:
+    """Return ``objective.remove`` for the paper's own sweep; ``InputError`` where that cannot run."""
+    if scheme != "jacobi":
+        raise InputError(f"inverse=True belongs to scheme 'jacobi'; got {scheme!r}")
+    if not tree.is_chain:
+        raise InputError("inverse=True needs a chain; use Tree.chain(n), or leave inverse out on other trees")
+    if not isinstance(objective, Invertible):
+        raise InputError(
+            f"inverse=True needs {type(objective).__name__}.remove(total, own); leave inverse out"
+        )
+    return objective.remove
+
+
+def _check(
+    candidates: Sequence[Sequence[ImpactT]],
+    tree: Tree,
+    scheme: str,
+    start: Sequence[int] | None,
+    epsilon: float,
+    max_sweeps: int,
+) -> None:
+    """Raise ``InputError`` for arguments that cannot be negotiated."""
+    if scheme not in SCHEMES:
+        raise InputError(f"unknown scheme {scheme!r}; {nearest_name(scheme, SCHEMES)}")
+    check_candidates(candidates)
+    if len(candidates) != tree.n:
+        raise InputError(f"candidates has {len(candidates)} lists for a tree of {tree.n}; give one each")
+    if start is not None and len(start) != tree.n:
+        raise InputError(f"start has {len(start)} indexes for {tree.n} platforms; give one each, or None")
+    for i, k in enumerate(start or ()):
+        if not 0 <= k < len(candidates[i]):
+            raise InputError(
+                f"start[{i}] = {k}, but platform {i} has candidates 0 to {len(candidates[i]) - 1}"
+            )
+    if not (math.isfinite(epsilon) and epsilon >= 0.0):
+        raise InputError(f"epsilon must be a number >= 0; got {epsilon}")
+    if max_sweeps < 1:
+        raise InputError(f"max_sweeps must be at least 1; got {max_sweeps}")

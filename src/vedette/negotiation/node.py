@@ -1,0 +1,110 @@
+"""One platform's part in a round: what it brings, what it holds, what it sends."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable, Sequence
+from dataclasses import dataclass
+from functools import reduce
+from typing import Generic, Protocol
+
+from vedette.errors import InputError
+from vedette.negotiation.messages import Message, Outcome
+from vedette.problem.objective import ImpactT
+
+
+class Participant(Protocol[ImpactT]):
+    """A platform in a round: its strategy, what it achieves, and the team's objective on a frozen belief."""
+
+    @property
+    def impact(self) -> ImpactT:
+        """Own impact of the present strategy; only ``reply`` and ``adopt`` change it."""
+
+    @property
+    def strategy(self) -> Hashable:
+        """Present strategy, ``None`` while there is none; equal strategies have equal impacts."""
+
+    def adopt(self, strategy: Hashable) -> None:
+        """Take up a strategy that this participant had before in this round."""
+
+    def reply(self, others: ImpactT) -> bool:
+        """Take up the best strategy against the rest of the team if it is strictly better; tell if so."""
+
+    def nothing(self) -> ImpactT:
+        """Identity of ``*``."""
+
+    def combine(self, a: ImpactT, b: ImpactT) -> ImpactT:
+        """``a * b``."""
+
+    def value(self, team: ImpactT) -> float:
+        """``psi(team)``."""
+
+    def slack(self, base: ImpactT) -> float:
+        """Most that any strategy of this platform would add to ``base``; infinite where not known."""
+
+
+@dataclass(frozen=True, eq=False)
+class Send(Generic[ImpactT]):
+    """A message for a neighbour."""
+
+    to: int
+    message: Message[ImpactT]
+
+
+class Negotiator(Protocol[ImpactT]):
+    """One platform's protocol in one round: no clock, no network; links are reliable and in order."""
+
+    @property
+    def finished(self) -> Outcome | None:
+        """How the round ended, ``None`` while it lasts."""
+
+    def start(self) -> list[Send[ImpactT]]:
+        """Begin, once the own impact is ready; messages may have arrived before."""
+
+    def receive(self, sender: int, message: Message[ImpactT]) -> list[Send[ImpactT]]:
+        """Take in a neighbour's message; ``InputError`` if it breaks the protocol."""
+
+
+class Links(Generic[ImpactT]):
+    """``mu_{i->j} = Y_i * (* of mu_{k->i}, k in N(i) without j)``: one platform's end of its links.
+
+    A mu is sent in full only if something that it is made of has changed since it was last sent.
+    Source: docs/theory.md (V5), (V6).
+    """
+
+    def __init__(self, own: Participant[ImpactT], neighbours: Sequence[int]) -> None:
+        self.neighbours = tuple(neighbours)
+        self._own = own
+        self._held: dict[int, ImpactT] = {}  # the last mu from each neighbour
+        self._stale = set(neighbours)  # those that have yet to hear of a change
+
+    def check(self, sender: int) -> None:
+        """Raise ``InputError`` if the sender is not a neighbour."""
+        if sender not in self.neighbours:
+            raise InputError(f"negotiation message from {sender}, who is not a neighbour; drop it")
+
+    def receive(self, sender: int, mu: ImpactT | None) -> None:
+        """Hold a neighbour's mu; ``None`` keeps the one held."""
+        if mu is not None:
+            self._held[sender] = mu
+            self._stale.update(k for k in self.neighbours if k != sender)
+        elif sender not in self._held:
+            raise InputError(f"negotiation message from {sender} refers to an impact never sent; drop it")
+
+    def changed(self) -> None:
+        """Note that the own impact has changed."""
+        self._stale.update(self.neighbours)
+
+    def outgoing(self, receiver: int) -> ImpactT | None:
+        """Return ``mu_{i->receiver}``, or ``None`` if the receiver holds it already."""
+        if receiver not in self._stale:
+            return None
+        self._stale.remove(receiver)
+        parts = (mu for k, mu in self._held.items() if k != receiver)
+        return self._combined(self._own.impact, parts)
+
+    def others(self) -> ImpactT:
+        """Return the rest of the team, ``* of mu_{k->i}`` over all neighbours: exact if all are fresh."""
+        return self._combined(self._own.nothing(), self._held.values())
+
+    def _combined(self, first: ImpactT, parts: Iterable[ImpactT]) -> ImpactT:
+        return reduce(self._own.combine, parts, first)

@@ -1,0 +1,154 @@
+"""``mission.gif``: the mission as a short film."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw, ImageFont
+
+from vedette.maps import UNKNOWN
+from vedette.record import palette
+from vedette.record.files import atomic_path
+from vedette.record.log import RobotSample, RunLog, Snapshot
+from vedette.record.raster import enlarge, known_window, paint
+
+_SIDE = 800  # most pixels a side, caption included
+_CAPTION = 30  # height of the caption [px]
+_FRAME_MS = 100
+_LAST_MS = 2500  # the last frame stays
+_DISC = 9.0  # radius of a robot's sign [px]
+_FINE = 4  # sub-pixels a side of a pixel of a robot's sign
+
+
+def animate_gif(log: RunLog, path: Path | str, frames: int = 200) -> None:
+    """Write at most ``frames`` stored snapshots of a log that is not empty, evenly chosen, ten a second."""
+    chosen = _evenly(log.stored(), frames)
+    film = _Film(log)
+    pictures = film.pictures(chosen)
+    first = next(pictures)
+    durations = [_FRAME_MS] * (len(chosen) - 1) + [_LAST_MS]
+    with atomic_path(path) as temporary:
+        first.save(
+            temporary,
+            save_all=True,
+            append_images=pictures,
+            duration=durations,
+            loop=0,
+            optimize=False,
+            disposal=1,
+        )
+
+
+def _evenly(available: int, wanted: int) -> list[int]:
+    """Return at most ``wanted`` indices of ``available``, the first and the last included."""
+    return [int(i) for i in np.unique(np.linspace(0, available - 1, min(available, wanted)).round())]
+
+
+class _Film:
+    """Everything that stays the same from frame to frame."""
+
+    def __init__(self, log: RunLog) -> None:
+        self._log = log
+        self._window = known_window(log.frame, log.last.classes)
+        part = self._window.frame
+        scale = min(_SIDE / part.cols, (_SIDE - _CAPTION) / part.rows)  # pixels a cell
+        self._size = max(1, int(part.cols * scale)), max(1, int(part.rows * scale))
+        self._palette = _palette_image()
+        self._fonts = _font(15), _font(12 * _FINE)
+        self._times = log.times
+        self._trails = self._pixels(log.poses[:, :, :2])
+
+    def pictures(self, chosen: list[int]) -> Iterator[Image.Image]:
+        """Yield the frames in the film's palette."""
+        wanted = set(chosen)
+        for i, snapshot in enumerate(self._log.snapshots()):
+            if i in wanted:
+                yield self._frame(snapshot).quantize(palette=self._palette, dither=Image.Dither.NONE)
+
+    def _pixels(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return ``(..., 2)`` points [m] as pixels of the frame, y downwards."""
+        x_min, x_max, y_min, y_max = self._window.frame.extent
+        width, height = self._size
+        x = (points[..., 0] - x_min) / (x_max - x_min) * width
+        y = (y_max - points[..., 1]) / (y_max - y_min) * height + _CAPTION
+        return np.stack((x, y), axis=-1)
+
+    def _frame(self, snapshot: Snapshot) -> Image.Image:
+        width, height = self._size
+        image = Image.new("RGB", (max(width, 260), height + _CAPTION), (255, 255, 255))
+        colours = paint(snapshot, self._log.planning, self._window, self._size[::-1])[::-1]
+        image.paste(enlarge(np.ascontiguousarray(colours), self._size), (0, _CAPTION))
+        draw = ImageDraw.Draw(image)
+        caption = f"{snapshot.t:.0f} s    {100 * snapshot.coverage:.1f} % covered"
+        draw.text((8, _CAPTION / 2), caption, palette.INK, self._fonts[0], anchor="lm")
+        so_far = int(np.searchsorted(self._times, snapshot.t, side="right"))
+        for i, robot in enumerate(snapshot.robots):
+            colour = palette.robot_colour(i)
+            _line(draw, self._trails[:so_far, i], colour, 2)
+            if robot.alive and robot.goal is not None:
+                _dashes(draw, self._pixels(np.asarray(robot.path).reshape(-1, 2)), colour)
+                x, y = self._pixels(np.array(robot.goal))
+                draw.rectangle((x - 5, y - 5, x + 5, y + 5), (255, 255, 255), colour, 2)
+        for i, robot in enumerate(snapshot.robots):
+            sign = self._sign(i, robot)
+            x, y = self._pixels(np.array((robot.x, robot.y)))
+            image.paste(sign, (round(x - sign.width / 2), round(y - sign.height / 2)), sign)
+        return image
+
+    def _sign(self, index: int, robot: RobotSample) -> Image.Image:
+        """Draw a robot's disc with its number and a nose ahead, or a cross if it is lost."""
+        side = int(3.4 * _DISC) * _FINE
+        sign = Image.new("RGBA", (side, side), (255, 255, 255, 0))
+        draw = ImageDraw.Draw(sign)
+        colour, centre, r = palette.robot_colour(index), side / 2, _DISC * _FINE
+        if robot.alive:
+            spread = np.array((-0.42, 0.0, 0.42)) - robot.heading  # image rows go down
+            reach = np.array((1.05, 1.6, 1.05)) * r
+            corners = np.column_stack((centre + reach * np.cos(spread), centre + reach * np.sin(spread)))
+            draw.polygon([tuple(corner) for corner in corners], colour)
+            draw.ellipse((centre - r, centre - r, centre + r, centre + r), colour, (255, 255, 255), _FINE)
+            ink = palette.text_on(colour)
+            draw.text((centre, centre), str(index + 1), ink, self._fonts[1], anchor="mm")
+        else:
+            for way in (-1, 1):
+                ends = (centre - 0.7 * r, centre - 0.7 * r * way, centre + 0.7 * r, centre + 0.7 * r * way)
+                draw.line(ends, colour, 4 * _FINE)
+        return sign.resize((side // _FINE, side // _FINE), Image.Resampling.BOX)
+
+
+def _line(draw: ImageDraw.ImageDraw, points: NDArray[np.float64], colour: palette.Rgb, width: int) -> None:
+    if len(points) > 1:
+        draw.line([tuple(point) for point in points], colour, width, joint="curve")
+
+
+def _dashes(draw: ImageDraw.ImageDraw, points: NDArray[np.float64], colour: palette.Rgb) -> None:
+    """Draw a polyline as dashes of 6 pixels with gaps of 4."""
+    if len(points) < 2:
+        return
+    along = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))))
+    for start in np.arange(0.0, along[-1], 10.0):
+        ends = np.array((start, min(start + 6.0, along[-1])))
+        _line(draw, np.column_stack([np.interp(ends, along, points[:, k]) for k in (0, 1)]), colour, 2)
+
+
+def _font(size: int) -> ImageFont.FreeTypeFont:
+    """Return the font of the other pictures, which comes with matplotlib."""
+    return ImageFont.truetype(str(Path(matplotlib.get_data_path()) / "fonts/ttf/DejaVuSans-Bold.ttf"), size)
+
+
+def _palette_image() -> Image.Image:
+    """Return an image whose palette holds the classes, the impacts, the robots and blends of them."""
+    share = np.linspace(0.0, 1.0, 24, dtype=np.float32)
+    impacts = palette.blend_impact(np.broadcast_to(palette.CLASSES[UNKNOWN], (24, 3)), share)
+    colours = [tuple(row.tolist()) for row in (*palette.CLASSES, *impacts)]
+    colours += [(grey, grey, grey) for grey in range(0, 256, 15)]
+    for strength in (1.0, 0.7, 0.4):
+        team = (*palette.ROBOTS, palette.INK)
+        colours += [tuple(round(255 + (part - 255) * strength) for part in robot) for robot in team]
+    image = Image.new("P", (1, 1))
+    image.putpalette([part for colour in colours for part in colour])
+    return image

@@ -1,0 +1,87 @@
+"""``curves.png``: how coverage, entropy and distance went with time."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import EngFormatter, PercentFormatter
+
+from vedette.record import palette
+from vedette.record.canvas import DPI, picture, save
+from vedette.record.log import RunLog
+from vedette.record.summary import Summary
+
+_SIZE = 8.0, 6.6  # [inch]
+_COVERAGE = palette.unit((0, 114, 178))
+_ENTROPY = palette.unit((140, 90, 0))
+_FAINT = palette.unit((200, 203, 207))
+_DASHES = ((), (6, 2), (2, 1.5), (6, 2, 2, 2), (1, 1))  # a robot's line differs in more than its colour
+
+
+def curves_png(log: RunLog, summary: Summary, path: Path | str) -> None:
+    """Draw coverage with t50 to t99, the entropy of the map and each robot's distance against time."""
+    with picture():
+        figure = Figure(figsize=_SIZE, dpi=DPI)
+        grid = figure.add_gridspec(
+            3, 1, height_ratios=(1.7, 1, 1), hspace=0.14, left=0.095, right=0.98, top=0.925, bottom=0.075
+        )
+        coverage = figure.add_subplot(grid[0])
+        entropy, distance = (figure.add_subplot(grid[i], sharex=coverage) for i in (1, 2))
+        _coverage(coverage, log, summary)
+        entropy.plot(log.times, log.entropy, color=_ENTROPY, lw=1.8)
+        entropy.fill_between(log.times, log.entropy, color=_ENTROPY, alpha=0.1, lw=0)
+        entropy.set(ylabel="map entropy [nat]", ylim=(0, 1.05 * max(1.0, float(log.entropy.max()))))
+        entropy.yaxis.set_major_formatter(EngFormatter(sep=""))
+        _distance(distance, log)
+        for axes in (coverage, entropy, distance):
+            _tidy(axes, last=axes is distance)
+        coverage.set_xlim(0, max(1.0, float(log.times[-1])))
+        team = f"{summary.robots} robot" + ("s" if summary.robots > 1 else "")
+        figure.text(
+            0.095, 0.955, f"{summary.world}: {team}, {summary.planner}", fontsize=12, fontweight="bold"
+        )
+        figure.text(0.98, 0.955, f"seed {summary.seed}", ha="right", color=palette.unit((110, 113, 117)))
+        figure.align_ylabels()
+        save(figure, path)
+
+
+def _coverage(axes: Axes, log: RunLog, summary: Summary) -> None:
+    """Draw coverage, mark when it passed each level, shade the area over it."""
+    axes.fill_between(log.times, log.coverage, 1.0, step="post", color=_FAINT, alpha=0.35, lw=0)
+    axes.plot(log.times, log.coverage, color=_COVERAGE, lw=2.0, drawstyle="steps-post", zorder=3)
+    marks = (("50", summary.t50_s, "o"), ("90", summary.t90_s, "s"), ("95", summary.t95_s, "D"))
+    for level, t, marker in (*marks, ("99", summary.t99_s, "^")):
+        if t is None:
+            axes.plot(
+                (), (), marker, color="white", mec=_FAINT, ms=6.5, label=f"$t_{{{level}}}$  not reached"
+            )
+            continue
+        axes.plot((t, t), (0, int(level) / 100), color=_FAINT, lw=0.9, zorder=1)
+        axes.plot(
+            t, int(level) / 100, marker, color="white", mec=_COVERAGE, mew=1.6, ms=6.5, ls="", zorder=4,
+            label=f"$t_{{{level}}}$ = {t:.1f} s",
+        )  # fmt: skip
+    axes.fill_between((), (), color=_FAINT, alpha=0.5, lw=0, label=f"area above = {summary.auc_s:.1f} s")
+    axes.legend(loc="lower right", frameon=True, framealpha=0.9, edgecolor="none", labelspacing=0.55)
+    axes.set(ylabel="coverage", ylim=(0, 1.04), yticks=np.linspace(0, 1, 6))
+    axes.yaxis.set_major_formatter(PercentFormatter(1.0))
+
+
+def _distance(axes: Axes, log: RunLog) -> None:
+    """Draw how far each robot has travelled."""
+    for i, (spec, length) in enumerate(zip(log.specs, log.path_length.T, strict=True)):
+        colour = palette.unit(palette.robot_colour(i))
+        axes.plot(log.times, length, color=colour, lw=1.6, dashes=_DASHES[i % len(_DASHES)], label=spec.name)
+    top = max(1.0, float(log.path_length.max()))
+    axes.set(ylabel="travelled [m]", xlabel="time [s]", ylim=(0, 1.05 * top))
+    axes.legend(loc="upper left", frameon=False, ncols=2 if len(log.specs) > 3 else 1, labelspacing=0.3)
+
+
+def _tidy(axes: Axes, last: bool) -> None:
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.grid(axis="y", color=palette.unit((235, 237, 240)), lw=0.8)
+    axes.set_axisbelow(True)
+    axes.tick_params(length=3, labelbottom=last)

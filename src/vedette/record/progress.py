@@ -1,0 +1,229 @@
+"""``progress.png``: the mission in three stages, as in Figs. 4 and 6 of the paper."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.legend_handler import HandlerTuple
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.transforms import ScaledTranslation
+from numpy.typing import NDArray
+
+from vedette.maps import FREE, OCCUPIED, UNKNOWN
+from vedette.record import palette
+from vedette.record.canvas import DPI, picture, save
+from vedette.record.log import RobotSample, RunLog, Snapshot
+from vedette.record.raster import Window, enlarge, known_window, paint
+
+_GAP, _MARGIN, _TOP = 0.14, 0.2, 0.72  # [inch]
+_LINE = 0.25  # of the legend [inch]
+_NARROW, _WIDE = 6.4, 10.0  # least width of a figure, and of one with all signs in one line [inch]
+
+
+@dataclass(frozen=True)
+class _Layout:
+    """Sizes of the figure [inch]."""
+
+    width: float
+    height: float
+    panel: tuple[float, float]
+    corners: tuple[tuple[float, float], ...]  # lower-left of each panel
+
+
+def progress_png(log: RunLog, path: Path | str) -> None:
+    """Draw map, team impact, robots, paths and goals at three stages of a log that is not empty."""
+    stages = log.stages()
+    window = known_window(log.frame, stages[-1].classes)
+    layout = _layout(window.frame.cols / window.frame.rows, len(stages), stages[-1].robots)
+    with picture():
+        figure = Figure(figsize=(layout.width, layout.height), dpi=DPI)
+        for corner, stage in zip(layout.corners, stages, strict=True):
+            _panel(figure, corner, layout, log, window, stage)
+        _heading(figure, layout, log)
+        _scale_bar(figure, layout, window)
+        _legend(figure, layout, stages[-1].robots)
+        save(figure, path)
+
+
+def _layout(aspect: float, panels: int, robots: Sequence[RobotSample]) -> _Layout:
+    """Fit the panels: side by side, or one above the other where the map is far wider than high."""
+    stacked = aspect > 2.2
+    panel_width = 9.0 if stacked else max(1.2, min(4.2, 6.5 * aspect))
+    panel = panel_width, max(0.6, panel_width / aspect)
+    across = 1 if stacked else panels
+    width = max(_NARROW, across * panel_width + (across - 1) * _GAP + 2 * _MARGIN)
+    bottom = 0.42 + _LINE * (-(-len(robots) // _robots_a_row(width, robots)) + (1 if width >= _WIDE else 2))
+    if stacked:
+        step = panel[1] + 0.3
+        corners = tuple((_MARGIN, bottom + step * (panels - 1 - i)) for i in range(panels))
+        return _Layout(width, bottom + step * panels + _TOP - 0.3, panel, corners)
+    step = (width - 2 * _MARGIN - panel_width) / (panels - 1)
+    corners = tuple((_MARGIN + i * step, bottom) for i in range(panels))
+    return _Layout(width, bottom + panel[1] + _TOP, panel, corners)
+
+
+def _panel(
+    figure: Figure, corner: tuple[float, float], layout: _Layout, log: RunLog, window: Window, stage: Snapshot
+) -> None:
+    """Draw one stage."""
+    axes = figure.add_axes(_box(layout, *corner, *layout.panel))
+    size = max(1, round(layout.panel[0] * DPI)), max(1, round(layout.panel[1] * DPI))
+    colours = paint(stage, log.planning, window, size[::-1])
+    axes.imshow(
+        np.asarray(enlarge(colours, size)),
+        extent=window.frame.extent,
+        origin="lower",
+        aspect="auto",
+        zorder=0,
+    )
+    axes.set(xticks=(), yticks=(), xlim=window.frame.extent[:2], ylim=window.frame.extent[2:])
+    axes.set_title(f"{stage.t:.0f} s    {100 * stage.coverage:.1f} % covered", fontsize=10, loc="left", pad=5)
+    so_far = int(np.searchsorted(log.times, stage.t, side="right"))
+    trails = log.poses[:so_far, :, :2]
+    for i, robot in enumerate(stage.robots):
+        _ways(axes, palette.unit(palette.robot_colour(i)), trails[:, i], robot)
+    for i, robot in enumerate(stage.robots):
+        _robot(axes, i, robot)
+
+
+def _ways(
+    axes: Axes, colour: tuple[float, float, float], trail: NDArray[np.float64], robot: RobotSample
+) -> None:
+    """Draw where a robot has been, and where it is going."""
+    axes.plot(*trail.T, color=colour, lw=1.3, alpha=0.75, solid_joinstyle="round", zorder=2)
+    axes.plot(*trail[0], "o", color="white", mec=colour, mew=1.0, ms=3.5, zorder=3)
+    if not robot.alive:
+        return
+    if len(robot.path) > 1:
+        axes.plot(*robot.path.T, color="white", lw=2.6, alpha=0.7, zorder=3)
+        axes.plot(*robot.path.T, color=colour, lw=1.4, ls=(0, (3, 1.6)), zorder=4)
+    if robot.goal is not None:
+        axes.plot(*robot.goal, "s", color="white", mec=colour, mew=1.8, ms=6.5, zorder=5)
+
+
+def _robot(axes: Axes, index: int, robot: RobotSample) -> None:
+    """Draw a numbered disc with a nose that points where the robot looks; a cross if it is lost."""
+    colour = palette.robot_colour(index)
+    if not robot.alive:
+        axes.plot(robot.x, robot.y, "X", color=palette.unit(colour), mec="white", mew=0.8, ms=11, zorder=6)
+        return
+    ahead = np.array((math.cos(robot.heading), math.sin(robot.heading))) * 7.2 / 72
+    nose = axes.transData + ScaledTranslation(ahead[0], ahead[1], axes.figure.dpi_scale_trans)
+    turned = (3, 0, math.degrees(robot.heading) - 90)
+    axes.plot(
+        robot.x, robot.y, marker=turned, ms=7, color=palette.unit(colour), mec="white", mew=0.7, zorder=6,
+        transform=nose,
+    )  # fmt: skip
+    axes.plot(robot.x, robot.y, "o", color=palette.unit(colour), mec="white", mew=0.9, ms=11, zorder=7)
+    axes.annotate(
+        str(index + 1), (robot.x, robot.y), (0, -0.3), textcoords="offset points", ha="center", va="center",
+        fontsize=7, fontweight="bold", color=palette.unit(palette.text_on(colour)), zorder=8,
+    )  # fmt: skip
+
+
+def _heading(figure: Figure, layout: _Layout, log: RunLog) -> None:
+    """Write the world and the team over the panels."""
+    robots = f"{len(log.specs)} robot" + ("s" if len(log.specs) > 1 else "")
+    at = _MARGIN / layout.width, 1 - 0.2 / layout.height
+    figure.text(*at, f"{log.world}: {robots}", fontsize=12, fontweight="bold", va="top")
+
+
+def _scale_bar(figure: Figure, layout: _Layout, window: Window) -> None:
+    """Draw a bar of a round length under the first panel of the lowest row."""
+    metres = window.frame.cols * window.frame.resolution
+    inches = layout.panel[0] / metres
+    bar = max((b for b in _ROUND if b <= metres / 4), default=_ROUND[0])
+    x, y = layout.corners[0][0], min(corner[1] for corner in layout.corners) - 0.16
+    axes = figure.add_axes(_box(layout, x, y - 0.05, bar * inches, 0.1))
+    axes.axis("off")
+    axes.plot(
+        (0, 0, 0, 1, 1, 1), (0, 1, 0.5, 0.5, 0, 1), color=palette.unit(palette.INK), lw=1.1, clip_on=False
+    )
+    axes.set(xlim=(0, 1), ylim=(0, 1))
+    axes.annotate(f"{bar:g} m", (1, 0.5), (5, 0), textcoords="offset points", va="center", fontsize=8)
+
+
+def _legend(figure: Figure, layout: _Layout, robots: Sequence[RobotSample]) -> None:
+    """Explain robots, ways, cell classes and the impact's colour under the panels."""
+    team = [_badge(i, robot) for i, robot in enumerate(robots)]
+    labels = [robot.name + ("" if robot.alive else " (lost)") for robot in robots]
+    per_row = _robots_a_row(layout.width, robots)
+    y = min(corner[1] for corner in layout.corners) - 0.42
+    for first in range(0, len(team), per_row):
+        some = slice(first, first + per_row)
+        _line(figure, layout, y, team[some], labels[some])
+        y -= _LINE
+    signs = _signs()
+    _line(figure, layout, y, signs, [str(sign.get_label()) for sign in signs])
+    _impact_ramp(figure, layout, y if layout.width >= _WIDE else y - _LINE)
+
+
+def _robots_a_row(width: float, robots: Sequence[RobotSample]) -> int:
+    """Count the robots that a line of the legend holds, by the longest name."""
+    entry = 0.5 + 0.07 * max(len(robot.name) + (0 if robot.alive else 7) for robot in robots)
+    return max(1, int((width - 2 * _MARGIN) / entry))
+
+
+def _line(figure: Figure, layout: _Layout, y: float, handles: Sequence[Any], labels: Sequence[str]) -> None:
+    """Write a line of the legend whose middle is ``y`` [inch]."""
+    at = _MARGIN / layout.width, y / layout.height
+    figure.legend(
+        handles, labels, loc="center left", bbox_to_anchor=at, ncols=len(labels), frameon=False, borderpad=0,
+        borderaxespad=0, columnspacing=1.6, handletextpad=0.6, handler_map={tuple: HandlerTuple(1, 0)},
+    )  # fmt: skip
+
+
+def _badge(index: int, robot: RobotSample) -> tuple[Line2D, ...]:
+    """Return a robot's sign in the legend: its numbered disc, or its cross."""
+    rgb = palette.robot_colour(index)
+    disc = Line2D((), (), ls="", marker="o", ms=11, mec="white", color=palette.unit(rgb))
+    if not robot.alive:
+        disc.set_marker("X")
+        return (disc,)
+    digits = f"$\\mathbf{{{index + 1}}}$"
+    ink = palette.unit(palette.text_on(rgb))
+    return disc, Line2D((), (), ls="", marker=digits, ms=5, mew=0.1, color=ink)
+
+
+def _signs() -> list[Line2D | Patch]:
+    ink = palette.unit((110, 113, 117))
+    classes = ((FREE, "free"), (OCCUPIED, "wall"), (UNKNOWN, "unknown"))
+    return [
+        Line2D((), (), color=ink, lw=1.3, label="travelled"),
+        Line2D((), (), color=ink, lw=1.4, ls=(0, (3, 1.6)), label="planned"),
+        Line2D((), (), ls="", marker="s", color="white", mec=ink, mew=1.6, ms=6, label="goal"),
+        *(Patch(fc=tuple(palette.CLASSES[c] / 255), ec=ink, lw=0.6, label=name) for c, name in classes),
+    ]
+
+
+def _impact_ramp(figure: Figure, layout: _Layout, y: float) -> None:
+    """Show the colours of impacts 0 to 1 at the right of the line at ``y`` [inch]."""
+    share = np.linspace(0, 1, 64, dtype=np.float32)[None, :]
+    colours = palette.blend_impact(np.broadcast_to(palette.CLASSES[UNKNOWN], (1, 64, 3)), share)
+    x = layout.width - _MARGIN - 1.1 if layout.width >= _WIDE else _MARGIN + 2.95
+    axes = figure.add_axes(_box(layout, x, y - 0.06, 0.9, 0.12))
+    axes.imshow(colours, aspect="auto", extent=(0, 1, 0, 1))
+    axes.set(xticks=(), yticks=())
+    for x, text, align in (
+        (-0.06, "probability that the team will observe it   0", "right"),
+        (1.06, "1", "left"),
+    ):
+        axes.text(x, 0.5, text, ha=align, va="center_baseline", fontsize=9)
+
+
+_ROUND = (0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500)
+
+
+def _box(
+    layout: _Layout, x: float, y: float, width: float, height: float
+) -> tuple[float, float, float, float]:
+    """Return a rectangle [inch] in figure fractions."""
+    return x / layout.width, y / layout.height, width / layout.width, height / layout.height

@@ -1,0 +1,91 @@
+"""Cell grids as pixels: the part worth showing, fewer pixels without losing walls, colours."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from vedette.maps import UNKNOWN, GridFrame
+from vedette.record import palette
+from vedette.record.log import Snapshot
+
+
+@dataclass(frozen=True)
+class Window:
+    """A rectangle of a grid's cells."""
+
+    rows: slice
+    cols: slice
+    frame: GridFrame  # of the rectangle alone
+
+
+def known_window(frame: GridFrame, classes: NDArray[np.uint8], margin: float = 0.5) -> Window:
+    """Return the rectangle around the known cells with ``margin`` [m] to each side; all if none is known."""
+    known = classes != UNKNOWN
+    if not known.any():
+        return Window(slice(0, frame.rows), slice(0, frame.cols), frame)
+    pad = round(margin / frame.resolution)
+    row, col = (np.flatnonzero(known.any(axis=axis)) for axis in (1, 0))
+    rows = slice(max(0, int(row[0]) - pad), min(frame.rows, int(row[-1]) + 1 + pad))
+    cols = slice(max(0, int(col[0]) - pad), min(frame.cols, int(col[-1]) + 1 + pad))
+    part = GridFrame(
+        frame.resolution,
+        rows.stop - rows.start,
+        cols.stop - cols.start,
+        frame.origin_x + cols.start * frame.resolution,
+        frame.origin_y + rows.start * frame.resolution,
+    )
+    return Window(rows, cols, part)
+
+
+def pool(classes: NDArray[np.uint8], rows: int, cols: int) -> NDArray[np.uint8]:
+    """Return at most ``rows x cols`` pixels, the highest class in each: wall, then free, then unknown."""
+    for axis, target in ((0, rows), (1, cols)):
+        if target < classes.shape[axis]:
+            first = np.arange(target) * classes.shape[axis] // target
+            classes = np.maximum.reduceat(classes, first, axis=axis)
+    return classes
+
+
+def fit(shape: tuple[int, ...], limit: tuple[int, int]) -> tuple[int, int]:
+    """Return the largest ``(rows, cols)`` of these proportions, within ``limit`` and no more than ``shape``."""
+    shrink = min(1.0, limit[0] / shape[0], limit[1] / shape[1])
+    return max(1, round(shape[0] * shrink)), max(1, round(shape[1] * shrink))
+
+
+def paint(
+    snapshot: Snapshot,
+    planning: GridFrame,
+    window: Window,
+    limit: tuple[int, int],
+    classes: NDArray[np.uint8] = palette.CLASSES,
+) -> NDArray[np.uint8]:
+    """Return ``(rows, cols, 3)`` colours of a window within ``limit`` rows and columns, row 0 the lowest y.
+
+    Unknown cells take the colour of the team's impact: the probability that its strategies observe them.
+    """
+    part = snapshot.classes[window.rows, window.cols]
+    pixels = pool(part, *fit(part.shape, limit))
+    colours = classes[pixels]
+    if snapshot.impact is None:
+        return colours
+    x_min, x_max, y_min, y_max = window.frame.extent
+    rows, cols = pixels.shape
+    y = y_min + (np.arange(rows) + 0.5) * (y_max - y_min) / rows
+    x = x_min + (np.arange(cols) + 0.5) * (x_max - x_min) / cols
+    row = ((y - planning.origin_y) / planning.resolution).astype(np.intp).clip(0, planning.rows - 1)
+    col = ((x - planning.origin_x) / planning.resolution).astype(np.intp).clip(0, planning.cols - 1)
+    unknown = pixels == UNKNOWN
+    impact = snapshot.impact[row[:, None], col[None, :]]
+    colours[unknown] = palette.blend_impact(colours[unknown], impact[unknown])
+    return colours
+
+
+def enlarge(colours: NDArray[np.uint8], size: tuple[int, int]) -> Image.Image:
+    """Return the pixels resampled to exactly ``(width, height)``: edges sharp, walls equally thick."""
+    rows, cols = colours.shape[:2]
+    fine = colours.repeat(-(-size[1] // rows), axis=0).repeat(-(-size[0] // cols), axis=1)
+    return Image.fromarray(fine).resize(size, Image.Resampling.BOX)

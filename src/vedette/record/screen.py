@@ -1,0 +1,195 @@
+"""The live view's picture: a map in half blocks and a table of robots, as rich renderables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import lru_cache
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.color import Color
+from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
+from rich.measure import Measurement
+from rich.panel import Panel
+from rich.progress_bar import ProgressBar
+from rich.segment import Segment
+from rich.style import Style
+from rich.table import Table
+from rich.text import Text
+
+from vedette.maps import FREE, OCCUPIED, GridFrame
+from vedette.record import palette
+from vedette.record.log import RobotSample, Snapshot
+from vedette.record.raster import Window, fit, paint, pool
+
+_MAP = 24, 70  # most lines and columns of the map
+_TABLE = 50  # columns of the table beside the map
+_SIGNS = "123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+_LOST = "×"
+
+
+def screen(
+    console: Console,
+    world: str,
+    frame: GridFrame,
+    planning: GridFrame,
+    snapshot: Snapshot,
+    travelled: Sequence[float],
+) -> RenderableType:
+    """Return the picture of a snapshot, fitted to the console; ``travelled`` by robot [m]."""
+    beside = console.width >= _MAP[1] + _TABLE
+    lines = console.height - 6 - (0 if beside else len(snapshot.robots) + 2)
+    room = min(_MAP[0], lines), min(_MAP[1], console.width - 4)
+    parts: list[RenderableType] = [_figures(snapshot), _bar(snapshot)]
+    table = _robots(snapshot.robots, travelled)
+    if min(room) < 4:
+        parts.append(table)
+    else:
+        building = HalfBlocks.of(console, frame, planning, snapshot, room)
+        if beside:
+            body = Table.grid(padding=(0, 3))
+            body.add_row(building, table)
+            parts.append(body)
+        else:
+            parts += [building, Text(""), table]
+    return Panel(
+        Group(*parts), title=f"[bold]vedette[/] {world}", title_align="left", border_style="bright_black"
+    )
+
+
+def _figures(snapshot: Snapshot) -> Text:
+    known = 100 * snapshot.known_fraction
+    return Text.assemble(
+        ("time ", "dim"), (f"{snapshot.t:6.1f} s", "bold"),
+        ("    known ", "dim"), (f"{known:5.1f} %", "bold"),
+        ("    entropy ", "dim"), (f"{snapshot.entropy:,.0f} nat", "bold"),
+    )  # fmt: skip
+
+
+def _bar(snapshot: Snapshot) -> Table:
+    grid = Table.grid(padding=(0, 1))
+    bar = ProgressBar(total=1.0, completed=snapshot.coverage, width=40, complete_style="green")
+    grid.add_row(Text("covered", "dim"), bar, Text(f"{100 * snapshot.coverage:.1f} %", "bold"))
+    return grid
+
+
+def _robots(robots: Sequence[RobotSample], travelled: Sequence[float]) -> Table:
+    table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim", pad_edge=False)
+    for title, justify in (
+        ("", "left"),
+        ("robot", "left"),
+        ("state", "left"),
+        ("goal [m]", "right"),
+        ("[m]", "right"),
+    ):
+        table.add_column(title, justify=justify, no_wrap=True)  # type: ignore[arg-type]
+    for i, (robot, metres) in enumerate(zip(robots, travelled, strict=True)):
+        goal = "" if robot.goal is None else f"{robot.goal[0]:.1f}, {robot.goal[1]:.1f}"
+        sign = Text(f" {_sign(i, robot)} ", _sign_style(i, robot))
+        table.add_row(sign, robot.name, robot.state, goal, f"{metres:.1f}")
+    return table
+
+
+def _sign(index: int, robot: RobotSample) -> str:
+    return _SIGNS[index % len(_SIGNS)] if robot.alive else _LOST
+
+
+def _sign_style(index: int, robot: RobotSample) -> Style:
+    colour = palette.robot_colour(index)
+    return _style(palette.text_on(colour), colour, bold=True)
+
+
+class HalfBlocks:
+    """A map of two pixels a character: the upper half in the ink, the lower in the ground colour."""
+
+    def __init__(self, lines: list[list[Segment]]) -> None:
+        """Hold lines of equal width, top first."""
+        self._lines = lines
+        self._width = sum(len(segment.text) for segment in lines[0])
+
+    @classmethod
+    def of(
+        cls,
+        console: Console,
+        frame: GridFrame,
+        planning: GridFrame,
+        snapshot: Snapshot,
+        room: tuple[int, int],
+    ) -> HalfBlocks:
+        """Draw a snapshot in at most ``room`` lines and columns; without colours as walls alone."""
+        rows, cols = fit(frame.shape, (2 * room[0], room[1]))
+        whole = Window(slice(0, frame.rows), slice(0, frame.cols), frame)
+        signs = dict(_signs(snapshot.robots, frame, rows, cols))
+        if console.color_system is None or console.no_color:
+            glyphs = _glyphs(_paired(pool(snapshot.classes, rows, cols)[::-1]))
+            return cls([_plain_line(line, i, signs) for i, line in enumerate(glyphs)])
+        colours = paint(snapshot, planning, whole, (rows, cols), palette.SCREEN)[::-1]
+        return cls([_line(pair, i, signs) for i, pair in enumerate(_paired(colours))])
+
+    def __rich_measure__(self, console: Console, options: ConsoleOptions) -> Measurement:
+        """Tell rich that the map neither shrinks nor grows."""
+        return Measurement(self._width, self._width)
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        """Yield the lines."""
+        for line in self._lines:
+            yield from line
+            yield Segment.line()
+
+
+def _signs(
+    robots: Sequence[RobotSample], frame: GridFrame, rows: int, cols: int
+) -> Iterator[tuple[tuple[int, int], tuple[str, Style]]]:
+    """Yield the (line, column) of each robot on the map with its sign and style."""
+    x_min, x_max, y_min, y_max = frame.extent
+    for i, robot in enumerate(robots):
+        row = int((y_max - robot.y) / (y_max - y_min) * rows)
+        col = int((robot.x - x_min) / (x_max - x_min) * cols)
+        if 0 <= row < rows and 0 <= col < cols:
+            yield (row // 2, col), (_sign(i, robot), _sign_style(i, robot))
+
+
+def _paired(pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Return ``(lines, 2, cols, ...)``: upper and lower pixels; an odd last row is doubled."""
+    if len(pixels) % 2:
+        pixels = np.concatenate((pixels, pixels[-1:]))
+    return pixels.reshape(len(pixels) // 2, 2, *pixels.shape[1:])
+
+
+def _line(
+    pair: NDArray[np.uint8], line: int, signs: dict[tuple[int, int], tuple[str, Style]]
+) -> list[Segment]:
+    """Return one line of the map, neighbours of the same colours joined."""
+    both = np.concatenate((pair[0], pair[1]), axis=1)  # (cols, 6)
+    changes = np.flatnonzero((both[1:] != both[:-1]).any(axis=1)) + 1
+    own = [col for (row, col) in signs if row == line]
+    edges = sorted({0, len(both), *changes.tolist(), *own, *(col + 1 for col in own)})
+    segments = []
+    for first, end in pairwise(edges):
+        if (line, first) in signs:
+            segments.append(Segment(*signs[line, first]))
+        else:
+            ink = both[first].tolist()
+            segments.append(Segment("▀" * (end - first), _style(tuple(ink[:3]), tuple(ink[3:]))))
+    return segments
+
+
+def _glyphs(pairs: NDArray[np.uint8]) -> list[str]:
+    """Return lines of block characters for walls and dots for free space."""
+    upper, lower = pairs[:, 0], pairs[:, 1]
+    glyphs = np.where((upper == FREE) | (lower == FREE), "·", " ")
+    glyphs[lower == OCCUPIED] = "▄"
+    glyphs[upper == OCCUPIED] = "▀"
+    glyphs[(upper == OCCUPIED) & (lower == OCCUPIED)] = "█"
+    return ["".join(line) for line in glyphs]
+
+
+def _plain_line(glyphs: str, line: int, signs: dict[tuple[int, int], tuple[str, Style]]) -> list[Segment]:
+    return [Segment("".join(signs[line, i][0] if (line, i) in signs else g for i, g in enumerate(glyphs)))]
+
+
+@lru_cache(maxsize=4096)
+def _style(ink: tuple[int, ...], ground: tuple[int, ...], bold: bool = False) -> Style:
+    """Return a style of two colours; making one is slow, and a map needs few different ones."""
+    return Style(color=Color.from_rgb(*ink), bgcolor=Color.from_rgb(*ground), bold=bold)

@@ -1,0 +1,132 @@
+"""The figures of a mission: ``summary.json`` (simulated time only) and ``timing.json`` (wall clock)."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields, is_dataclass
+from enum import StrEnum
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vedette.record.files import write_text
+
+SCHEMA_VERSION = 1
+_DIGITS = 6
+
+
+class Outcome(StrEnum):
+    """Why a mission ended."""
+
+    COMPLETE = "complete"  # all agents agree that nothing reachable is worth seeing
+    TIME_LIMIT = "time_limit"  # --max-time passed
+    INTERRUPTED = "interrupted"  # Ctrl-C
+    TEAM_LOST = "team_lost"  # no robot is alive
+    NO_PROGRESS = "no_progress"  # living robots, work left, and nothing new for too long
+
+
+@dataclass(frozen=True)
+class Traffic:
+    """Messages or bytes that one robot sent, by kind."""
+
+    negotiation: int = 0
+    fusion: int = 0
+    beacons: int = 0
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What one mission achieved, in simulated time only; the fields are explained in ``docs/outputs.md``."""
+
+    completed: bool
+    outcome: Outcome
+    seed: int
+    robots: int
+    planner: str
+    scheme: str
+    fusion: str
+    world: str
+    time_s: float
+    t50_s: float | None
+    t90_s: float | None
+    t95_s: float | None
+    t99_s: float | None
+    auc_s: float
+    coverage: float
+    map_errors: int
+    map_error_share: float
+    path_m: Mapping[str, float]
+    overlap: float
+    collisions: int
+    min_clearance_m: float | None
+    rounds: int
+    sweeps: int
+    bound_ratio: float | None
+    messages: Mapping[str, Traffic]
+    bytes: Mapping[str, Traffic]
+    schema_version: int = field(default=SCHEMA_VERSION, init=False)
+
+    def to_json(self) -> str:
+        """Return the text of ``summary.json``: fields in the order declared, floats to 6 decimals."""
+        return _to_json({"schema_version": self.schema_version} | _plain(self))
+
+    def write(self, path: Path | str) -> None:
+        """Put ``summary.json`` in place."""
+        write_text(path, self.to_json())
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Order statistics of a set of durations."""
+
+    p50: float
+    p95: float
+    max: float
+
+    @classmethod
+    def of(cls, samples: Sequence[float]) -> Spread | None:
+        """Return the median, 95th percentile and maximum of the samples; ``None`` if there are none."""
+        if not len(samples):
+            return None
+        p50, p95, top = np.percentile(samples, (50, 95, 100))
+        return cls(float(p50), float(p95), float(top))
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Wall-clock figures of one mission: they differ from run to run, so they have a file of their own."""
+
+    planning_ms: Spread | None  # all CPU time that one robot spends on one replan, all sweeps
+    answer_ms: Spread | None  # CPU time to answer the token, a visit
+    real_time_factor: float  # simulated / wall seconds
+    wall_s: float
+
+    def to_json(self) -> str:
+        """Return the text of ``timing.json``."""
+        return _to_json(_plain(self))
+
+    def write(self, path: Path | str) -> None:
+        """Put ``timing.json`` in place."""
+        write_text(path, self.to_json())
+
+
+def _plain(value: Any) -> Any:
+    """Return ``value`` as JSON types: floats rounded, not finite ones ``None``, dataclasses objects."""
+    if is_dataclass(value) and not isinstance(value, type):
+        return {f.name: _plain(getattr(value, f.name)) for f in fields(value)}
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, (bool, np.bool_)):
+        return bool(value)
+    if isinstance(value, (int, np.integer)):
+        return int(value)
+    if isinstance(value, (float, np.floating)):
+        return round(float(value), _DIGITS) + 0.0 if math.isfinite(value) else None  # + 0.0: no "-0.0"
+    return value if value is None else str(value)
+
+
+def _to_json(plain: Any) -> str:
+    return json.dumps(plain, indent=2, ensure_ascii=False, allow_nan=False) + "\n"

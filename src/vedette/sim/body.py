@@ -1,0 +1,182 @@
+"""The simulated robots' bodies: discs that follow paths and touch neither walls nor each other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.kernels import motion
+from vedette.team import PlatformSpec
+
+SENSING_RANGE = 3.0  # within which a robot feels other bodies' places and velocities [m]
+CLEARANCE_RANGE = 0.5  # beyond a disc's rim, farther walls and discs are not measured [m]
+ARRIVAL = 0.15  # from the path's end: there [m]
+ARRIVAL_IF_TAKEN = 0.6  # the same where another robot stands on the path's end [m]
+PROGRESS = 0.1  # less path than this done is no progress [m]
+SAME_GOAL = 0.3  # a new path that ends this near to the old one has the same goal [m]
+COURTESY_TO_LATER = 0.1  # the gap one would rather keep to a robot of higher index [m]
+COURTESY_TO_EARLIER = 0.3  # the same for a robot of lower index, which goes first [m]
+
+
+@dataclass
+class _Task:
+    """A path being followed, and how far."""
+
+    xy: NDArray[np.float64]  # (L, 2) [m], L >= 2
+    arc: NDArray[np.float64]  # (L,) arc length [m]
+    traversable: NDArray[np.bool_]  # (R, C) shared with the robot's own map
+    done: float = 0.0  # arc length reached [m]
+    offset: float = 0.0  # sideways offset being followed [m]
+    best_left: float = np.inf  # remaining length at the last progress [m]
+    idle: float = 0.0  # time since then [s]
+
+    @property
+    def left(self) -> float:
+        """Remaining arc length [m]."""
+        return float(self.arc[-1]) - self.done
+
+
+@dataclass
+class Bodies:
+    """True motion of n disc robots; positions in metres from the grid's lower-left corner.
+
+    Robots sense each other's place and velocity within 3 m, and walls close to their body, as a ring of
+    proximity sensors would; for the rest they rely on the map that comes with each command.
+    """
+
+    solid: NDArray[np.bool_]  # (R, C) true walls
+    resolution: float  # [m]
+    specs: Sequence[PlatformSpec]
+    poses: NDArray[np.float64]  # (n, 3) x, y [m], heading [rad]
+    velocities: NDArray[np.float64] = field(init=False)  # (n, 2) vx, vy [m/s]
+    travelled: NDArray[np.float64] = field(init=False)  # (n,) [m]
+    alive: NDArray[np.bool_] = field(init=False)  # (n,)
+    collisions: int = field(init=False, default=0)  # steps in which a contact stopped a robot
+    min_clearance: float = field(init=False, default=CLEARANCE_RANGE)  # to walls and other discs so far [m]
+    _tasks: list[_Task | None] = field(init=False)
+
+    def __post_init__(self) -> None:
+        n = len(self.specs)
+        self.solid = np.ascontiguousarray(self.solid, dtype=np.bool_)
+        self.poses = np.array(self.poses, dtype=np.float64).reshape(n, 3)
+        self.velocities = np.zeros((n, 2))
+        self.travelled = np.zeros(n)
+        self.alive = np.ones(n, dtype=np.bool_)
+        self._tasks = [None] * n
+        self._radii = np.array([spec.radius for spec in self.specs])
+        index = np.arange(n)
+        earlier = index[None, :] < index[:, None]
+        self._courtesy = np.where(earlier, COURTESY_TO_EARLIER, COURTESY_TO_LATER)
+
+    def command(
+        self, i: int, path: NDArray[np.float64] | None, traversable: NDArray[np.bool_] | None = None
+    ) -> None:
+        """Let robot ``i`` follow the polyline ``path`` ``(L, 2)`` [m]; None: stand still.
+
+        ``traversable`` ``(R, C)``: cells where robot ``i``'s own map allows its centre; held by reference,
+        so that later changes count; None: every cell that is not solid.
+        """
+        if path is None or not self.alive[i]:
+            self._tasks[i] = None
+            return
+        xy = _without_repeats(np.asarray(path, dtype=np.float64).reshape(-1, 2), self.poses[i, :2])
+        arc = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(xy, axis=0).T))))
+        task = _Task(xy, arc, ~self.solid if traversable is None else traversable, best_left=float(arc[-1]))
+        old = self._tasks[i]
+        if old is not None and np.hypot(*(old.xy[-1] - xy[-1])) < SAME_GOAL:
+            task.idle, task.offset = old.idle, old.offset
+        self._tasks[i] = task
+
+    def step(self, dt: float) -> None:
+        """Move every living robot, in index order, for ``dt`` seconds."""
+        for i in range(len(self.specs)):
+            if self.alive[i]:
+                self._move(i, dt)
+
+    def arrived(self, i: int) -> bool:
+        """Tell whether robot ``i`` is at its path's end, or near it while another robot stands there."""
+        task = self._tasks[i]
+        if task is None:
+            return True
+        end = task.xy[-1]
+        away = float(np.hypot(*(self.poses[i, :2] - end)))
+        if away > ARRIVAL_IF_TAKEN or away <= ARRIVAL:
+            return away <= ARRIVAL
+        others = np.hypot(*(self.poses[:, :2] - end).T) < self._radii + self.specs[i].radius
+        others[i] = False
+        return bool(others.any())
+
+    def stuck_for(self, i: int) -> float:
+        """Time [s] since robot ``i`` last got 0.1 m nearer, along its path, to its path's end."""
+        task = self._tasks[i]
+        return 0.0 if task is None or self.arrived(i) else task.idle
+
+    def kill(self, i: int) -> None:
+        """Stop robot ``i`` for ever; its body stays as an obstacle."""
+        self.alive[i] = False
+        self.velocities[i] = 0.0
+        self._tasks[i] = None
+
+    def _move(self, i: int, dt: float) -> None:
+        task, spec = self._tasks[i], self.specs[i]
+        if task is None:
+            self.velocities[i] = 0.0
+            return
+        x, y, heading = self.poses[i].tolist()
+        limits = motion.Limits(spec.radius, spec.speed, spec.turn_rate, dt)
+        chosen = motion.steer(
+            self.solid,
+            task.traversable,
+            self.resolution,
+            (x, y, heading),
+            task.xy,
+            task.arc,
+            (task.done, task.offset),
+            self._sensed(i),
+            limits,
+        )
+        task.done, task.offset = chosen.arc, chosen.offset
+        if task.left < task.best_left - PROGRESS:
+            task.best_left, task.idle = task.left, 0.0
+        else:
+            task.idle += dt
+        middle = heading + 0.5 * chosen.turn * dt
+        velocity = chosen.speed * np.array((np.cos(middle), np.sin(middle)))
+        if not self._admit(i, x + velocity[0] * dt, y + velocity[1] * dt):
+            velocity[:] = 0.0
+        self.velocities[i] = velocity
+        self.poses[i] = (x + velocity[0] * dt, y + velocity[1] * dt, heading + chosen.turn * dt)
+        self.travelled[i] += float(np.hypot(*velocity)) * dt
+
+    def _sensed(self, i: int) -> NDArray[np.float64]:
+        """Rows ``x, y, vx, vy, radius, courtesy`` of the other bodies within 3 m of robot ``i``."""
+        near = np.hypot(*(self.poses[:, :2] - self.poses[i, :2]).T) < SENSING_RANGE
+        near[i] = False
+        return np.column_stack(
+            (self.poses[near, :2], self.velocities[near], self._radii[near], self._courtesy[i, near])
+        )
+
+    def _admit(self, i: int, x: float, y: float) -> bool:
+        """Physics: record the clearance at a new place, and refuse the place on contact."""
+        reach = self._radii[i] + CLEARANCE_RANGE
+        gap = motion.clearance(self.solid, self.resolution, x, y, reach) - self._radii[i]
+        apart = np.hypot(self.poses[:, 0] - x, self.poses[:, 1] - y) - self._radii - self._radii[i]
+        apart[i] = np.inf
+        gap = min(gap, float(apart.min()))
+        if gap < 0.0:
+            self.collisions += 1
+            return False
+        self.min_clearance = min(self.min_clearance, gap)
+        return True
+
+
+def _without_repeats(xy: NDArray[np.float64], here: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Drop consecutive equal points; a path of a single point starts ``here``."""
+    if len(xy) == 1 or np.allclose(xy, xy[0], atol=1e-6):
+        start = here if np.hypot(*(here - xy[0])) > 1e-6 else xy[0] - (1e-3, 0.0)
+        return np.ascontiguousarray(np.vstack((start, xy[0])))
+    keep = np.concatenate(([True], np.hypot(*np.diff(xy, axis=0).T) > 1e-9))
+    return np.ascontiguousarray(xy[keep])

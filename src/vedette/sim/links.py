@@ -1,0 +1,50 @@
+"""The simulated links of the tree: messages arrive in order, after a delay, or not at all."""
+
+from __future__ import annotations
+
+import heapq
+from collections import defaultdict
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from vedette.agent.effects import Send, Traffic
+
+
+@dataclass
+class Links:
+    """Links with a delay and a loss, and a count of what was sent over them."""
+
+    robots: int
+    delay: float  # one way [s]
+    loss: float  # probability that a message is lost
+    rng: np.random.Generator
+    messages: dict[Traffic, list[int]] = field(init=False)  # sent, by kind and robot
+    bytes: dict[Traffic, list[int]] = field(init=False)
+    _queue: list[tuple[float, int, int, int, bytes]] = field(default_factory=list)
+    _sent: int = 0
+    _last: defaultdict[tuple[int, int], float] = field(default_factory=lambda: defaultdict(float))
+
+    def __post_init__(self) -> None:
+        self.messages = {kind: [0] * self.robots for kind in Traffic}
+        self.bytes = {kind: [0] * self.robots for kind in Traffic}
+
+    def send(self, sender: int, send: Send, now: float) -> None:
+        """Put a message on its link."""
+        self.messages[send.traffic][sender] += 1
+        self.bytes[send.traffic][sender] += len(send.payload)
+        if self.loss > 0 and self.rng.random() < self.loss:
+            return
+        link = sender, send.to
+        self._last[link] = max(self._last[link], now + self.delay)
+        self._sent += 1
+        heapq.heappush(self._queue, (self._last[link], self._sent, sender, send.to, send.payload))
+
+    def next_arrival(self) -> float:
+        """Return when the next message arrives [s]; inf if none is under way."""
+        return self._queue[0][0] if self._queue else float("inf")
+
+    def arrive(self) -> tuple[float, int, int, bytes]:
+        """Take the next message: time, sender, receiver, payload."""
+        time, _, sender, receiver, payload = heapq.heappop(self._queue)
+        return time, sender, receiver, payload

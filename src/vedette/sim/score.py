@@ -1,0 +1,101 @@
+"""How well a mission went, measured against the true world."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.kernels.visibility import visible_cells
+from vedette.maps import FREE, OCCUPIED, UNKNOWN
+from vedette.sim.world import World, reachable_poses
+from vedette.team import PlatformSpec
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """What a team can see of a world at all; coverage is measured against it."""
+
+    world: World
+    specs: Sequence[PlatformSpec]
+    starts: NDArray[np.float64]  # (n, 3) x, y, heading [m, m, rad], team frame
+
+    @cached_property
+    def coverable(self) -> NDArray[np.bool_]:
+        """``bool[rows, cols]``: free cells visible, noise-free, from poses a disc can reach from its start."""
+        seen = np.zeros_like(self.world.solid)
+        bodies = {
+            (spec.radius, spec.range): start for spec, start in zip(self.specs, self.starts, strict=True)
+        }
+        for (radius, reach), start in bodies.items():
+            poses = reachable_poses(self.world, radius, start[0], start[1])
+            seen |= visible_cells(self.world.solid, poses, reach / self.world.frame.resolution)
+        return seen & ~self.world.solid
+
+
+def coverage(reference: Reference, classes: NDArray[np.uint8]) -> float:
+    """Return the share of coverable cells that ``classes[rows, cols]`` knows; 1 where none is coverable."""
+    known = classes[reference.coverable] != UNKNOWN
+    return float(known.mean()) if known.size else 1.0
+
+
+def map_errors(world: World, classes: NDArray[np.uint8]) -> tuple[int, int]:
+    """Return ``(wrong, known)`` cells of a map.
+
+    A known cell is wrong where it is free but solid in truth, or occupied but free, and all its eight
+    neighbours are in truth of its own kind: next to a true boundary a range error below a cell decides.
+    Outside the grid counts as solid.
+    """
+    wrong = np.where(world.solid, classes == FREE, classes == OCCUPIED)
+    wrong &= ~_near_boundary(world.solid)
+    return int(wrong.sum()), int(np.count_nonzero(classes != UNKNOWN))
+
+
+def overlap(own_known: Sequence[NDArray[np.bool_]]) -> float:
+    """Return the share of the known cells that at least two robots saw themselves; 0 where none is known.
+
+    ``own_known`` holds for each robot ``bool[rows, cols]``: the cells that its own sensor observed.
+    """
+    seen = np.sum(own_known, axis=0, dtype=np.int64)
+    known = np.count_nonzero(seen)
+    return float(np.count_nonzero(seen >= 2) / known) if known else 0.0
+
+
+@dataclass
+class Progress:
+    """Coverage against time, constant between samples and 0 before the first."""
+
+    times: list[float] = field(default_factory=list)  # [s], not descending
+    coverages: list[float] = field(default_factory=list)
+
+    def add(self, t: float, coverage: float) -> None:
+        """Append a sample at ``t`` [s], which is not before the last one's."""
+        if self.times and t < self.times[-1]:
+            raise ValueError(f"samples come in time order; {t} s is before {self.times[-1]} s")
+        self.times.append(t)
+        self.coverages.append(coverage)
+
+    def t_at(self, level: float) -> float | None:
+        """Return the first sampled time [s] with coverage >= ``level``, ``None`` if never."""
+        reached = (t for t, coverage in zip(self.times, self.coverages, strict=True) if coverage >= level)
+        return next(reached, None)
+
+    def auc(self, t_end: float) -> float:
+        """Return the integral of ``1 - coverage`` from 0 to ``t_end``, in seconds of a wholly unknown map."""
+        steps = np.minimum(np.array([0.0, *self.times, np.inf]), t_end)
+        return float(np.diff(steps) @ (1.0 - np.array([0.0, *self.coverages])))
+
+
+def _near_boundary(solid: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return the cells with an 8-neighbour of the other kind."""
+    padded = np.pad(solid, 1, constant_values=True)
+    rows, cols = solid.shape
+    windows = [padded[r : r + rows, c : c + cols] for r in range(3) for c in range(3)]
+    some, every = np.zeros_like(solid), np.ones_like(solid)
+    for window in windows:
+        some |= window
+        every &= window
+    return some & ~every

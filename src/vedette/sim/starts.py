@@ -1,0 +1,229 @@
+"""Where the robots stand when a mission begins."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.errors import InputError
+from vedette.kernels.distance import distance_field
+from vedette.sim.components import largest
+from vedette.sim.world import World, reachable_poses, standable
+from vedette.team import PlatformSpec
+
+_GAP = 0.05  # [m] least gap between robots that a user placed
+_GAPS = (0.3, 0.1)  # [m] gap between robots that are placed here: at ease, then close
+_AT_EASE = 0.3  # [m] room around the spot where a team is placed, if the world has any such
+
+
+def parse_starts(text: str) -> list[tuple[float, ...]]:
+    """Read ``"x,y;x,y,heading"`` [m, m, deg] as ``--starts`` gives it.
+
+    Raises:
+        InputError: an entry is not two or three finite numbers.
+    """
+    starts = []
+    for number, entry in enumerate(text.strip().strip(";").split(";"), start=1):
+        try:
+            values = tuple(float(part) for part in entry.split(","))
+        except ValueError:
+            values = ()
+        if len(values) not in (2, 3) or not all(map(math.isfinite, values)):
+            raise InputError(
+                f"--starts: entry {number} must be x,y or x,y,heading in deg; got {entry.strip()!r}"
+            )
+        starts.append(values)
+    return starts
+
+
+def choose_starts(
+    world: World, specs: Sequence[PlatformSpec], rng: np.random.Generator
+) -> NDArray[np.float64]:
+    """Return ``f64[n, 3]`` start poses x, y, heading [m, m, rad], team frame.
+
+    A start that a spec gives is checked and kept. The others stand together, 0.3 m apart (0.1 m where that is
+    too much), near the first given start or else at a random spot of the largest area that all can reach.
+
+    Raises:
+        InputError: a given start is outside, in or too near a wall, too near another, or cut off from the
+            first; or the robots do not all fit.
+    """
+    starts = np.zeros((len(specs), 3))
+    given = [i for i, spec in enumerate(specs) if spec.start is not None]
+    for i in given:
+        starts[i] = _checked(world, specs[i])
+        _check_apart(specs, starts, i, [j for j in given if j < i])
+        _check_together(world, specs, starts, given[0], i)
+    others = [i for i in range(len(specs)) if i not in given]
+    if others:
+        anchor = world.frame.flat(*starts[given[0], :2]) if given else _spot(world, specs, rng)
+        _place(world, specs, starts, given, others, anchor)
+    return starts
+
+
+def _checked(world: World, spec: PlatformSpec) -> tuple[float, float, float]:
+    assert spec.start is not None
+    x, y, *heading = spec.start
+    where = f"{spec.name}: start {x:g},{y:g}"
+    if not world.frame.contains(x, y):
+        x_min, x_max, y_min, y_max = world.frame.extent
+        raise InputError(
+            f"{where} is outside the map; x is {x_min:g} to {x_max:g} m, y is {y_min:g} to {y_max:g} m"
+        )
+    if world.solid[world.frame.cell(x, y)]:
+        raise InputError(f"{where} is in a wall; {_free_spot(world, spec, x, y)}")
+    room = clearance(world, x, y, spec.radius + world.frame.resolution)
+    if room < spec.radius:
+        raise InputError(
+            f"{where} is {room:.2f} m from a wall, its radius is {spec.radius:g} m; "
+            f"{_free_spot(world, spec, x, y)}"
+        )
+    return x, y, math.radians(heading[0]) if heading else 0.0
+
+
+def clearance(world: World, x: float, y: float, limit: float) -> float:
+    """Return the distance [m] from a point in the grid to the nearest solid cell, at most ``limit``."""
+    frame = world.frame
+    reach = math.ceil(limit / frame.resolution)
+    row, col = frame.cell(x, y)
+    low_row, low_col = max(row - reach, 0), max(col - reach, 0)
+    window = world.solid[low_row : row + reach + 1, low_col : col + reach + 1]
+    rows, cols = np.nonzero(
+        np.pad(window, 1, constant_values=True)
+    )  # the rim is outside, or beyond the limit
+    left = frame.origin_x + (cols + low_col - 1) * frame.resolution
+    low = frame.origin_y + (rows + low_row - 1) * frame.resolution
+    dx = np.maximum(np.maximum(left - x, x - left - frame.resolution), 0.0)
+    dy = np.maximum(np.maximum(low - y, y - low - frame.resolution), 0.0)
+    return float(min(np.hypot(dx, dy).min(), limit))
+
+
+def _free_spot(world: World, spec: PlatformSpec, x: float, y: float) -> str:
+    """Name the standable cell nearest to a point, as a remedy."""
+    cells = np.flatnonzero(standable(world, spec.radius))
+    if not cells.size:
+        return f"nowhere in the map does a disc of radius {spec.radius:g} m fit"
+    centres = world.frame.centres(cells)
+    best = centres[np.hypot(centres[:, 0] - x, centres[:, 1] - y).argmin()]
+    return f"the nearest free place is {best[0]:.2f},{best[1]:.2f}"
+
+
+def _check_apart(
+    specs: Sequence[PlatformSpec], starts: NDArray[np.float64], i: int, before: list[int]
+) -> None:
+    for j in before:
+        apart = math.dist(starts[i, :2], starts[j, :2])
+        least = specs[i].radius + specs[j].radius + _GAP
+        if apart < least - 1e-9:
+            raise InputError(
+                f"{specs[i].name}: start {starts[i, 0]:g},{starts[i, 1]:g} is {apart:.2f} m from that of "
+                f"{specs[j].name}; keep them at least {least:.2f} m apart"
+            )
+
+
+def _check_together(
+    world: World, specs: Sequence[PlatformSpec], starts: NDArray[np.float64], first: int, i: int
+) -> None:
+    """Require that the smaller of two robots could drive from the one's start to the other's."""
+    small, large = sorted((first, i), key=lambda k: specs[k].radius)
+    area = reachable_poses(world, specs[small].radius, starts[small, 0], starts[small, 1])
+    goal = reachable_poses(world, specs[small].radius, starts[large, 0], starts[large, 1])
+    if not (area & goal).any():
+        own = area if small == first else reachable_poses(world, specs[first].radius, *starts[first, :2])
+        raise InputError(
+            f"{specs[i].name}: start {starts[i, 0]:g},{starts[i, 1]:g} is cut off; "
+            f"reachable from {specs[first].name}: {_describe(world, own)}"
+        )
+
+
+def _describe(world: World, area: NDArray[np.bool_]) -> str:
+    centres = world.frame.centres(np.flatnonzero(area))
+    if not len(centres):
+        return "nothing"
+    (x_min, y_min), (x_max, y_max) = centres.min(axis=0), centres.max(axis=0)
+    size = len(centres) * world.frame.resolution**2
+    return f"x {x_min:.1f}..{x_max:.1f} m, y {y_min:.1f}..{y_max:.1f} m, {size:.0f} m2"
+
+
+def _spot(world: World, specs: Sequence[PlatformSpec], rng: np.random.Generator) -> int:
+    """Return a random cell of the largest area where the largest disc fits, with room around if any has it."""
+    radius = max(spec.radius for spec in specs)
+    area = largest(standable(world, radius))
+    if not area.any():
+        raise InputError(
+            f"nowhere in {world.name} does a disc of radius {radius:g} m fit; use smaller robots"
+        )
+    roomy = area & standable(world, radius + _AT_EASE)
+    return int(rng.choice(np.flatnonzero(roomy if roomy.any() else area)))
+
+
+def _place(
+    world: World,
+    specs: Sequence[PlatformSpec],
+    starts: NDArray[np.float64],
+    given: list[int],
+    others: list[int],
+    anchor: int,
+) -> None:
+    """Fill in the others' starts: each takes the place nearest to the anchor by path that is still free.
+
+    Larger robots choose first, since they have the fewer places.
+    """
+    order = sorted(others, key=lambda i: -specs[i].radius)
+    for gap in _GAPS:
+        placed = list(given)
+        for radius, group in itertools.groupby(order, key=lambda i: specs[i].radius):
+            places = _Places(world, radius, anchor)
+            for j in placed:
+                places.keep_clear(starts[j, :2], radius + specs[j].radius + gap)
+            for i in group:
+                place = places.take()
+                if place is None:
+                    break
+                starts[i, :2] = place
+                placed.append(i)
+                places.keep_clear(place, 2 * radius + gap)
+        if len(placed) == len(specs):
+            return
+    raise InputError(
+        f"{len(specs)} robots do not fit in {world.name}; only {len(placed)} do: use fewer or smaller ones"
+    )
+
+
+class _Places:
+    """The places where one size of disc can stand, nearest to the anchor by path first."""
+
+    def __init__(self, world: World, radius: float, anchor: int) -> None:
+        self._frame = world.frame
+        cells = standable(world, radius)
+        self._open = cells.copy()
+        field = distance_field(cells, anchor, world.frame.resolution, None).ravel()
+        near = np.flatnonzero(np.isfinite(field) & cells.ravel())
+        self._order = near[np.argsort(field[near], kind="stable")]
+        self._next = 0
+
+    def keep_clear(self, point: NDArray[np.float64], distance: float) -> None:
+        """Close the places nearer than ``distance`` [m] to a point."""
+        frame = self._frame
+        row, col = frame.cell(point[0], point[1])
+        reach = math.ceil(distance / frame.resolution) + 1
+        rows = np.arange(max(row - reach, 0), min(row + reach + 1, frame.rows))
+        cols = np.arange(max(col - reach, 0), min(col + reach + 1, frame.cols))
+        dy = frame.origin_y + (rows + 0.5) * frame.resolution - point[1]
+        dx = frame.origin_x + (cols + 0.5) * frame.resolution - point[0]
+        self._open[np.ix_(rows, cols)] &= np.hypot(dy[:, None], dx[None, :]) >= distance - 1e-9
+
+    def take(self) -> NDArray[np.float64] | None:
+        """Return the nearest place still open, ``None`` if there is none."""
+        still_open = self._open.ravel()
+        while self._next < len(self._order):
+            ahead = still_open[self._order[self._next : self._next + 4096]]
+            if ahead.any():
+                self._next += int(ahead.argmax())
+                return self._frame.centres(self._order[self._next : self._next + 1])[0]
+            self._next += len(ahead)
+        return None

@@ -1,0 +1,56 @@
+"""Generate an office floor: the default world."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vedette.sim.components import largest
+from vedette.sim.world import World, standable
+from vedette.sim.worlds.floor_plan import Plan, Scale, draw_plan
+from vedette.sim.worlds.furnishing import furnish
+from vedette.sim.worlds.furniture import Floor
+from vedette.sim.worlds.rect import Rect
+from vedette.sim.worlds.size import world_frame
+
+RADIUS = 0.25  # [m] of the disc that reaches every room
+
+
+def office(
+    rng: np.random.Generator, width: float = 30.0, height: float = 20.0, resolution: float = 0.1
+) -> World:
+    """Return a furnished office floor: corridors, rooms of many sizes, 0.9 m doors, some open-plan areas.
+
+    At least 12 rooms from 180 m2 on. A disc of radius 0.25 m that reaches one room reaches every room and every
+    place where it fits at all.
+
+    Args:
+        rng: where the variety comes from.
+        width: in x [m], 10 to 400.
+        height: in y [m], 10 to 400.
+        resolution: cell side [m], 0.02 to 0.2.
+
+    Raises:
+        InputError: a size out of range, or more than 8000 cells a side.
+    """
+    frame = world_frame(width, height, resolution)
+    cells = Scale(resolution)
+    plan = draw_plan(rng, frame.rows, frame.cols, cells)
+    floor = furnish(rng, plan, cells)
+    world = World(frame, floor.solid, "office")
+    _clear_ways(world, plan, floor)
+    return world
+
+
+def _clear_ways(world: World, plan: Plan, floor: Floor) -> None:
+    """Take furniture away, last come first, wherever a place that has room for the disc is cut off."""
+    for area in (*plan.rooms, *plan.corridors):
+        inside = [entry for entry in floor.placed if area.holds(entry[0])]
+        while inside and _cut_off(world, area):
+            floor.remove(*inside.pop())
+
+
+def _cut_off(world: World, area: Rect) -> bool:
+    """Tell whether part of an area, or all of it, is out of reach."""
+    standing = standable(world, RADIUS)
+    reached = largest(standing)
+    return not area.of(reached).any() or bool((area.of(standing) & ~area.of(reached)).any())

@@ -1,0 +1,29 @@
+"""How large a generated world may be."""
+
+from __future__ import annotations
+
+from vedette.errors import InputError
+from vedette.maps import GridFrame
+from vedette.maps.image import MAX_SIDE
+
+SIDES = (10.0, 400.0)  # accepted [m]
+RESOLUTIONS = (0.02, 0.2)  # accepted [m]: doors and passages need some cells
+
+
+def world_frame(width: float, height: float, resolution: float) -> GridFrame:
+    """Return the frame of a world ``width`` (x) by ``height`` (y) [m], its lower-left corner the origin.
+
+    Raises:
+        InputError: a size out of range, or more cells a side than a map file may have.
+    """
+    for name, value, (low, high) in (
+        ("width", width, SIDES),
+        ("height", height, SIDES),
+        ("resolution", resolution, RESOLUTIONS),
+    ):
+        if not low <= value <= high:
+            raise InputError(f"{name} of a generated world must be {low:g} to {high:g} m; got {value:g}")
+    rows, cols = round(height / resolution), round(width / resolution)
+    if max(rows, cols) > MAX_SIDE:
+        raise InputError(f"{cols}x{rows} cells are too many, at most {MAX_SIDE} a side; use a coarser resolution")
+    return GridFrame(resolution, rows, cols)

@@ -1,0 +1,235 @@
+"""Maps come in and go out as ROS map_server has them; everything else is one clear line."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+from PIL import Image
+
+from vedette.errors import InputError
+from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame, read_map, write_map
+
+U, F, X = UNKNOWN, FREE, OCCUPIED
+
+
+def pair(folder: Path, pixels: np.ndarray, suffix: str = ".png", **fields: object) -> Path:
+    """Write an image and its .yaml; ``None`` leaves a field out."""
+    Image.fromarray(pixels).save(folder / f"map{suffix}")
+    values = {
+        "image": f"map{suffix}",
+        "resolution": 0.05,
+        "origin": "[-1.0, 2.0, 0.0]",
+        "negate": 0,
+        "occupied_thresh": 0.65,
+        "free_thresh": 0.196,
+    } | fields
+    path = folder / "map.yaml"
+    path.write_text("".join(f"{key}: {value}\n" for key, value in values.items() if value is not None))
+    return path
+
+
+@given(
+    classes=hnp.arrays(np.uint8, hnp.array_shapes(min_dims=2, max_dims=2), elements=st.integers(0, 2)),
+    resolution=st.floats(0.005, 10),
+    origin=st.tuples(st.floats(-1e6, 1e6), st.floats(-1e6, 1e6)),
+    mode=st.sampled_from(["trinary", "raw"]),
+)
+@settings(deadline=None, max_examples=50)
+def test_what_is_written_is_read_back_exactly(
+    tmp_path_factory: pytest.TempPathFactory,
+    classes: np.ndarray,
+    resolution: float,
+    origin: tuple[float, float],
+    mode: str,
+) -> None:
+    frame = GridFrame(resolution, *classes.shape, *origin)
+    stem = tmp_path_factory.mktemp("maps") / "a: 'strange' name"
+    write_map(stem, frame, classes, mode)
+    again, read = read_map(f"{stem}.yaml")
+    assert again == frame
+    np.testing.assert_array_equal(read, classes)
+
+
+def test_the_written_pair_is_map_savers_with_the_top_row_first(tmp_path: Path) -> None:
+    write_map(tmp_path / "m", GridFrame(0.05, 2, 3, -1.5, 0.25), np.array([[U, F, X], [X, X, F]], np.uint8))
+    assert (tmp_path / "m.pgm").read_bytes() == b"P5\n3 2\n255\n" + bytes([0, 0, 254, 205, 254, 0])
+    text = (tmp_path / "m.yaml").read_text()
+    assert 'image: "m.pgm"\nmode: trinary\nresolution: 0.05\norigin: [-1.5, 0.25, 0.0]\nnegate: 0\n' in text
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["m.pgm", "m.yaml"]
+
+
+def trinary_as_map_server(pixel: int, negate: bool, occupied: float, free: float) -> int:
+    occ = pixel / 255.0 if negate else (255 - pixel) / 255.0
+    return X if occ > occupied else F if occ < free else U
+
+
+@pytest.mark.parametrize("negate", [0, 1])
+@pytest.mark.parametrize(("occupied", "free"), [(0.65, 0.196), (0.45, 0.3), (0.9, 0.5)])
+def test_every_grey_level_is_classed_as_map_server_does(
+    tmp_path: Path, negate: int, occupied: float, free: float
+) -> None:
+    levels = np.arange(256, dtype=np.uint8).reshape(16, 16)
+    path = pair(tmp_path, levels, ".pgm", negate=negate, occupied_thresh=occupied, free_thresh=free)
+    expected = [[trinary_as_map_server(int(p), bool(negate), occupied, free) for p in row] for row in levels]
+    np.testing.assert_array_equal(read_map(path)[1], expected[::-1])
+
+
+def test_trinary_averages_alpha_in_and_scale_takes_transparency_as_unknown(tmp_path: Path) -> None:
+    pixels = np.array([[[255, 255, 255, 255], [0, 0, 0, 255], [0, 0, 0, 0], [255, 255, 255, 0]]], np.uint8)
+    assert read_map(pair(tmp_path, pixels))[1].tolist() == [[F, X, X, U]]  # shades 1, 1/4, 0, 3/4
+    assert read_map(pair(tmp_path, pixels, mode="scale"))[1].tolist() == [[F, X, U, U]]
+
+
+def test_raw_pixels_are_percent_and_above_100_unknown(tmp_path: Path) -> None:
+    pixels = np.array([[0, 19, 20, 65, 66, 100, 101, 255]], np.uint8)
+    assert read_map(pair(tmp_path, pixels, mode="raw"))[1].tolist() == [[F, F, U, U, X, X, U, U]]
+
+
+def test_sixteen_bit_and_ascii_images_are_read(tmp_path: Path) -> None:
+    wide = np.array([[0, 32895, 32896, 65535]], np.uint16)
+    Image.fromarray(wide).save(tmp_path / "wide.png")
+    (tmp_path / "wide.pgm").write_bytes(b"P5\n4 1\n65535\n" + wide.astype(">u2").tobytes())
+    (tmp_path / "ascii.pgm").write_bytes(b"P2\n# comment\n4 1\n15\n0 7 8 15\n")
+    for name in ("wide.png", "wide.pgm", "ascii.pgm"):
+        assert read_map(tmp_path / name, 0.1)[1].tolist() == [[X, X, F, F]], name
+
+
+def test_a_plain_image_is_free_from_128_and_unknown_where_transparent(tmp_path: Path) -> None:
+    Image.fromarray(np.array([[127, 128, 0, 255]], np.uint8)).save(tmp_path / "grey.png")
+    colours = np.array([[[255, 255, 0, 255], [255, 0, 0, 255], [255, 255, 255, 0]]], np.uint8)
+    Image.fromarray(colours).save(tmp_path / "colour.png")
+    Image.fromarray(np.array([[0, 255]], np.uint8)).convert("1").save(tmp_path / "bits.png")
+    Image.fromarray(np.array([[0, 255]], np.uint8)).convert("P").save(tmp_path / "palette.png")
+    frame, classes = read_map(tmp_path / "grey.png", 0.1)
+    assert frame == GridFrame(0.1, 1, 4)
+    assert classes.tolist() == [[X, F, X, F]]
+    assert read_map(tmp_path / "colour.png", 0.1)[1].tolist() == [[F, X, U]]
+    assert read_map(tmp_path / "bits.png", 0.1)[1].tolist() == [[X, F]]
+    assert read_map(tmp_path / "palette.png", 0.1)[1].tolist() == [[X, F]]
+
+
+def test_the_argument_overrides_the_pairs_resolution_and_exponents_are_numbers(tmp_path: Path) -> None:
+    white = np.full((2, 2), 255, np.uint8)
+    assert read_map(pair(tmp_path, white), 0.2)[0].resolution == 0.2
+    assert read_map(pair(tmp_path, white, resolution="5e-2"))[0] == GridFrame(0.05, 2, 2, -1.0, 2.0)
+    assert read_map(pair(tmp_path, white, resolution=None), 0.2)[0].resolution == 0.2
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({"resolution": None}, "--resolution"),
+        ({"resolution": 0}, "resolution must be 0.005 to 10 m per pixel; got 0"),
+        ({"resolution": -0.1}, "got -0.1"),
+        ({"resolution": ".nan"}, "got nan"),
+        ({"resolution": 1000}, "got 1000"),
+        ({"resolution": "fine"}, "got 'fine'"),
+        ({"resolution": "[0.1]"}, "resolution"),
+        ({"resolution": "true"}, "got True"),
+        ({"resolution": "1" * 400}, "resolution"),
+        ({"origin": "[0, 0, 0.5]"}, "yaw 0.5 is not supported"),
+        ({"origin": "[0]"}, "origin must be"),
+        ({"origin": "[.inf, 0, 0]"}, "origin must be"),
+        ({"origin": "middle"}, "origin must be"),
+        ({"negate": 2}, "negate must be 0 or 1; got 2"),
+        ({"mode": "trinity"}, "did you mean 'trinary'"),
+        ({"mode": "[]"}, "unknown mode"),
+        ({"occupied_thresh": 1.2}, "occupied_thresh must be 0 to 1; got 1.2"),
+        ({"free_thresh": ".nan"}, "free_thresh must be 0 to 1"),
+        ({"free_thresh": 0.7}, "free_thresh must be below occupied_thresh"),
+        ({"image": None}, "no 'image: FILE'"),
+        ({"image": 3}, "no 'image: FILE'"),
+        ({"image": "gone.png"}, "gone.png: No such file"),
+        ({"image": "."}, "Is a directory"),
+        ({"image": '"a\\0b"'}, "cannot read"),
+        ({"image": "map.yaml"}, "not a map"),
+    ],
+)
+def test_a_bad_pair_is_one_clear_line(tmp_path: Path, fields: dict[str, object], message: str) -> None:
+    path = pair(tmp_path, np.full((2, 2), 255, np.uint8), **fields)
+    with pytest.raises(InputError) as caught:
+        read_map(path)
+    assert message in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
+        ("gone.png", None, "No such file"),
+        ("gone.yaml", None, "No such file"),
+        ("empty.png", b"", "empty"),
+        ("empty.yaml", b"", "not a map"),
+        ("text.png", b"no image", "not a map"),
+        ("noise.yaml", bytes(range(256)), "not a map"),
+        ("list.yaml", b"- a\n- b\n", "not a map"),
+        ("open.yaml", b"image: [", "not a map"),
+        ("deep.yaml", b"[" * 5000, "not a map"),
+        ("half.pgm", b"P5\n100 100\n255\nabc", "damaged"),
+        ("none.pgm", b"P5\n0 0\n255\n", "map"),
+        ("wide.pgm", b"P5\n8001 1\n255\n", "at most 8000 pixels"),
+        ("bomb.pgm", b"P5\n99999 99999\n255\n", "at most 8000 pixels"),
+    ],
+)
+def test_what_is_no_map_is_one_clear_line(
+    tmp_path: Path, name: str, content: bytes | None, message: str
+) -> None:
+    if content is not None:
+        (tmp_path / name).write_bytes(content)
+    with pytest.raises(InputError) as caught:
+        read_map(tmp_path / name, 0.1)
+    assert message in str(caught.value)
+    assert name in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_png_cut_anywhere_is_one_clear_line_or_still_whole(tmp_path: Path) -> None:
+    path = tmp_path / "cut.png"
+    pixels = np.arange(256, dtype=np.uint8).reshape(16, 16)
+    Image.fromarray(pixels).save(path)
+    whole = path.read_bytes()
+    expected = np.where(pixels >= 128, F, X)[::-1]
+    messages = []
+    for length in range(1, len(whole), 3):
+        path.write_bytes(whole[:length])
+        try:
+            np.testing.assert_array_equal(read_map(path, 0.1)[1], expected)
+        except InputError as error:
+            messages.append(str(error))
+    assert len(messages) > len(whole) / 3 / 2
+    assert all(str(path) in message for message in messages)
+
+
+def test_a_folder_is_refused_and_a_plain_image_points_to_its_pair(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="is a folder"):
+        read_map(tmp_path)
+    pair(tmp_path, np.full((2, 2), 255, np.uint8))
+    with pytest.raises(InputError, match=r"give map\.yaml instead"):
+        read_map(tmp_path / "map.png")
+    for resolution in (0.0, -1.0, float("nan"), 1e9):
+        with pytest.raises(InputError, match="--resolution must be"):
+            read_map(tmp_path / "map.png", resolution)
+
+
+def test_a_map_of_4000_by_4000_is_read_and_written_without_a_warning(tmp_path: Path) -> None:
+    classes = np.full((4000, 4000), FREE, np.uint8)
+    classes[0] = OCCUPIED
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        write_map(tmp_path / "big", GridFrame(0.05, 4000, 4000), classes)
+        read = read_map(tmp_path / "big.yaml")[1]
+    np.testing.assert_array_equal(read, classes)
+
+
+def test_an_unknown_mode_and_an_unwritable_folder_are_bad_input(tmp_path: Path) -> None:
+    frame, classes = GridFrame(0.1, 1, 1), np.zeros((1, 1), np.uint8)
+    with pytest.raises(InputError, match="did you mean 'trinary'"):
+        write_map(tmp_path / "m", frame, classes, "trinery")
+    with pytest.raises(InputError, match="cannot write"):
+        write_map(tmp_path / "no" / "m", frame, classes)
