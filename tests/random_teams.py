@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette import Objective
 from vedette.negotiation import Chooser, JacobiNode, Message, Send, TokenNode, Tree
 
 Float = NDArray[np.float64]
@@ -25,6 +26,22 @@ def informations(rng: np.random.Generator, n: int, k: int, d: int = 3) -> list[l
     """Candidate lists of rank-one information matrices."""
     h = rng.normal(size=(n, k, d))
     return [list(own) for own in np.einsum("nki,nkj->nkij", h, h)]
+
+
+class Longest(Objective[None, float]):
+    """``-max``: the longest of the platforms' times, neither monotone nor submodular; nothing is best."""
+
+    def nothing(self, belief: None) -> float:
+        """No time."""
+        return 0.0
+
+    def combine(self, a: float, b: float) -> float:
+        """The longer."""
+        return max(a, b)
+
+    def value(self, belief: None, impact: float) -> float:
+        """Shorter is better."""
+        return -impact
 
 
 class Witness(Chooser[Float, Float]):

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
+
 import numpy as np
 import pytest
-from fusion_network import COUNTS, SHAPE, Edges, Network, expected_classes, random_tree, ring, sparse_evidence
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from fusion_network import COUNTS, SHAPE, Edges, Network, expected_classes, random_tree, ring, sparse_evidence
 from vedette.fusion import ChannelFilter
 from vedette.fusion.codec import Codec, Payload, WordPacking, join_word, split_word
 from vedette.fusion.snapshots import Delta
@@ -34,10 +36,11 @@ def robot(index: int, boot: int = 7) -> ChannelFilter:
 
 
 def assert_exact(net: Network, robots: int) -> None:
-    expected = expected_classes(net.own[i] for i in net.robots)
+    """Living evidence decides wherever there is any; only elsewhere may inherited evidence show."""
+    live = expected_classes(net.own[i] for i in net.robots)
     counts = sum(net.counts[i] for i in net.robots)
     for fusion in net.robots.values():
-        np.testing.assert_array_equal(fusion.classes, expected)
+        np.testing.assert_array_equal(fusion.classes[live != UNKNOWN], live[live != UNKNOWN])
         np.testing.assert_array_equal(fusion.counts, counts)
         assert fusion.contributors() == robots
     assert len({fusion.digest for fusion in net.robots.values()}) == 1
@@ -60,6 +63,7 @@ def test_on_random_trees_with_bad_links_everybody_gets_the_brute_force_sum(seed:
     explore(net, rng, 4)
     net.run(80)
     assert_exact(net, n)
+    np.testing.assert_array_equal(net.robots[0].classes, expected_classes(net.own.values()))
     assert net.is_quiet()
 
 
@@ -73,6 +77,7 @@ def test_after_any_changes_of_the_tree_nobody_counts_twice(seed: int, n: int) ->
         net.connect(random_tree(n, rng))
     net.run(80)
     assert_exact(net, n)
+    assert net.is_quiet()
 
 
 def test_a_link_dropped_and_taken_up_at_one_end_only_recovers() -> None:
@@ -197,10 +202,8 @@ def test_damaged_payloads_raise_value_error_or_are_harmless(seed: int, data: st.
     fusion = robot(0)
     fusion.set_neighbours([1])
     for bad in (bytes(good), data.draw(st.binary(max_size=80))):
-        try:
+        with contextlib.suppress(ValueError):
             fusion.receive(1, bad, 0.0)
-        except ValueError as error:
-            assert "fusion payload" in str(error)
 
 
 def test_a_section_that_is_not_the_neighbours_own_is_refused() -> None:

@@ -68,7 +68,7 @@ def test_log_det_is_the_entropy_that_a_kalman_update_removes() -> None:
     posterior = (np.eye(3) - gain @ h) @ prior
     removed = 0.5 * np.log(np.linalg.det(prior) / np.linalg.det(posterior))
     information: Float = (h.T @ np.linalg.inv(r) @ h).astype(np.float64)
-    value = LogDet().value(np.linalg.inv(prior), information)
+    value = LogDet().value(np.linalg.inv(prior).astype(np.float64), information)
     assert value == pytest.approx(removed, abs=1e-10)
 
 

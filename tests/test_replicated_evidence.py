@@ -6,11 +6,11 @@ import time
 
 import numpy as np
 import pytest
-from fusion_network import COUNTS, SHAPE, Network, expected_classes, random_tree, ring, sparse_evidence
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from fusion_network import COUNTS, SHAPE, Network, expected_classes, random_tree, ring, sparse_evidence
 from vedette.fusion import FIRM, ReplicatedEvidence
 from vedette.fusion.codec import Codec, CodePacking, Payload
 from vedette.fusion.link import Greeting
@@ -259,8 +259,7 @@ def test_damaged_payloads_raise_value_error_or_decode_to_something_valid(
         fusion = robot(0)
         try:
             fusion.receive(1, bad, 0.0)
-        except ValueError as error:
-            assert "fusion payload" in str(error)
+        except ValueError:
             assert fusion.digest == robot(0).digest
 
 

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from random_teams import Float, Witness, deliver, informations, misses, token_nodes
-from vedette import Coverage, InputError, LogDet, Objective, Tree, exhaustive, negotiate
-from vedette.negotiation import Chooser, TokenNode
+from random_teams import Float, Longest, Witness, deliver, informations, misses, token_nodes
+from vedette import Coverage, InputError, LogDet, Tree, bound, exhaustive, negotiate
+from vedette.negotiation import Chooser, Message, TokenNode
 from vedette.negotiation.messages import Down, Gather, Stop, Tally, Token
 
 TREES = [Tree.chain(6), Tree.star(6), Tree.balanced(6), Tree.random(6, seed=1)]
@@ -47,7 +49,7 @@ def test_value_never_falls_and_ends_at_an_equilibrium(tree: Tree, seed: int) -> 
     weights, candidates = rng.uniform(size=12), misses(rng, tree.n, 5)
     result = negotiate(Coverage(), weights, candidates, tree, start=rng.integers(5, size=tree.n).tolist())
     values = [step.value for step in result.history]
-    assert all(later >= earlier for earlier, later in zip(values, values[1:], strict=False))
+    assert all(later >= earlier for earlier, later in itertools.pairwise(values))
     assert result.converged
     assert max(gains_alone(weights, candidates, result.choice)) <= 1e-9
     team = np.prod([own[k] for own, k in zip(candidates, result.choice, strict=True)], axis=0)
@@ -69,6 +71,7 @@ def test_value_is_at_least_half_of_the_optimum_and_the_bound_at_least_the_optimu
         assert result.bound is not None
         assert 0.5 * best <= result.value <= best + 1e-12
         assert best <= result.bound + 1e-12
+        assert result.bound == pytest.approx(bound(objective, belief, candidates, result.choice), abs=1e-8)
 
 
 @pytest.mark.parametrize("tree", TREES)
@@ -127,10 +130,12 @@ def test_a_fully_separable_problem_stops_after_one_sweep_with_value_equal_to_bou
 
 def test_a_platform_with_nothing_to_add_still_chooses_the_lowest_index() -> None:
     everything, none = np.zeros(2), np.ones(2)
-    result = negotiate(
-        Coverage(), np.ones(2), [[everything], [none, none], [everything, none]], Tree.chain(3)
-    )
-    assert result.choice == (0, 0, 0)
+    for candidates in (
+        [[everything], [none, none], [everything, none]],
+        [[everything], [none, none], [none]],
+    ):
+        result = negotiate(Coverage(), np.ones(2), candidates, Tree.chain(3))
+        assert (result.choice, result.value) == ((0, 0, 0), 2.0)
 
 
 def test_an_impact_is_sent_again_only_if_something_in_it_has_changed() -> None:
@@ -161,19 +166,6 @@ def test_one_platform_needs_no_message() -> None:
     assert (result.choice, result.value, result.bound, result.messages) == ((1,), 2.0, 2.0, 0)
 
 
-class Longest(Objective[None, float]):
-    """``-max``: the longest of the platforms' times, neither monotone nor submodular, without an inverse."""
-
-    def nothing(self, belief: None) -> float:
-        return 0.0
-
-    def combine(self, a: float, b: float) -> float:
-        return max(a, b)
-
-    def value(self, belief: None, impact: float) -> float:
-        return -impact
-
-
 def test_without_the_declaration_there_is_no_bound_but_still_an_equilibrium() -> None:
     result = negotiate(Longest(), None, [[5.0, 3.0], [4.0, 9.0], [2.0, 1.0]], Tree.star(3))
     assert (result.value, result.bound, result.converged) == (-4.0, None, True)
@@ -186,12 +178,13 @@ def test_messages_out_of_turn_are_refused_and_late_ones_ignored() -> None:
 
     tally = Tally(turns=0, quiet=0, value=0.0, slack=0.0, size=3, ceiling=1.0)
     mu = np.ones(2)
-    for sender, message, words in [
+    cases: list[tuple[int, Message[Float], str]] = [
         (7, Gather(mu, 1, 0.0), "7, who is not a neighbour"),
         (1, Gather(None, 1, 0.0), "never sent"),
         (1, Token(mu, tally), "Token from 1 is out of turn"),
         (1, Down(mu), "Down from 1 is out of turn"),
-    ]:
+    ]
+    for sender, message, words in cases:
         with pytest.raises(InputError, match=words):
             node().receive(sender, message)
     root = node()

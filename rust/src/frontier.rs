@@ -42,9 +42,20 @@ fn for_each_border_cell(
     let outside = vec![OCCUPIED; cols];
     let mut marks = vec![0; cols];
     let rows = classes.len() / cols;
-    let row_at = |r: usize| if r < rows { &classes[r * cols..(r + 1) * cols] } else { &outside[..] };
+    let row_at = |r: usize| {
+        if r < rows {
+            &classes[r * cols..(r + 1) * cols]
+        } else {
+            &outside[..]
+        }
+    };
     for r in 0..rows {
-        mark_row([row_at(r.wrapping_sub(1)), row_at(r), row_at(r + 1)], &is_centre, neighbour, &mut marks);
+        mark_row(
+            [row_at(r.wrapping_sub(1)), row_at(r), row_at(r + 1)],
+            &is_centre,
+            neighbour,
+            &mut marks,
+        );
         for (k, chunk) in marks.chunks(STRIDE).enumerate() {
             if chunk.iter().fold(0, |any, &mark| any | mark) != 0 {
                 let marked = (0..chunk.len()).filter(|&i| chunk[i] != 0);
@@ -59,14 +70,17 @@ fn stamp_widths(radius_cells: f64) -> Vec<usize> {
     let gap = |cells: usize| (cells as f64 - 0.5).max(0.0).powi(2);
     let limit = radius_cells * radius_cells - 1e-9; // 0.35 / 0.1 is not quite 3.5
     let rows = (0..).take_while(|&dr| gap(dr) < limit);
-    rows.map(|dr| (0..).take_while(|&dc| gap(dr) + gap(dc) < limit).count() - 1).collect()
+    rows.map(|dr| (0..).take_while(|&dc| gap(dr) + gap(dc) < limit).count() - 1)
+        .collect()
 }
 
 /// Mark the free cells whose centre is at least the radius away from every square that is not free.
 pub fn traversable(classes: &[u8], rows: usize, cols: usize, radius_cells: f64) -> Vec<u8> {
     let mut open: Vec<u8> = classes.iter().map(|&class| u8::from(class == FREE)).collect();
     let widths = stamp_widths(radius_cells);
-    let Some(&margin) = widths.first() else { return open };
+    let Some(&margin) = widths.first() else {
+        return open;
+    };
     let mut block = |row: usize, from: usize, to: usize| {
         for (dr, &width) in widths.iter().enumerate() {
             let (first, last) = (from.saturating_sub(width), (to + width).min(cols - 1));
@@ -80,16 +94,22 @@ pub fn traversable(classes: &[u8], rows: usize, cols: usize, radius_cells: f64) 
     };
     // Only a non-free cell beside a free one can be nearest to a free cell; runs of them are stamped at once.
     let mut run: Option<(usize, usize, usize)> = None;
-    for_each_border_cell(classes, cols, |class| class != FREE, FREE, |row, col| {
-        run = match run {
-            Some((r, from, to)) if r == row && to + 1 == col => Some((r, from, col)),
-            Some((r, from, to)) => {
-                block(r, from, to);
-                Some((row, col, col))
-            }
-            None => Some((row, col, col)),
-        };
-    });
+    for_each_border_cell(
+        classes,
+        cols,
+        |class| class != FREE,
+        FREE,
+        |row, col| {
+            run = match run {
+                Some((r, from, to)) if r == row && to + 1 == col => Some((r, from, col)),
+                Some((r, from, to)) => {
+                    block(r, from, to);
+                    Some((row, col, col))
+                }
+                None => Some((row, col, col)),
+            };
+        },
+    );
     if let Some((row, from, to)) = run {
         block(row, from, to);
     }
@@ -161,7 +181,10 @@ fn cluster(cells: &[(u32, u32)]) -> Vec<Vec<(u32, u32)>> {
 /// Bisect a cluster at the median of its longer side until no side of its bounding box exceeds `max_extent`.
 fn split(mut cells: Vec<(u32, u32)>, max_extent: u32, parts: &mut Vec<Vec<(u32, u32)>>) {
     let side = |axis: fn(&(u32, u32)) -> u32| {
-        let (low, high) = cells.iter().map(axis).fold((u32::MAX, 0), |(l, h), v| (l.min(v), h.max(v)));
+        let (low, high) = cells
+            .iter()
+            .map(axis)
+            .fold((u32::MAX, 0), |(l, h), v| (l.min(v), h.max(v)));
         high - low + 1
     };
     let (height, width) = (side(|c| c.0), side(|c| c.1));
@@ -182,11 +205,22 @@ fn split(mut cells: Vec<(u32, u32)>, max_extent: u32, parts: &mut Vec<Vec<(u32, 
 }
 
 /// Find the frontier cells (free, with an unknown 4-neighbour) in clusters: their cells, and where each starts.
-pub fn find_frontiers(classes: &[u8], cols: usize, min_cells: usize, max_extent: u32) -> (Vec<i64>, Vec<i64>) {
+pub fn find_frontiers(
+    classes: &[u8],
+    cols: usize,
+    min_cells: usize,
+    max_extent: u32,
+) -> (Vec<i64>, Vec<i64>) {
     let mut cells = Vec::new();
-    for_each_border_cell(classes, cols, |class| class == FREE, UNKNOWN, |row, col| {
-        cells.push((row as u32, col as u32));
-    });
+    for_each_border_cell(
+        classes,
+        cols,
+        |class| class == FREE,
+        UNKNOWN,
+        |row, col| {
+            cells.push((row as u32, col as u32));
+        },
+    );
     let mut parts = Vec::new();
     for found in cluster(&cells) {
         if found.len() >= min_cells {
@@ -221,7 +255,9 @@ fn py_traversable<'py>(
         return Vec::new().into_pyarray(py).reshape([rows, cols]);
     }
     let radius_cells = (radius_m / resolution).min((rows + cols) as f64);
-    traversable(classes.as_slice()?, rows, cols, radius_cells).into_pyarray(py).reshape([rows, cols])
+    traversable(classes.as_slice()?, rows, cols, radius_cells)
+        .into_pyarray(py)
+        .reshape([rows, cols])
 }
 
 #[pyfunction(name = "find_frontiers")]

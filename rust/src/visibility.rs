@@ -1,14 +1,15 @@
 //! Lines of sight between cell centres, exact in integers: a segment is clear if it touches no blocked square.
 
 use numpy::{
-    IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
+    IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
+    PyUntypedArrayMethods,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Visit the cells that the segment between two cell centres touches after its first cell and before its last.
+/// Tell whether all cells are clear that the segment between two cell centres touches, its end cells excepted.
 ///
-/// A segment through a corner touches both cells beside it. Stops and returns false where `clear` is false.
+/// A segment through a corner touches both cells beside it.
 #[inline]
 pub fn segment_clear(cols: usize, from: usize, to: usize, clear: impl Fn(usize) -> bool) -> bool {
     let (from_row, from_col) = ((from / cols) as i64, (from % cols) as i64);
@@ -43,7 +44,11 @@ pub fn segment_clear(cols: usize, from: usize, to: usize, clear: impl Fn(usize) 
 
 /// Mark the cells within `levels` 4-connected free steps of a pose; a segment of that many steps sees no further.
 fn near_poses(solid: &[u8], poses: &[u8], cols: usize, levels: usize) -> Vec<u8> {
-    let mut near: Vec<u8> = solid.iter().zip(poses).map(|(&s, &p)| u8::from(s == 0 && p != 0)).collect();
+    let mut near: Vec<u8> = solid
+        .iter()
+        .zip(poses)
+        .map(|(&s, &p)| u8::from(s == 0 && p != 0))
+        .collect();
     let mut wave: Vec<usize> = (0..near.len()).filter(|&cell| near[cell] != 0).collect();
     for _ in 0..levels {
         let mut next = Vec::new();
@@ -132,7 +137,10 @@ impl Scene<'_> {
                 if let Some(cell) = self.clear_cell(row, col, octant, out, side) {
                     let slope = side as f64 / distance;
                     let in_view = side <= out && low < slope && slope < high;
-                    if in_view && self.poses[cell] != 0 && ((out * out + side * side) as f64) <= self.range_squared {
+                    if in_view
+                        && self.poses[cell] != 0
+                        && ((out * out + side * side) as f64) <= self.range_squared
+                    {
                         return true;
                     }
                 } else {
@@ -186,9 +194,19 @@ impl Scene<'_> {
 /// Mark the cells, not solid, that some pose cell sees within the range.
 pub fn visible_cells(solid: &[u8], poses: &[u8], rows: usize, cols: usize, range_cells: f64) -> Vec<u8> {
     let range = range_cells.min((rows + cols) as f64); // no segment in the grid is longer
-    let scene =
-        Scene { solid, poses, rows: rows as i64, cols: cols as i64, range_squared: range * range };
-    let mut seen = near_poses(solid, poses, cols, (range * std::f64::consts::SQRT_2).ceil() as usize);
+    let scene = Scene {
+        solid,
+        poses,
+        rows: rows as i64,
+        cols: cols as i64,
+        range_squared: range * range,
+    };
+    let mut seen = near_poses(
+        solid,
+        poses,
+        cols,
+        (range * std::f64::consts::SQRT_2).ceil() as usize,
+    );
     let mut open: [Vec<(f64, f64)>; 8] = Default::default();
     let mut spare = Vec::new();
     for cell in 0..seen.len() {

@@ -65,6 +65,7 @@ class Rounds:
     decisions: int = 0
     sweeps: int = 0
     bound_ratios: list[float] = field(default_factory=list)
+    impact: Any = None  # own impact of the last decision
     blocked: bool = False  # the robot could not go on: its mates count as obstacles in the next round
     _round: _Round | None = None
     _sequence: int = 0
@@ -225,6 +226,7 @@ class Rounds:
         outcome = round_.negotiator.finished
         if outcome is not None:
             self.mission.strategy = round_.participant.chosen
+            self.impact = round_.participant.impact
             self.decisions += 1
             self.sweeps += outcome.sweeps
             if outcome.bound is not None and outcome.bound > 0:

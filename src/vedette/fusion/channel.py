@@ -197,7 +197,8 @@ class ChannelFilter:
             counts += edge.inbox.counts
         inherited = self._inherited[tiles]
         for neighbour, edge in self._edges.items():
-            news = np.where(inherited > code[neighbour], inherited, np.uint8(0))
+            told, _ = split_word(edge.outbox.values[tiles])  # never taken back, or two echoes would alternate
+            news = np.where(inherited > code[neighbour], inherited, told)
             sums = join_word(news, saturated(total - live[neighbour]))
             edge.outbox.write(tiles, sums, counts - edge.inbox.counts)
         self._team.counts[:] = counts[:-1]

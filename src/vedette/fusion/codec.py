@@ -259,7 +259,7 @@ def _put(head: bytearray, numbers: Iterable[int]) -> None:
 
 def _planes(values: NDArray[Any]) -> bytes:
     """All lowest bytes, then all second bytes, ...: small numbers leave long runs to deflate."""
-    return np.ascontiguousarray(values.view(np.uint8).reshape(len(values), -1).T).tobytes()
+    return np.ascontiguousarray(values.view(np.uint8).reshape(len(values), values.itemsize).T).tobytes()
 
 
 def _from_planes(body: _Body, size: int, dtype: str) -> NDArray[Any]:

@@ -1,7 +1,7 @@
 """Shortest 8-connected paths between traversable cells, without cutting corners.
 
-A diagonal step needs both cells beside it traversable. It counts as 41/29 of a straight one, 0.03 % below the
-square root of two; lengths are exact multiples of ``resolution / 29``, equal from either end.
+A diagonal step needs both cells beside it traversable. It counts as 17/12 of a straight one, 0.17 % above the
+square root of two; lengths are exact multiples of ``resolution / 12``, equal from either end.
 
 A cell that is not traversable itself (a robot pushed too near a wall) joins the traversable cells within
 three cells of it by straight lines.

@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 
 from vedette.kernels.reference_visibility import touched
 
-STRAIGHT, DIAGONAL, CONNECTION = 29, 41, 3
+STRAIGHT, DIAGONAL, CONNECTION = 12, 17, 3
 
 Mask = NDArray[np.bool_]
 MOVES = ((0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1))
 
 
 def moves_from(traversable: Mask, cell: int) -> Iterator[tuple[int, int]]:
-    """Yield the cells one allowed move away, and the move's cost in 29ths of a cell."""
+    """Yield the cells one allowed move away, and the move's cost in 12ths of a cell."""
     rows, cols = traversable.shape
     row, col = divmod(cell, cols)
     for dr, dc in MOVES:
@@ -44,7 +44,7 @@ def connections(traversable: Mask, cell: int) -> dict[int, int]:
 
 
 def costs_from(traversable: Mask, source: int) -> dict[int, int]:
-    """Return the cost in 29ths of a cell of every traversable cell that can be reached."""
+    """Return the cost in 12ths of a cell of every traversable cell that can be reached."""
     settled: dict[int, int] = {}
     queue = [(cost, cell) for cell, cost in connections(traversable, source).items()]
     heapq.heapify(queue)

@@ -101,7 +101,7 @@ def negotiate(
     outcome = nodes[root].finished
     assert outcome is not None  # max_sweeps ends every round
     return Negotiation(
-        choice=tuple(seat.index or 0 for seat in seats),
+        choice=tuple(seat.index for seat in seats if seat.index is not None),
         value=outcome.value,
         bound=outcome.bound,
         sweeps=outcome.sweeps,

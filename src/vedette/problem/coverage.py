@@ -51,7 +51,8 @@ class CountedCoverage(Objective[NDArray[np.float64], NDArray[np.int64]]):
 
     A miss probability of 0 has no inverse under the product. As the pair (number of exact zeros, sum of
     ``-ln`` of the others in units of 2^-32 nat) it has: ``*`` is integer addition, exactly associative.
-    Impact: int64 of shape (2, \\*belief.shape), made by ``counted``. Source: docs/theory.md (V8).
+    Impact: int64 of shape (2, ...) where the weights' is (...), made by ``counted``.
+    Source: docs/theory.md (V8).
     """
 
     monotone = True
@@ -77,7 +78,7 @@ class CountedCoverage(Objective[NDArray[np.float64], NDArray[np.int64]]):
 
 
 def counted(miss: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Return miss probabilities as ``CountedCoverage`` takes them: int64 of shape (2, \\*miss.shape).
+    """Return miss probabilities of shape (...) as ``CountedCoverage`` takes them: int64 of shape (2, ...).
 
     Raises:
         InputError: a probability is outside [0, 1].

@@ -1,0 +1,21 @@
+"""What a mission leaves: summary, run log, MCAP record, pictures, live view.
+
+A mission adds `Snapshot`s to a `RunLog`, which forwards them to its sinks while it runs
+(`vedette.record.mcap.McapWriter`, `vedette.record.live.LiveView`) and feeds the pictures afterwards
+(`vedette.record.plots`, `vedette.record.animate`). Import these by name: they load much.
+"""
+
+from vedette.record.log import RobotSample, RunLog, Sink, Snapshot
+from vedette.record.summary import Outcome, Spread, Summary, Timing, Traffic
+
+__all__ = [
+    "Outcome",
+    "RobotSample",
+    "RunLog",
+    "Sink",
+    "Snapshot",
+    "Spread",
+    "Summary",
+    "Timing",
+    "Traffic",
+]

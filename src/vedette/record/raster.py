@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,15 +44,19 @@ def known_window(frame: GridFrame, classes: NDArray[np.uint8], margin: float = 0
 
 def pool(classes: NDArray[np.uint8], rows: int, cols: int) -> NDArray[np.uint8]:
     """Return at most ``rows x cols`` pixels, the highest class in each: wall, then free, then unknown."""
-    for axis, target in ((0, rows), (1, cols)):
-        if target < classes.shape[axis]:
-            first = np.arange(target) * classes.shape[axis] // target
-            classes = np.maximum.reduceat(classes, first, axis=axis)
-    return classes
+    return _top_of_rows(np.ascontiguousarray(_top_of_rows(classes, rows).T), cols).T
+
+
+def _top_of_rows(classes: NDArray[np.uint8], rows: int) -> NDArray[np.uint8]:
+    """Return the maxima of ``rows`` bands, one by one: far faster than ``maximum.reduceat``."""
+    if rows >= len(classes):
+        return classes
+    edges = np.arange(rows + 1) * len(classes) // rows
+    return np.stack([classes[first:end].max(axis=0) for first, end in pairwise(edges)])
 
 
 def fit(shape: tuple[int, ...], limit: tuple[int, int]) -> tuple[int, int]:
-    """Return the largest ``(rows, cols)`` of these proportions, within ``limit`` and no more than ``shape``."""
+    """Return the largest ``(rows, cols)`` of these proportions within ``limit`` and ``shape``."""
     shrink = min(1.0, limit[0] / shape[0], limit[1] / shape[1])
     return max(1, round(shape[0] * shrink)), max(1, round(shape[1] * shrink))
 

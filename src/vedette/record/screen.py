@@ -37,25 +37,32 @@ def screen(
     snapshot: Snapshot,
     travelled: Sequence[float],
 ) -> RenderableType:
-    """Return the picture of a snapshot, fitted to the console; ``travelled`` by robot [m]."""
-    beside = console.width >= _MAP[1] + _TABLE
-    lines = console.height - 6 - (0 if beside else len(snapshot.robots) + 2)
-    room = min(_MAP[0], lines), min(_MAP[1], console.width - 4)
-    parts: list[RenderableType] = [_figures(snapshot), _bar(snapshot)]
+    """Return the picture of a snapshot, fitted to the console; ``travelled`` by robot [m].
+
+    The table of robots goes below the map or beside it, whichever leaves the map more room.
+    """
+    below = console.height - 8 - len(snapshot.robots), console.width - 4
+    left = console.height - 6, console.width - 4 - _TABLE
+    rooms = [(min(_MAP[0], lines), min(_MAP[1], columns)) for lines, columns in (below, left)]
+    sizes = [_size(frame, room) if min(room) >= 4 else (0, 0) for room in rooms]
     table = _robots(snapshot.robots, travelled)
-    if min(room) < 4:
-        parts.append(table)
+    parts: list[RenderableType] = [_figures(snapshot), _bar(snapshot)]
+    if sizes[1][0] and sizes[1] >= sizes[0]:
+        body = Table.grid(padding=(0, 3))
+        body.add_row(HalfBlocks.of(console, frame, planning, snapshot, sizes[1]), table)
+        parts.append(body)
+    elif sizes[0][0]:
+        parts += [HalfBlocks.of(console, frame, planning, snapshot, sizes[0]), Text(""), table]
     else:
-        building = HalfBlocks.of(console, frame, planning, snapshot, room)
-        if beside:
-            body = Table.grid(padding=(0, 3))
-            body.add_row(building, table)
-            parts.append(body)
-        else:
-            parts += [building, Text(""), table]
+        parts.append(table)
     return Panel(
         Group(*parts), title=f"[bold]vedette[/] {world}", title_align="left", border_style="bright_black"
     )
+
+
+def _size(frame: GridFrame, room: tuple[int, int]) -> tuple[int, int]:
+    """Return the map's rows and columns [pixel] in a room of so many lines and columns."""
+    return fit(frame.shape, (2 * room[0], room[1]))
 
 
 def _figures(snapshot: Snapshot) -> Text:
@@ -76,14 +83,10 @@ def _bar(snapshot: Snapshot) -> Table:
 
 def _robots(robots: Sequence[RobotSample], travelled: Sequence[float]) -> Table:
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim", pad_edge=False)
-    for title, justify in (
-        ("", "left"),
-        ("robot", "left"),
-        ("state", "left"),
-        ("goal [m]", "right"),
-        ("[m]", "right"),
-    ):
-        table.add_column(title, justify=justify, no_wrap=True)  # type: ignore[arg-type]
+    for title in ("", "robot", "state"):
+        table.add_column(title, no_wrap=True)
+    for title in ("goal (m)", "driven (m)"):
+        table.add_column(title, no_wrap=True, justify="right")
     for i, (robot, metres) in enumerate(zip(robots, travelled, strict=True)):
         goal = "" if robot.goal is None else f"{robot.goal[0]:.1f}, {robot.goal[1]:.1f}"
         sign = Text(f" {_sign(i, robot)} ", _sign_style(i, robot))

@@ -61,7 +61,7 @@ class Summary:
     path_m: Mapping[str, float]
     overlap: float
     collisions: int
-    min_clearance_m: float | None
+    min_clearance_m: float
     rounds: int
     sweeps: int
     bound_ratio: float | None

@@ -31,7 +31,8 @@ def largest(cells: NDArray[np.bool_]) -> NDArray[np.bool_]:
     labels = components(cells)
     if not cells.any():
         return np.zeros_like(cells)
-    return labels == np.bincount(labels[cells]).argmax()
+    part: NDArray[np.bool_] = labels == np.bincount(labels[cells]).argmax()
+    return part
 
 
 def _roots(count: int, a: NDArray[np.int64], b: NDArray[np.int64]) -> NDArray[np.int64]:

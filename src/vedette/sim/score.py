@@ -25,7 +25,7 @@ class Reference:
 
     @cached_property
     def coverable(self) -> NDArray[np.bool_]:
-        """``bool[rows, cols]``: free cells visible, noise-free, from poses a disc can reach from its start."""
+        """``bool[rows, cols]``: free cells seen without noise from poses a disc can reach from its start."""
         seen = np.zeros_like(self.world.solid)
         bodies = {
             (spec.radius, spec.range): start for spec, start in zip(self.specs, self.starts, strict=True)

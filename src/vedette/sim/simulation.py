@@ -10,7 +10,6 @@ import heapq
 import time as wall
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from enum import Enum
 from typing import Any
 
 import numpy as np
@@ -25,6 +24,7 @@ from vedette.fusion import ChannelFilter, Fusion, ReplicatedEvidence
 from vedette.kernels.lidar import cast_rays
 from vedette.missions.explore import Exploration
 from vedette.negotiation import Tree
+from vedette.record.summary import Outcome
 from vedette.sim.body import Bodies
 from vedette.sim.links import Links
 from vedette.sim.world import World
@@ -37,16 +37,7 @@ NOTICED_AFTER = 1.0  # a dead robot is missed, and the tree made anew, after so 
 NO_PROGRESS = 300.0  # nothing new learned, nothing moved on for so long: give up [s]
 
 
-class Outcome(Enum):
-    """How a mission ended."""
-
-    COMPLETE = "complete"
-    TIME_LIMIT = "time_limit"
-    INTERRUPTED = "interrupted"
-    TEAM_LOST = "team_lost"
-    NO_PROGRESS = "no_progress"
-
-
+SCHEMES = ("token", "jacobi")
 FUSIONS: Mapping[str, type[ReplicatedEvidence] | type[ChannelFilter]] = {
     "replicated": ReplicatedEvidence,
     "channel": ChannelFilter,
@@ -72,9 +63,17 @@ class Setup:
 class Clock:
     """Wall-clock figures of a run, apart from everything simulated."""
 
-    started: float = field(default_factory=wall.perf_counter)
+    started: float = 0.0
     planning: dict[tuple[int, int, int], float] = field(default_factory=dict)  # robot, epoch, round: [s]
     answers: list[float] = field(default_factory=list)  # one negotiation message answered [s]
+
+    def start(self) -> None:
+        """Begin counting."""
+        self.started = wall.perf_counter()
+
+    def elapsed(self) -> float:
+        """Return the wall time since the start [s]."""
+        return wall.perf_counter() - self.started
 
 
 class Simulation:
@@ -88,7 +87,7 @@ class Simulation:
         setup: Setup,
     ) -> None:
         """Put the team at its starts, (n, 3) x, y, heading [m, m, rad], team frame."""
-        self.world, self.specs, self.setup = world, tuple(specs), setup
+        self.world, self.specs, self.starts, self.setup = world, tuple(specs), starts, setup
         n = len(self.specs)
         self._corner = np.array((world.frame.origin_x, world.frame.origin_y))
         local = starts.copy()

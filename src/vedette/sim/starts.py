@@ -150,7 +150,7 @@ def _describe(world: World, area: NDArray[np.bool_]) -> str:
 
 
 def _spot(world: World, specs: Sequence[PlatformSpec], rng: np.random.Generator) -> int:
-    """Return a random cell of the largest area where the largest disc fits, with room around if any has it."""
+    """Return a random cell of the largest area where the largest disc fits, with room around if any has."""
     radius = max(spec.radius for spec in specs)
     area = largest(standable(world, radius))
     if not area.any():
@@ -224,6 +224,7 @@ class _Places:
             ahead = still_open[self._order[self._next : self._next + 4096]]
             if ahead.any():
                 self._next += int(ahead.argmax())
-                return self._frame.centres(self._order[self._next : self._next + 1])[0]
+                x, y = self._frame.centres(self._order[self._next : self._next + 1])[0]
+                return np.array([x, y])
             self._next += len(ahead)
         return None

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vedette.sim.worlds.rect import Rect
+from vedette.sim.worlds.size import Scale
 
 DOOR = 0.9  # [m]
 _OUTER, _MAIN, _PARTITION = 0.2, 0.2, 0.1  # thickness of walls [m]
@@ -15,17 +16,6 @@ _SIDE = 2.5  # least side of a room [m]
 _DEEP = 11.0  # a block with no side below this gets a corridor of its own [m]
 _ROOMS = 12  # at least, where the area allows
 OPEN_PLAN = 38.0  # from this area on a room is open-plan [m2]
-
-
-@dataclass(frozen=True)
-class Scale:
-    """Metres to whole cells."""
-
-    resolution: float  # [m]
-
-    def __call__(self, metres: float) -> int:
-        """Return the nearest number of cells, halves upwards, at least one."""
-        return max(1, int(metres / self.resolution + 0.5 + 1e-9))
 
 
 @dataclass(frozen=True)
@@ -59,7 +49,9 @@ def draw_plan(rng: np.random.Generator, rows: int, cols: int, cells: Scale) -> P
     corridors += extra
     rooms = [room for block in blocks for room in _rooms(rng, block, cells)]
     _split_to(rng, rooms, _ROOMS, cells)
-    joints = [wall for i, a in enumerate(corridors) for b in corridors[:i] if (wall := a.between(b, cells(_MAIN)))]
+    joints = [
+        wall for i, a in enumerate(corridors) for b in corridors[:i] if (wall := a.between(b, cells(_MAIN)))
+    ]
     rooms, doors, openings = _connect(rng, corridors, rooms, cells)
     return Plan(rows, cols, corridors, rooms, doors, openings + joints)
 
@@ -144,7 +136,9 @@ def _serve_deep_blocks(
             done.append(block)
             continue
         meets = [wall for c in corridors + extra if (wall := block.between(c, cells(_MAIN)))]
-        rows = max(meets, key=lambda wall: wall.area).height > cells(_MAIN)  # a side wall: run along the columns
+        rows = max(meets, key=lambda wall: wall.area).height > cells(
+            _MAIN
+        )  # a side wall: run along the columns
         low, corridor, high = _corridor(rng, block, rng.uniform(0.4, 0.6), rows, cells)
         extra.append(corridor)
         waiting += [low, high]
@@ -158,7 +152,11 @@ def _rooms(rng: np.random.Generator, block: Rect, cells: Scale) -> list[Rect]:
     rooms = []
     rest: Rect | None = block
     while rest is not None:
-        width = cells(rng.choice([rng.uniform(2.6, 3.6), rng.uniform(3.6, 5.0), rng.uniform(6.0, 8.5)], p=[0.4, 0.4, 0.2]))
+        width = cells(
+            rng.choice(
+                [rng.uniform(2.6, 3.6), rng.uniform(3.6, 5.0), rng.uniform(6.0, 8.5)], p=[0.4, 0.4, 0.2]
+            )
+        )
         if rest.width - width < cells(_SIDE) + cells(_PARTITION):
             strip, rest = rest, None
         else:
@@ -241,7 +239,7 @@ def _gap(rng: np.random.Generator, wall: Rect, metres: float, cells: Scale) -> R
         return _gap(rng, wall.turned(), metres, cells).turned()
     width = min(cells(metres), wall.height - 2 * cells(0.2))
     low, high = wall.row + cells(0.2), wall.row_end - cells(0.2) - width
-    row = int(rng.choice([low, high, rng.integers(low, high + 1)], p=[0.35, 0.35, 0.3]))
+    row = int(rng.choice(np.array([low, high, rng.integers(low, high + 1)]), p=[0.35, 0.35, 0.3]))
     return Rect(row, wall.col, row + width, wall.col_end)
 
 

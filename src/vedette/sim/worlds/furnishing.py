@@ -6,9 +6,10 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from vedette.sim.worlds.floor_plan import OPEN_PLAN, Plan, Scale
+from vedette.sim.worlds.floor_plan import OPEN_PLAN, Plan
 from vedette.sim.worlds.furniture import Floor, Piece
 from vedette.sim.worlds.rect import Rect
+from vedette.sim.worlds.size import Scale
 
 Fill = Callable[[np.random.Generator, Floor, Rect], None]
 
@@ -28,9 +29,7 @@ def furnish(rng: np.random.Generator, plan: Plan, cells: Scale) -> Floor:
         choices[rng.choice(len(choices), p=chances)](rng, floor, room)
     for corridor in plan.corridors:
         length = max(corridor.height, corridor.width) * cells.resolution
-        pieces = [
-            _box(cells, rng.uniform(0.3, 0.4), rng.uniform(0.8, 1.6)) for _ in range(int(length / 8.0))
-        ]
+        pieces = [_box(cells, rng.uniform(0.3, 0.4), rng.uniform(0.8, 1.6)) for _ in range(int(length / 8.0))]
         _along_walls(rng, floor, corridor, pieces)
     return floor
 
@@ -106,7 +105,7 @@ def _along_walls(rng: np.random.Generator, floor: Floor, area: Rect, pieces: Seq
 
 
 def _against(rng: np.random.Generator, floor: Floor, area: Rect, piece: Piece, wall: int) -> bool:
-    """Try both corners and four more places along a wall: 0 low row, 1 high column, 2 high row, 3 low column."""
+    """Try both corners and four places more along a wall: 0 low row, 1 high col, 2 high row, 3 low col."""
     rows = area.row, area.row_end - piece.height
     cols = area.col, area.col_end - piece.width
     low, high = cols if wall in (0, 2) else rows

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vedette.sim.worlds.floor_plan import Plan, Scale
+from vedette.sim.worlds.floor_plan import Plan
 from vedette.sim.worlds.rect import Rect
+from vedette.sim.worlds.size import Scale
 
 _PASSAGE = 0.7  # left beside every piece that does not touch what is there [m]
 _DOORSTEP = 1.0  # depth kept clear on both sides of a door [m]

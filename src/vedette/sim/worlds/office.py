@@ -6,11 +6,11 @@ import numpy as np
 
 from vedette.sim.components import largest
 from vedette.sim.world import World, standable
-from vedette.sim.worlds.floor_plan import Plan, Scale, draw_plan
+from vedette.sim.worlds.floor_plan import Plan, draw_plan
 from vedette.sim.worlds.furnishing import furnish
 from vedette.sim.worlds.furniture import Floor
 from vedette.sim.worlds.rect import Rect
-from vedette.sim.worlds.size import world_frame
+from vedette.sim.worlds.size import Scale, world_frame
 
 RADIUS = 0.25  # [m] of the disc that reaches every room
 
@@ -20,8 +20,8 @@ def office(
 ) -> World:
     """Return a furnished office floor: corridors, rooms of many sizes, 0.9 m doors, some open-plan areas.
 
-    At least 12 rooms from 180 m2 on. A disc of radius 0.25 m that reaches one room reaches every room and every
-    place where it fits at all.
+    At least 12 rooms from 250 m2 on. A disc of radius 0.25 m that reaches one room reaches every room and
+    every place where it fits at all.
 
     Args:
         rng: where the variety comes from.
@@ -43,14 +43,11 @@ def office(
 
 def _clear_ways(world: World, plan: Plan, floor: Floor) -> None:
     """Take furniture away, last come first, wherever a place that has room for the disc is cut off."""
-    for area in (*plan.rooms, *plan.corridors):
-        inside = [entry for entry in floor.placed if area.holds(entry[0])]
-        while inside and _cut_off(world, area):
-            floor.remove(*inside.pop())
-
-
-def _cut_off(world: World, area: Rect) -> bool:
-    """Tell whether part of an area, or all of it, is out of reach."""
     standing = standable(world, RADIUS)
     reached = largest(standing)
-    return not area.of(reached).any() or bool((area.of(standing) & ~area.of(reached)).any())
+    for area in (*plan.rooms, *plan.corridors):
+        inside = [entry for entry in floor.placed if area.holds(entry[0])]
+        while inside and (not area.of(reached).any() or (area.of(standing) & ~area.of(reached)).any()):
+            floor.remove(*inside.pop())
+            standing = standable(world, RADIUS)
+            reached = largest(standing)

@@ -1,6 +1,8 @@
-"""How large a generated world may be."""
+"""How large a generated world may be, and its metres in cells."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 from vedette.errors import InputError
 from vedette.maps import GridFrame
@@ -8,6 +10,17 @@ from vedette.maps.image import MAX_SIDE
 
 SIDES = (10.0, 400.0)  # accepted [m]
 RESOLUTIONS = (0.02, 0.2)  # accepted [m]: doors and passages need some cells
+
+
+@dataclass(frozen=True)
+class Scale:
+    """Metres to whole cells."""
+
+    resolution: float  # [m]
+
+    def __call__(self, metres: float) -> int:
+        """Return the nearest number of cells, halves upwards, at least one."""
+        return max(1, int(metres / self.resolution + 0.5 + 1e-9))
 
 
 def world_frame(width: float, height: float, resolution: float) -> GridFrame:
@@ -25,5 +38,7 @@ def world_frame(width: float, height: float, resolution: float) -> GridFrame:
             raise InputError(f"{name} of a generated world must be {low:g} to {high:g} m; got {value:g}")
     rows, cols = round(height / resolution), round(width / resolution)
     if max(rows, cols) > MAX_SIDE:
-        raise InputError(f"{cols}x{rows} cells are too many, at most {MAX_SIDE} a side; use a coarser resolution")
+        raise InputError(
+            f"{cols}x{rows} cells are too many, at most {MAX_SIDE} a side; use a coarser resolution"
+        )
     return GridFrame(resolution, rows, cols)

@@ -1,0 +1,184 @@
+"""Run one exploration mission in simulation and say how it went."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.agent.agent import Agent
+from vedette.agent.driving import remaining
+from vedette.agent.effects import Traffic as Kind
+from vedette.domains.mapping.belief import LN2, planning_factor
+from vedette.domains.mapping.impact import final_miss
+from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
+from vedette.record.log import RobotSample, RunLog, Sink, Snapshot
+from vedette.record.summary import Outcome, Spread, Summary, Timing, Traffic
+from vedette.sim.score import Progress, Reference, coverage, map_errors, overlap
+from vedette.sim.simulation import Setup, Simulation
+from vedette.sim.starts import choose_starts
+from vedette.sim.world import World
+from vedette.team import PlatformSpec
+
+
+@dataclass(frozen=True, eq=False)
+class Report:
+    """What a mission leaves: its figures, its log, and the map that a living robot holds."""
+
+    summary: Summary
+    timing: Timing
+    log: RunLog
+    classes: NDArray[np.uint8]  # (R, C) team map
+
+
+def planning_frame(world: World) -> GridFrame:
+    """Return the frame of the planning cells over a world."""
+    return world.frame.coarse(planning_factor(world.frame.resolution))
+
+
+def prepare(world: World, specs: Sequence[PlatformSpec], setup: Setup) -> Simulation:
+    """Put a team at its starts, those that are not given chosen by the seed.
+
+    Raises:
+        InputError: a start is not possible, the team does not fit, or the planner is unknown.
+    """
+    starts = choose_starts(world, specs, np.random.default_rng([setup.seed, 1]))
+    return Simulation(world, specs, starts, setup)
+
+
+def explore(simulation: Simulation, sinks: Sequence[Sink] = ()) -> Report:
+    """Run a mission to its end; ``sinks`` follow it, and Ctrl-C ends it in good order."""
+    reference = Reference(simulation.world, simulation.specs, simulation.starts)
+    observer = Observer(simulation, reference, sinks)
+    simulation.clock.start()
+    outcome = simulation.run(observer.look, observer.period)
+    return Report(
+        observer.summary(outcome), timing(simulation), observer.log, observer.delivered_map()
+    )
+
+
+class Observer:
+    """Looks at a simulation from outside: it knows the truth, the agents do not."""
+
+    def __init__(self, simulation: Simulation, reference: Reference, sinks: Sequence[Sink]) -> None:
+        self._simulation = simulation
+        self._reference = reference
+        self._progress = Progress()
+        world = simulation.world
+        self.period = 0.5 if world.frame.size <= 1_000_000 else 2.0  # of looking [s]
+        self.log = RunLog(world.name, world.frame, planning_frame(world), simulation.specs, sinks)
+        self._looks = 0
+
+    def look(self) -> None:
+        """Measure the mission, and log every second look."""
+        classes = self._union()
+        share = coverage(self._reference, classes)
+        self._progress.add(self._simulation.now, share)
+        if self._looks % 2 == 0 or all(agent.done for agent in self._simulation.agents):
+            self.log.add(self._snapshot(classes, share))
+        self._looks += 1
+
+    def _union(self) -> NDArray[np.uint8]:
+        """What the living robots have seen together, whether or not they have told each other."""
+        log_odds = np.zeros(self._simulation.world.frame.shape, np.int16)
+        seen = np.zeros(log_odds.shape, bool)
+        for i in self._simulation.living:
+            own = self._simulation.mission(i).log_odds
+            log_odds += own
+            seen |= own != 0
+        known = np.where(log_odds < 0, FREE, OCCUPIED).astype(np.uint8)
+        return np.where(seen, known, UNKNOWN).astype(np.uint8)
+
+    def _snapshot(self, classes: NDArray[np.uint8], share: float) -> Snapshot:
+        unknown = int(np.count_nonzero(classes == UNKNOWN))
+        return Snapshot(
+            t=self._simulation.now,
+            robots=tuple(self._robot(i, agent) for i, agent in enumerate(self._simulation.agents)),
+            coverage=share,
+            known_fraction=1.0 - unknown / classes.size,
+            entropy=unknown * LN2,
+            classes=classes,
+            impact=self._team_impact(),
+        )
+
+    def _robot(self, i: int, agent: Agent) -> RobotSample:
+        x, y, heading = self._simulation.pose(i)
+        alive = bool(self._simulation.bodies.alive[i])
+        wanted = agent.driver.wanted if alive else None
+        path = np.empty((0, 2)) if wanted is None else remaining(wanted.path, x, y, np.inf)
+        goal = (float(path[-1, 0]), float(path[-1, 1])) if len(path) else None
+        state = agent.state.value if alive else "dead"
+        return RobotSample(self._simulation.specs[i].name, x, y, heading, state, goal, path, alive)
+
+    def _team_impact(self) -> NDArray[np.float32]:
+        """Probability that the strategies decided on last will observe each planning cell."""
+        frame = self.log.planning
+        miss = np.ones(frame.size, np.float32)
+        for i in self._simulation.living:
+            decided = self._simulation.agents[i].rounds.impact
+            if decided is not None and len(decided.keys):
+                miss *= final_miss(decided, frame.size)
+        return (1.0 - miss).reshape(frame.shape)
+
+    def delivered_map(self) -> NDArray[np.uint8]:
+        """Return the team map as the first living robot holds it; what all saw, if none lives."""
+        living = self._simulation.living
+        return self._simulation.mission(living[0]).fusion.classes.copy() if living else self._union()
+
+    def summary(self, outcome: Outcome) -> Summary:
+        """Return the figures of the mission, in simulated time."""
+        simulation, progress = self._simulation, self._progress
+        names = [spec.name for spec in simulation.specs]
+        wrong, known = map_errors(simulation.world, self.delivered_map())
+        rounds = [agent.rounds for agent in simulation.agents]
+        ratios = [ratio for each in rounds for ratio in each.bound_ratios]
+        leader = max(rounds, key=lambda each: each.decisions)
+        return Summary(
+            completed=outcome is Outcome.COMPLETE,
+            outcome=outcome,
+            seed=simulation.setup.seed,
+            robots=len(names),
+            planner=simulation.setup.planner,
+            scheme=simulation.setup.scheme,
+            fusion=simulation.setup.fusion,
+            world=simulation.world.name,
+            time_s=simulation.now,
+            t50_s=progress.t_at(0.50),
+            t90_s=progress.t_at(0.90),
+            t95_s=progress.t_at(0.95),
+            t99_s=progress.t_at(0.99),
+            auc_s=progress.auc(simulation.now),
+            coverage=progress.coverages[-1],
+            map_errors=wrong,
+            map_error_share=wrong / known if known else 0.0,
+            path_m=dict(zip(names, simulation.bodies.travelled.tolist(), strict=True)),
+            overlap=overlap([simulation.mission(i).log_odds != 0 for i in range(len(names))]),
+            collisions=simulation.bodies.collisions,
+            min_clearance_m=simulation.bodies.min_clearance,
+            rounds=leader.decisions,
+            sweeps=leader.sweeps,
+            bound_ratio=float(np.mean(ratios)) if ratios else None,
+            messages=_traffic(names, simulation.links.messages),
+            bytes=_traffic(names, simulation.links.bytes),
+        )
+
+
+def _traffic(names: Sequence[str], sent: dict[Kind, list[int]]) -> dict[str, Traffic]:
+    return {
+        name: Traffic(sent[Kind.NEGOTIATION][i], sent[Kind.FUSION][i], sent[Kind.BEACONS][i])
+        for i, name in enumerate(names)
+    }
+
+
+def timing(simulation: Simulation) -> Timing:
+    """Return the wall-clock figures of a mission."""
+    clock = simulation.clock
+    wall = clock.elapsed()
+    return Timing(
+        planning_ms=Spread.of([1e3 * took for took in clock.planning.values()]),
+        answer_ms=Spread.of([1e3 * took for took in clock.answers]),
+        real_time_factor=simulation.now / wall if wall > 0 else 0.0,
+        wall_s=wall,
+    )
