@@ -60,7 +60,7 @@ def mission(
     frame, planning = frames(solid, resolution, origin)
     classes = np.zeros(solid.shape, np.uint8)
     truth = np.where(solid, OCCUPIED, FREE).astype(np.uint8)
-    ways = ~_blocks(solid, _COARSE).any(axis=(1, 3))
+    ways = np.asarray(~_blocks(solid, _COARSE).any(axis=(1, 3)))
     at = [(start[0] + 0.7 * i, start[1], 0.0) for i in range(len(specs))]
     plans: list[list[Point]] = [[] for _ in specs]
     reachable = len(_fill(ways, _coarse_cell(at[0], frame))) * _COARSE**2
@@ -123,7 +123,7 @@ def recorded(
 
 def frames(solid: NDArray[np.bool_], resolution: float, origin: Point) -> tuple[GridFrame, GridFrame]:
     """Return the map's frame and the planning frame of cells twice as large."""
-    frame = GridFrame(resolution, *solid.shape, *origin)
+    frame = GridFrame(resolution, solid.shape[0], solid.shape[1], origin[0], origin[1])
     return frame, frame.coarse(2)
 
 
@@ -159,7 +159,7 @@ def _plan(
     rng: np.random.Generator,
 ) -> list[Point]:
     """Return the way to one of the nearest cells beside the unknown."""
-    seen = _blocks(known, _COARSE).all(axis=(1, 3))
+    seen = np.asarray(_blocks(known, _COARSE).all(axis=(1, 3)))
     before = _fill(ways, _coarse_cell(at, frame))
     work = [cell for cell in before if not seen[cell] and before[cell] is not None]
     if not work:

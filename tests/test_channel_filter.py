@@ -91,6 +91,32 @@ def test_a_link_dropped_and_taken_up_at_one_end_only_recovers() -> None:
     assert_exact(net, 3)
 
 
+def test_payloads_from_before_a_link_was_taken_up_again_or_from_an_earlier_start_are_ignored() -> None:
+    rng = np.random.default_rng(6)
+    net = Network(robot, 2, [(0, 1)], rng)
+    net.run(3)
+    net.observe(0, sparse_evidence(rng), np.array([1, 2, 3]))
+    earlier_session = net.robots[0].outgoing(1, net.now) or b""
+    net.robots[0].set_neighbours([])
+    net.robots[0].set_neighbours([1])
+    net.observe(0, sparse_evidence(rng), np.array([7, 8, 9]))
+    net.run(5)
+    assert_exact(net, 1)
+    net.robots[1].receive(0, earlier_session, net.now)
+    assert_exact(net, 1)
+
+    dead = net.robots[0]
+    net.robots[0] = robot(0, boot=50)
+    net.connect(net.edges)
+    net.observe(0, sparse_evidence(rng), np.array([4, 5, 6]))
+    net.run(6)
+    assert_exact(net, 1)
+    dead.set_neighbours([])
+    dead.set_neighbours([1])
+    net.robots[1].receive(0, dead.outgoing(1, net.now) or b"", net.now)
+    assert_exact(net, 1)
+
+
 def test_a_dead_robots_evidence_survives_where_nobody_else_has_any() -> None:
     rng = np.random.default_rng(2)
     net = Network(robot, 4, [(0, 1), (1, 2), (1, 3)], rng)

@@ -18,7 +18,7 @@ from vedette.team import PlatformSpec
 
 SOLID = rooms(80, 120)
 FRAME, PLANNING = frames(SOLID, 0.1, (0.0, 0.0))
-SPECS = [PlatformSpec(name="ada"), PlatformSpec(name="bob")]
+SPECS = [PlatformSpec(name=name, range=2.5) for name in ("ada", "bob")]
 
 
 @pytest.fixture(scope="module")
@@ -45,7 +45,7 @@ def _picture(console: Console, snapshot: Snapshot) -> list[str]:
     return _text(console).splitlines()
 
 
-def test_without_a_terminal_there_is_a_line_every_ten_seconds_and_at_the_end(
+def test_without_a_terminal_there_is_a_line_every_ten_seconds_and_at_last(
     snapshots: list[Snapshot],
 ) -> None:
     console = Console(file=io.StringIO(), width=40)
@@ -69,7 +69,7 @@ def test_a_quiet_view_prints_nothing(snapshots: list[Snapshot], terminal: bool) 
     assert _text(console) == ""
 
 
-def test_a_terminal_gets_at_most_ten_pictures_a_second_and_the_last_snapshot(
+def test_a_terminal_gets_at_most_ten_pictures_a_second_and_the_last(
     snapshots: list[Snapshot],
 ) -> None:
     console = _terminal()

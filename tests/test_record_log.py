@@ -136,7 +136,7 @@ def test_a_snapshot_that_does_not_fit_is_refused(
     log = _log()
     log.add(snapshots[0])
     with pytest.raises(ValueError, match=words):
-        log.add(Snapshot(**(vars(snapshots[1]) | change)))  # type: ignore[arg-type]
+        log.add(Snapshot(**(vars(snapshots[1]) | change)))
     assert len(log) == 1
 
 

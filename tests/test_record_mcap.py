@@ -28,7 +28,7 @@ FRAME, PLANNING = frames(SOLID, 0.1, ORIGIN)
 
 @pytest.fixture(scope="module")
 def snapshots() -> list[Snapshot]:
-    specs = [PlatformSpec(name=name) for name in NAMES]
+    specs = [PlatformSpec(name=name, range=2.5) for name in NAMES]
     rng = np.random.default_rng(4)
     run = mission(SOLID, specs, rng, (1.0, 4.0), origin=ORIGIN, limit=23.0, kill=(1, 12.0))
     return [Snapshot(**(vars(s) | {"classes": s.classes.copy()})) for s in run]

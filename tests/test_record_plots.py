@@ -21,7 +21,7 @@ from vedette.team import PlatformSpec
 
 @pytest.fixture(scope="module")
 def log() -> RunLog:
-    return recorded(rooms(80, 120), 2, 4, (3.0, 3.0), limit=30.0, kill=(1, 20.0))
+    return recorded(rooms(80, 120), 2, 4, (3.0, 3.0), limit=30.0, kill=(1, 20.0), reach=2.5)
 
 
 def _summary(log: RunLog, **changes: object) -> Summary:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from fusion_network import COUNTS, SHAPE, Network, expected_classes, random_tree, ring, sparse_evidence
 from vedette.fusion import FIRM, ReplicatedEvidence
 from vedette.fusion.codec import Codec, CodePacking, Payload
-from vedette.fusion.link import Greeting
+from vedette.fusion.link import Greeting, Link
 from vedette.fusion.snapshots import Delta, Snapshot
 from vedette.fusion.tiles import CELLS, LEVELS, Tiling, codes_of
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
@@ -158,6 +158,90 @@ def test_what_a_neighbour_told_is_not_told_back() -> None:
     a.receive(1, answer, 10.0)
     assert a.outgoing(1, 10.0) is None
     assert b.outgoing(0, 10.0) is None
+
+
+def test_what_a_neighbour_relayed_is_not_sent_back_to_it() -> None:
+    rng = np.random.default_rng(6)
+    net = Network(robot, 3, [(0, 1), (1, 2)], rng)
+    net.run(3)
+    net.observe(0, sparse_evidence(rng))
+    net.run(1)
+    relayed = net.robots[1].outgoing(2, net.now) or b""
+    assert len(CODEC.decode(relayed).sections) == 1
+    net.robots[2].receive(1, relayed, net.now)
+    assert not CODEC.decode(net.robots[2].outgoing(1, net.now) or b"").sections
+
+
+def test_a_payload_of_a_neighbours_earlier_start_come_late_does_not_hide_what_the_new_start_lacks() -> None:
+    a, old, new = robot(0), robot(1), robot(1, boot=50)
+    a.publish(sparse_evidence(np.random.default_rng(7)), None, None)
+    full_exchange(a, old, (0, 1), 0.0)
+    a.set_neighbours([])
+    a.set_neighbours([1])
+    old.set_neighbours([])
+    old.set_neighbours([0])
+    late = old.outgoing(0, 20.0) or b""  # tells that the old start holds everything
+    new.set_neighbours([0])
+    a.receive(1, new.outgoing(0, 20.0) or b"", 20.0)
+    a.receive(1, late, 20.1)
+    new.receive(0, a.outgoing(1, 21.0) or b"", 21.0)
+    assert new.digest == a.digest
+
+
+def test_a_greeting_is_repeated_until_it_is_answered() -> None:
+    link = Link(nonce=5, resend_after=2.0)
+    assert link.greeting(0.0) == Greeting(-1, True)
+    assert link.greeting(1.0) is None
+    link.hear(9, Greeting(-1, False), {}, 1.5)  # theirs, not an answer
+    assert link.greeting(2.0) == Greeting(9, True)
+    link.hear(9, Greeting(5, True), {}, 2.5)
+    assert link.greeting(5.0) == Greeting(9, False)
+    assert link.greeting(9.0) is None
+
+
+def test_differences_stay_right_after_65535_versions() -> None:
+    writer, reader = (Snapshot(1, 0, np.uint8) for _ in range(2))
+    tile = np.array([0])
+    block = np.zeros((1, CELLS), dtype=np.uint8)
+    block[0, 0] = 1
+    writer.write(tile, block)
+    reader.apply(writer.since(0))
+    idle = np.zeros((0, CELLS), np.bool_), np.zeros(0, np.uint8)
+    for snapshot in (writer, reader):
+        snapshot.apply(Delta(1, 70_000, tile[:0], *idle))
+    for cell in (1, 2):
+        block[0, cell] = 2
+        writer.write(tile, block)
+        reader.apply(writer.since(reader.version))
+        np.testing.assert_array_equal(reader.values, block)
+    assert writer.since(0).mask.sum() == 3
+    assert writer.since(70_001).mask.sum() <= 2
+
+
+def test_more_than_a_payload_takes_goes_in_several() -> None:
+    shape = (1600, 1600)
+    a, b = robot(0, shape=shape), robot(1, shape=shape)
+    free = np.full(shape, -9, dtype=np.int8)
+    a.publish(free, None, None)
+    b.publish(free, None, None)
+    full_exchange(a, b, (0, 1), 0.0)
+    c = robot(2, shape=shape)
+    full_exchange(a, c, (0, 2), 10.0)
+    assert c.contributors() == 2
+    assert c.digest == a.digest
+
+
+@pytest.mark.parametrize("boot", [-1, 2**38])
+def test_a_boot_that_does_not_fit_is_refused(boot: int) -> None:
+    with pytest.raises(ValueError, match="boot must lie in"):
+        ReplicatedEvidence(0, boot, SHAPE, COUNTS)
+
+
+def test_cells_outside_the_map_are_refused() -> None:
+    mask = ~TILING.inside(np.array([TILING.count - 1]))
+    delta = Delta(0, 1, np.array([TILING.count - 1]), mask, np.ones(int(mask.sum()), np.uint8))
+    with pytest.raises(ValueError, match="outside the map"):
+        robot(0).receive(1, CODEC.encode(Payload(3, sections=[((5, 5), delta)])), 0.0)
 
 
 def test_only_tiles_with_a_changed_class_are_shared_and_levels_are_firm_from_six() -> None:

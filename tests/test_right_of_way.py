@@ -90,6 +90,7 @@ class Traffic:
         self.goals: list[tuple[float, float] | None] = [None] * self.n
         self.fields: list[NDArray[np.float32] | None] = [None] * self.n
         self.paths: list[NDArray[np.float64]] = [EMPTY] * self.n
+        self.making_room = [False] * self.n
         self.yields = np.zeros(self.n)
 
     def cell(self, x: float, y: float) -> int:
@@ -126,6 +127,7 @@ class Traffic:
                 path = self.detour(i, path)
         others = [self.intent(j, self.paths[j]) for j in range(self.n) if j != i and self.bodies.alive[j]]
         refuge = give_way(self.open, RESOLUTION, self.intent(i, path), others)
+        self.making_room[i] = refuge is not None
         self.yields[i] += refuge is not None
         self.paths[i] = path if refuge is None else refuge
         if len(self.paths[i]) == 0:
@@ -157,7 +159,7 @@ class Traffic:
         self.time += DT
         self.trail.append(self.bodies.poses.copy())
         for i, goal in enumerate(self.goals):
-            if goal is not None and np.hypot(*(self.bodies.poses[i, :2] - goal)) <= 0.2:
+            if goal is not None and not self.making_room[i] and self.bodies.arrived(i):
                 self.goals[i] = None
 
     def drive(self, goals: dict[int, tuple[float, float]], limit: float) -> tuple[dict[int, float], dict[int, float]]:

@@ -27,6 +27,10 @@ const COST_OUTSIDE: f64 = 0.3;
 /// Full speed below this heading error, none above that one [rad].
 const ALIGNED: f64 = 0.35;
 const ASKEW: f64 = 1.3;
+/// A command this near to the least conceivable cost is taken without looking further [s].
+const SATISFIED: f64 = 0.1;
+/// How far beyond the guard walls are looked for, to look less often [m].
+const WALL_LOOK: f64 = 0.3;
 /// Tolerance of "does not get worse" [m].
 const SLACK: f64 = 1e-9;
 
@@ -222,15 +226,18 @@ impl Scene<'_> {
         (free, close, wrong)
     }
 
-    /// Roll a follower out and price it [s]; also tell whether nothing was in its way.
-    fn price(&self, f: Follower, start: (f64, f64, f64), s: f64, last_offset: f64) -> (Command, bool) {
+    /// Roll a follower out and price it [s]; infinity as soon as it must cost more than `enough`.
+    fn price(&self, f: Follower, start: (f64, f64, f64), s: f64, last_offset: f64, enough: f64) -> Command {
         let l = self.limits;
         let (mut x, mut y, mut heading, mut s) = (start.0, start.1, start.2, s);
         let mut command = Command { speed: 0.0, turn: 0.0, arc: s, offset: f.offset, cost: 0.0 };
         let (mut close, mut wrong) = (0.0f64, 0.0f64);
         let mut was_outside = !self.traversable.at(x, y);
-        let (mut outside, mut held, mut error) = (0usize, false, 0.0);
-        let mut wall = clearance(self.solid, x, y, l.radius + WALL_GUARD);
+        let (mut outside, mut error) = (0usize, 0.0);
+        let keep = l.radius + WALL_GUARD;
+        // A lower bound of the clearance, exact where it matters: moving by d takes at most d away.
+        let mut wall = clearance(self.solid, x, y, keep + WALL_LOOK);
+        let fixed = COST_CHANGE * (f.offset - last_offset).abs();
         for step in 1..=STEPS {
             let (v, w, e) = self.follow(f, (x, y, heading), s);
             let middle = heading + 0.5 * w * l.period;
@@ -242,10 +249,12 @@ impl Scene<'_> {
             let is_outside = !self.traversable.at(nx, ny);
             let (free, near, side) = self.gap((x, y), (nx, ny), step);
             let mut go = free && (was_outside || !is_outside);
-            if go {
-                let next = clearance(self.solid, nx, ny, l.radius + WALL_GUARD);
-                go = next >= (l.radius + WALL_GUARD).min(wall) - SLACK;
+            if go && wall - v * l.period < keep {
+                let next = clearance(self.solid, nx, ny, keep + WALL_LOOK);
+                go = next >= wall.min(keep) - SLACK;
                 wall = if go { next } else { wall };
+            } else if go {
+                wall -= v * l.period;
             }
             heading += w * l.period;
             if go {
@@ -256,48 +265,52 @@ impl Scene<'_> {
                 (x, y) = (nx, ny);
                 s = self.path.project(x, y, s - 0.1, s + 0.5).0;
             }
-            held |= !go;
             outside += usize::from(was_outside);
             if step == 1 && go {
                 command.speed = v;
                 command.arc = s;
+            }
+            let left = (STEPS - step) as f64 * l.period * f.speed;
+            let least = (self.path.length() - s - left).max(0.0) / l.speed
+                + COST_CLOSE * close
+                + COST_OUTSIDE * outside as f64;
+            if fixed + least > enough + SLACK {
+                command.cost = f64::INFINITY;
+                return command;
             }
         }
         let (arc, lateral) = self.path.project(x, y, s - 0.1, s + 0.5);
         command.cost = (self.path.length() - arc) / l.speed
             + error.abs() / l.turn_rate
             + COST_LATERAL * lateral
-            + COST_CHANGE * (f.offset - last_offset).abs()
+            + fixed
             + COST_CLOSE * close
             + COST_WRONG_SIDE * wrong
             + COST_OUTSIDE * outside as f64;
-        (command, !held && close == 0.0 && outside == 0)
+        command
     }
 }
 
-/// The command whose roll-out costs least; the plain follower at once where nothing is in its way.
+/// The command whose roll-out costs least, or the first that is within `SATISFIED` of the least conceivable.
 pub fn steer(scene: Scene, pose: (f64, f64, f64), s: f64, last_offset: f64) -> Command {
     let (s, _) = scene.path.project(pose.0, pose.1, s - 0.5, s + 1.0);
-    let top = scene.limits.speed;
-    let plain = Follower { offset: 0.0, speed: top, look: LOOKS[0] };
-    let (mut best, easy) = scene.price(plain, pose, s, last_offset);
-    if easy {
-        return best;
-    }
-    for look in LOOKS {
-        for offset in OFFSETS {
-            for share in SPEEDS {
-                let f = Follower { offset, speed: share * top, look };
-                let (command, _) = scene.price(f, pose, s, last_offset);
+    let l = scene.limits;
+    let conceivable = (scene.path.length() - s - STEPS as f64 * l.period * l.speed).max(0.0) / l.speed;
+    let stay = Follower { offset: last_offset, speed: 0.0, look: LOOKS[0] };
+    let mut best = scene.price(stay, pose, s, last_offset, f64::INFINITY);
+    for share in SPEEDS {
+        for look in LOOKS {
+            for offset in OFFSETS {
+                if best.cost <= conceivable + SATISFIED {
+                    return best;
+                }
+                let f = Follower { offset, speed: share * l.speed, look };
+                let command = scene.price(f, pose, s, last_offset, best.cost);
                 if command.cost < best.cost - SLACK {
                     best = command;
                 }
             }
         }
-    }
-    let (stay, _) = scene.price(Follower { offset: last_offset, speed: 0.0, look: LOOKS[0] }, pose, s, last_offset);
-    if stay.cost < best.cost - SLACK {
-        best = stay;
     }
     best
 }

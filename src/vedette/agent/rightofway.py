@@ -19,9 +19,12 @@ from vedette.kernels.distance import distance_field, path_to, shortcut
 GAP = 0.1  # between two rims that pass [m]
 ROOM = 0.15  # between a refuge's rim and the rim of the one that passes [m]
 SLOWED = 2.0  # without progress for this long: not just about to pass [s]
+SPREAD = 0.1  # further room for each second that somebody is held up beyond that [m/s]
+MOST_SPREAD = 0.6  # [m]
 CLOSE = 1.2  # centres nearer than this when slowed hinder each other, whatever the width [m]
 HORIZON = 3.0  # of a beaconed path [m]
 WINDOW = 5.0  # half side of the square around a robot in which it looks for a refuge [m]
+NEARER = 0.02  # a robot may come this much nearer than it stands while it gets out of the way [m]
 TICK = 0.2  # of the foreseen motion [s]
 TRIES = 12  # refuges examined, cheapest first
 APART = 0.4  # between two of them [m]
@@ -76,7 +79,7 @@ def give_way(
             continue
         if mate.rank > me.rank:
             bystanders = [o for o in others if o is not mate]
-            if me.slowed < SLOWED or _refuge(traversable, resolution, mate, me, bystanders) is not None:
+            if max(me.slowed, mate.slowed) < 2.0 * SLOWED or _refuge(traversable, resolution, mate, me, bystanders) is not None:
                 continue
         refuge = _refuge(traversable, resolution, me, mate, [o for o in others if o is not mate])
         if refuge is not None:
@@ -89,7 +92,7 @@ def _conflict(traversable: NDArray[np.bool_], resolution: float, me: Intent, mat
     mine, theirs = _foresee(me), _foresee(mate)
     steps = max(len(mine), len(theirs))
     apart = np.hypot(*(_padded(mine, steps) - _padded(theirs, steps)).T)
-    limit = me.radius + mate.radius + GAP
+    limit = me.radius + mate.radius + GAP + _spread(me, mate)
     if apart.min() >= limit:
         return False
     if max(me.slowed, mate.slowed) >= SLOWED and apart[0] < CLOSE:
@@ -98,6 +101,11 @@ def _conflict(traversable: NDArray[np.bool_], resolution: float, me: Intent, mat
         return False
     place = min(int(np.argmax(apart < limit)), len(theirs) - 1)
     return _width(traversable, resolution, theirs, place) < limit + resolution
+
+
+def _spread(me: Intent, mate: Intent) -> float:
+    """Further room [m] between two robots: the longer a jam lasts, the more it is drawn apart."""
+    return min(SPREAD * max(me.slowed - SLOWED, mate.slowed - SLOWED, 0.0), MOST_SPREAD)
 
 
 def _opposed(mine: NDArray[np.float64], theirs: NDArray[np.float64], limit: float) -> bool:
@@ -154,7 +162,8 @@ def _refuge(
         goal = _flat(window.shape, resolution, me.path[-1] - corner)
         # Ties: as far on my way as possible, to wait at the door and not in the far corner.
         cost += 1.01 * distance_field(window, goal, resolution)
-    clear = block_discs(open_, resolution, [(*p, me.radius + mate.radius + ROOM) for p in way])
+    room = me.radius + mate.radius + ROOM + _spread(me, mate)
+    clear = block_discs(open_, resolution, [(*p, room) for p in way])
     cost[~clear] = np.inf
     passing = _foresee(mate)
     standing = replace(mate, path=np.empty((0, 2)))
@@ -178,7 +187,7 @@ def _meets_not(me: Intent, theirs: NDArray[np.float64], limit: float) -> bool:
     mine = _foresee(me)
     steps = max(len(mine), len(theirs))
     apart = np.hypot(*(_padded(mine, steps) - _padded(theirs, steps)).T)
-    return bool(apart.min() >= min(limit, apart[0] - 1e-9))
+    return bool(apart.min() >= min(limit, apart[0] - NEARER))
 
 
 def _foresee(robot: Intent) -> NDArray[np.float64]:

@@ -53,7 +53,7 @@ class Fusion(Protocol):
         ...
 
     def outgoing(self, neighbour: int, now: float) -> bytes | None:
-        """Return the next payload for a neighbour, or None."""
+        """Return the next payload for a neighbour (KeyError if it is none), or None if there is no news."""
         ...
 
     def receive(self, neighbour: int, payload: bytes, now: float) -> NDArray[np.int64]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.fusion.codec import Codec, Payload, WordPacking, join_word, split_word
-from vedette.fusion.link import Boots, Key, Link
+from vedette.fusion.link import Boots, Key, Link, check_boot
 from vedette.fusion.snapshots import NONE, Snapshot, tiles_to_publish
 from vedette.fusion.tiles import (
     CELLS,
@@ -59,6 +59,7 @@ class ChannelFilter:
         resend_after: float = RESEND_AFTER,
     ) -> None:
         """Start with nothing known; ``boot < 2**38`` must differ from those of the robot's earlier starts."""
+        check_boot(boot)
         self._robot, self._boot, self._session = robot, boot, 0
         self._tiling = Tiling(*shape)
         self._size = counts_size + 1  # the last count is 1 for every robot that has published

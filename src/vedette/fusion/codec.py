@@ -132,7 +132,7 @@ class Codec:
             body += self.packing.pack(delta)
             if delta.counts is not None:
                 body += _planes(delta.counts.astype("<i8"))
-        deflate = zlib.compressobj(9, zlib.DEFLATED, -15, 9)
+        deflate = zlib.compressobj(6, zlib.DEFLATED, -15, 9)
         return bytes(head) + deflate.compress(bytes(body)) + deflate.flush()
 
     def decode(self, data: bytes) -> Payload:

@@ -8,6 +8,7 @@ Key = tuple[int, int]  # a stream of versions: (robot, nonce)
 
 MOST_STREAMS = 4096  # that one neighbour is taken to hold
 REMEMBERED_BOOTS = 16
+BOOT_BITS = 38
 
 
 class Greeting(NamedTuple):
@@ -84,6 +85,12 @@ class Link:
         self.owed.clear()
         self._have.clear()
         self._sent.clear()
+
+
+def check_boot(boot: int) -> None:
+    """Raise ValueError unless the number of a robot's start fits a payload."""
+    if not 0 <= boot < 1 << BOOT_BITS:
+        raise ValueError(f"boot must lie in 0..2**{BOOT_BITS} - 1; got {boot}")
 
 
 class Boots:

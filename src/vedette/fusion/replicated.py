@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.fusion.codec import MOST_SECTIONS, MOST_TILES, Codec, CodePacking, Payload
-from vedette.fusion.link import Boots, Key, Link
+from vedette.fusion.link import Boots, Key, Link, check_boot
 from vedette.fusion.snapshots import NONE, Change, Snapshot, tiles_to_publish
 from vedette.fusion.tiles import CELLS, WORDS, TeamMap, Tiling, classes_of, codes_of
 
@@ -23,7 +23,7 @@ class ReplicatedEvidence:
     copies merge by "the later version wins". So loss, repetition, reordering, cycles, partition, re-joining
     and restarts neither lose evidence that any holder lives to tell, nor count any twice.
 
-    Memory is O(contributors x the area each has seen), 3 bytes a cell, beside 5 bytes a cell for the team.
+    Memory is O(contributors x the area each has seen), 3 bytes a cell, beside 6 bytes a cell for the team.
     ``own`` grids are int8 log-odds ``(rows, cols)``; times are seconds of any one clock of this robot.
     """
 
@@ -36,7 +36,8 @@ class ReplicatedEvidence:
         *,
         resend_after: float = RESEND_AFTER,
     ) -> None:
-        """Start with nothing known; ``boot`` must differ from those of the robot's earlier starts."""
+        """Start with nothing known; ``boot < 2**38`` must differ from those of the robot's earlier starts."""
+        check_boot(boot)
         self._key: Key = (robot, boot)
         self._tiling = Tiling(*shape)
         self._codec = Codec(self._tiling, counts_size, CodePacking())
@@ -94,7 +95,7 @@ class ReplicatedEvidence:
         link.owed.clear()
         payload = Payload(link.nonce, greeting, have)
         if link.met:
-            self._add_sections(payload, neighbour, link, now)
+            self._add_sections(payload, link, now)
         if greeting is None and not have and not payload.sections:
             return None
         return self._codec.encode(payload)
@@ -124,11 +125,9 @@ class ReplicatedEvidence:
                 link.holds(key, delta.version, now)
         return self._merge(changes)
 
-    def _add_sections(self, payload: Payload, neighbour: int, link: Link, now: float) -> None:
+    def _add_sections(self, payload: Payload, link: Link, now: float) -> None:
         tiles = 0
         for key, snapshot in self._snapshots.items():
-            if key == (neighbour, link.peer):
-                continue
             base = link.base(key, now)
             if base >= snapshot.version:
                 continue

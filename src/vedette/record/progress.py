@@ -56,8 +56,8 @@ def progress_png(log: RunLog, path: Path | str) -> None:
 def _layout(aspect: float, panels: int, robots: Sequence[RobotSample]) -> _Layout:
     """Fit the panels: side by side, or one above the other where the map is far wider than high."""
     stacked = aspect > 2.2
-    panel_width = 9.0 if stacked else max(1.2, min(4.2, 6.5 * aspect))
-    panel = panel_width, max(0.6, panel_width / aspect)
+    panel_width = 9.0 if stacked else max(0.3, min(4.2, 6.5 * aspect))
+    panel = panel_width, max(0.2, min(6.5, panel_width / aspect))
     across = 1 if stacked else panels
     width = max(_NARROW, across * panel_width + (across - 1) * _GAP + 2 * _MARGIN)
     bottom = 0.42 + _LINE * (-(-len(robots) // _robots_a_row(width, robots)) + (1 if width >= _WIDE else 2))

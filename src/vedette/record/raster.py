@@ -13,6 +13,9 @@ from vedette.maps import UNKNOWN, GridFrame
 from vedette.record import palette
 from vedette.record.log import Snapshot
 
+_SHADES = 200  # of the impact: with the classes they fit a byte
+_RAMP = np.linspace(0.0, 1.0, _SHADES, dtype=np.float32)
+
 
 @dataclass(frozen=True)
 class Window:
@@ -74,19 +77,23 @@ def paint(
     """
     part = snapshot.classes[window.rows, window.cols]
     pixels = pool(part, *fit(part.shape, limit))
-    colours = classes[pixels]
     if snapshot.impact is None:
-        return colours
+        return classes[pixels]
+    shades = np.rint(np.clip(snapshot.impact, 0.0, 1.0) * (_SHADES - 1)).astype(np.uint8)
     x_min, x_max, y_min, y_max = window.frame.extent
-    rows, cols = pixels.shape
-    y = y_min + (np.arange(rows) + 0.5) * (y_max - y_min) / rows
-    x = x_min + (np.arange(cols) + 0.5) * (x_max - x_min) / cols
-    row = ((y - planning.origin_y) / planning.resolution).astype(np.intp).clip(0, planning.rows - 1)
-    col = ((x - planning.origin_x) / planning.resolution).astype(np.intp).clip(0, planning.cols - 1)
-    unknown = pixels == UNKNOWN
-    impact = snapshot.impact[row[:, None], col[None, :]]
-    colours[unknown] = palette.blend_impact(colours[unknown], impact[unknown])
-    return colours
+    row = _cells_under(len(pixels), y_min, y_max, planning.origin_y, planning.resolution, planning.rows)
+    col = _cells_under(pixels.shape[1], x_min, x_max, planning.origin_x, planning.resolution, planning.cols)
+    first = len(classes)
+    colours = np.concatenate((classes, palette.blend_impact(np.tile(classes[UNKNOWN], (_SHADES, 1)), _RAMP)))
+    return colours[np.where(pixels == UNKNOWN, first + shades[row].take(col, axis=1), pixels)]
+
+
+def _cells_under(
+    pixels: int, low: float, high: float, origin: float, resolution: float, cells: int
+) -> NDArray[np.intp]:
+    """Return the planning cell, along one axis, under the middle of each pixel from ``low`` to ``high``."""
+    middle = low + (np.arange(pixels) + 0.5) * (high - low) / pixels
+    return ((middle - origin) / resolution).astype(np.intp).clip(0, cells - 1)
 
 
 def enlarge(colours: NDArray[np.uint8], size: tuple[int, int]) -> Image.Image:

@@ -61,7 +61,7 @@ class Setup:
 
 @dataclass
 class Clock:
-    """Wall-clock figures of a run, apart from everything simulated."""
+    """CPU and wall-clock figures of a run, apart from everything simulated."""
 
     started: float = 0.0
     planning: dict[tuple[int, int, int], float] = field(default_factory=dict)  # robot, epoch, round: [s]
@@ -242,10 +242,10 @@ class Simulation:
 
     def _step(self, i: int, events: list[Event]) -> None:
         agent = self.agents[i]
-        began = wall.perf_counter()
+        began = wall.process_time()
         before = agent.rounds.decisions
         effects = step(agent, events, self.now)
-        took = wall.perf_counter() - began
+        took = wall.process_time() - began
         if agent.rounds.busy or agent.rounds.decisions != before:
             key = i, *agent.rounds.stamp
             self.clock.planning[key] = self.clock.planning.get(key, 0.0) + took
@@ -266,10 +266,10 @@ class Simulation:
                 self._told_arrival[i] = False
                 self._last_change = self.now
             case Job():
-                began = wall.perf_counter()
+                began = wall.process_time()
                 effect.run()
                 key = i, *effect.key
                 self.clock.planning[key] = (
-                    self.clock.planning.get(key, 0.0) + wall.perf_counter() - began
+                    self.clock.planning.get(key, 0.0) + wall.process_time() - began
                 )
                 heapq.heappush(self._jobs, (self.now + JOB_TIME, i, effect))

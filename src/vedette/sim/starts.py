@@ -16,6 +16,7 @@ from vedette.sim.world import World, reachable_poses, standable
 from vedette.team import PlatformSpec
 
 _GAP = 0.05  # [m] least gap between robots that a user placed
+_TOUCH = 1e-6  # [m] overlap that rounding may make
 _GAPS = (0.3, 0.1)  # [m] gap between robots that are placed here: at ease, then close
 _AT_EASE = 0.3  # [m] room around the spot where a team is placed, if the world has any such
 
@@ -57,7 +58,8 @@ def choose_starts(
     for i in given:
         starts[i] = _checked(world, specs[i])
         _check_apart(specs, starts, i, [j for j in given if j < i])
-        _check_together(world, specs, starts, given[0], i)
+    if given:
+        _check_together(world, specs, starts, given[0], given)
     others = [i for i in range(len(specs)) if i not in given]
     if others:
         anchor = world.frame.flat(*starts[given[0], :2]) if given else _spot(world, specs, rng)
@@ -77,7 +79,7 @@ def _checked(world: World, spec: PlatformSpec) -> tuple[float, float, float]:
     if world.solid[world.frame.cell(x, y)]:
         raise InputError(f"{where} is in a wall; {_free_spot(world, spec, x, y)}")
     room = clearance(world, x, y, spec.radius + world.frame.resolution)
-    if room < spec.radius:
+    if room < spec.radius - _TOUCH:
         raise InputError(
             f"{where} is {room:.2f} m from a wall, its radius is {spec.radius:g} m; "
             f"{_free_spot(world, spec, x, y)}"
@@ -118,7 +120,7 @@ def _check_apart(
     for j in before:
         apart = math.dist(starts[i, :2], starts[j, :2])
         least = specs[i].radius + specs[j].radius + _GAP
-        if apart < least - 1e-9:
+        if apart < least - _TOUCH:
             raise InputError(
                 f"{specs[i].name}: start {starts[i, 0]:g},{starts[i, 1]:g} is {apart:.2f} m from that of "
                 f"{specs[j].name}; keep them at least {least:.2f} m apart"
@@ -126,18 +128,31 @@ def _check_apart(
 
 
 def _check_together(
-    world: World, specs: Sequence[PlatformSpec], starts: NDArray[np.float64], first: int, i: int
+    world: World, specs: Sequence[PlatformSpec], starts: NDArray[np.float64], first: int, others: list[int]
 ) -> None:
-    """Require that the smaller of two robots could drive from the one's start to the other's."""
-    small, large = sorted((first, i), key=lambda k: specs[k].radius)
-    area = reachable_poses(world, specs[small].radius, starts[small, 0], starts[small, 1])
-    goal = reachable_poses(world, specs[small].radius, starts[large, 0], starts[large, 1])
-    if not (area & goal).any():
-        own = area if small == first else reachable_poses(world, specs[first].radius, *starts[first, :2])
-        raise InputError(
-            f"{specs[i].name}: start {starts[i, 0]:g},{starts[i, 1]:g} is cut off; "
-            f"reachable from {specs[first].name}: {_describe(world, own)}"
-        )
+    """Require that the smaller of the first robot and each other one could drive from start to start."""
+    areas: dict[float, NDArray[np.bool_]] = {}
+    for i in others:
+        radius = min(specs[first].radius, specs[i].radius)
+        if radius not in areas:
+            areas[radius] = reachable_poses(world, radius, starts[first, 0], starts[first, 1])
+        if not _joins(world, radius, areas[radius], starts[i, 0], starts[i, 1]):
+            own = reachable_poses(world, specs[first].radius, starts[first, 0], starts[first, 1])
+            raise InputError(
+                f"{specs[i].name}: start {starts[i, 0]:g},{starts[i, 1]:g} is cut off; "
+                f"reachable from {specs[first].name}: {_describe(world, own)}"
+            )
+
+
+def _joins(world: World, radius: float, area: NDArray[np.bool_], x: float, y: float) -> bool:
+    """Tell whether a disc can drive from a point to the area's cell nearest to it, a short search if it can."""
+    cells = np.flatnonzero(area)
+    if not cells.size:
+        return False
+    centres = world.frame.centres(cells)
+    nearest = cells[[np.hypot(centres[:, 0] - x, centres[:, 1] - y).argmin()]]
+    field = distance_field(standable(world, radius), world.frame.flat(x, y), world.frame.resolution, nearest)
+    return bool(np.isfinite(field.ravel()[nearest[0]]))
 
 
 def _describe(world: World, area: NDArray[np.bool_]) -> str:
@@ -215,7 +230,7 @@ class _Places:
         cols = np.arange(max(col - reach, 0), min(col + reach + 1, frame.cols))
         dy = frame.origin_y + (rows + 0.5) * frame.resolution - point[1]
         dx = frame.origin_x + (cols + 0.5) * frame.resolution - point[0]
-        self._open[np.ix_(rows, cols)] &= np.hypot(dy[:, None], dx[None, :]) >= distance - 1e-9
+        self._open[np.ix_(rows, cols)] &= np.hypot(dy[:, None], dx[None, :]) >= distance - _TOUCH
 
     def take(self) -> NDArray[np.float64] | None:
         """Return the nearest place still open, ``None`` if there is none."""

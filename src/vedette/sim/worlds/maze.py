@@ -69,8 +69,9 @@ def _passages(rng: np.random.Generator, rows: int, cols: int) -> list[tuple[Hall
         seen.add(hall)
         stack.append(hall)
     every = [(a, b) for a in np.ndindex(rows, cols) for b in _beside((a[0], a[1]), rows, cols) if a < b]
-    extra = [edge for edge in every if edge not in passages and rng.random() < _LOOPS]
-    return sorted(passages) + extra
+    closed = [edge for edge in every if edge not in passages]
+    loops = rng.choice(len(closed), max(1, round(_LOOPS * len(closed))), replace=False)
+    return sorted(passages) + [closed[i] for i in loops]
 
 
 def _beside(hall: Hall, rows: int, cols: int) -> list[Hall]:

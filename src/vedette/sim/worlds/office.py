@@ -9,7 +9,6 @@ from vedette.sim.world import World, standable
 from vedette.sim.worlds.floor_plan import Plan, draw_plan
 from vedette.sim.worlds.furnishing import furnish
 from vedette.sim.worlds.furniture import Floor
-from vedette.sim.worlds.rect import Rect
 from vedette.sim.worlds.size import Scale, world_frame
 
 RADIUS = 0.25  # [m] of the disc that reaches every room
