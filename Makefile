@@ -1,4 +1,96 @@
-.PHONY: build
-build:
-	cargo build --release --quiet --manifest-path rust/Cargo.toml --features extension-module
-	cp rust/target/release/lib_kernels.so src/vedette/_kernels.new && mv src/vedette/_kernels.new src/vedette/_kernels.abi3.so
+# Needs Python >= 3.11, Rust >= 1.85, a C linker and GNU make; `make help` lists the targets.
+#   make explore ARGS="--robots 5 --seed 7"     options for the command
+#   make explore PYTHON=/path/to/python3.12     another Python than the one on PATH
+
+VENV := .venv
+BIN := $(VENV)/bin
+PY := $(BIN)/python
+PIP := $(PY) -m pip --disable-pip-version-check --quiet
+CARGO_FLAGS := --manifest-path rust/Cargo.toml --target-dir rust/target
+KERNELS := src/vedette/_kernels.abi3.so
+RUST := rust/Cargo.toml rust/Cargo.lock $(shell find rust/src -name '*.rs')
+
+# What is done is remembered by stamps inside the environment, so removing it forgets them too.
+PACKAGES := $(VENV)/.packages
+DEV_PACKAGES := $(VENV)/.dev-packages
+INSTALLED := $(VENV)/.installed
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+.PHONY: help explore test test-all check lint types contracts rust-lint bench missions build ready ready-dev clean
+
+help: ## List the targets
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+
+explore: ready ## Watch three robots map an office; the first run also installs everything into .venv
+	@$(BIN)/vedette explore $(ARGS)
+
+test: ready-dev ## Run the quick tests
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(PY) -m pytest -m "not slow" -n auto --maxprocesses 4 --dist loadgroup $(ARGS)
+
+test-all: ready-dev ## Run all tests, the slow ones too
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(PY) -m pytest -n auto --maxprocesses 4 --dist loadgroup $(ARGS)
+
+check: lint types contracts rust-lint ## Do all that .ci/run does: lint, types, import contracts, quick tests
+	@$(MAKE) --no-print-directory test
+
+lint: ready-dev ## Lint and check the formatting of the Python code
+	@$(BIN)/ruff check
+	@$(BIN)/ruff format --check
+
+types: ready-dev ## Check the types
+	@$(BIN)/mypy
+
+contracts: ready-dev ## Check that imports run one way
+	@$(BIN)/lint-imports
+
+rust-lint: ready-dev ## Lint and check the formatting of the Rust code
+	@cargo fmt --manifest-path rust/Cargo.toml --check
+	@cargo clippy $(CARGO_FLAGS) --quiet --all-targets -- -D warnings
+
+bench: ready-dev ## Measure speed and traffic against the targets: MET or MISSED
+	@$(PY) -m bench.bench $(ARGS)
+
+missions: ready-dev ## Run the table of missions beside the yardsticks (long)
+	@$(PY) bench/missions.py $(ARGS)
+
+# The copy is moved into place: overwriting a module that a running process has loaded would crash it.
+build: ## Compile the kernels and put them in place
+	@cargo build --release --quiet $(CARGO_FLAGS) --features extension-module
+	@cp rust/target/release/lib_kernels.so $(KERNELS).new && mv $(KERNELS).new $(KERNELS)
+
+clean: ## Remove all that make has made; runs/ stays
+	rm -rf $(VENV) rust/target $(KERNELS) .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
+
+# Installing compiles the kernels, so make has to look at their age afresh after it.
+ready: $(INSTALLED)
+	@$(MAKE) --no-print-directory $(KERNELS)
+
+ready-dev: $(DEV_PACKAGES) ready
+
+$(KERNELS): $(RUST)
+	@echo "building the kernels"
+	@$(MAKE) --no-print-directory build
+
+$(PACKAGES): pyproject.toml constraints.txt
+	@python=$$(tools/preflight.sh) || exit 1; \
+	if ! $(PIP) --version >/dev/null 2>&1; then \
+		echo "making .venv" && "$$python" -m venv $(VENV); \
+	fi
+	@echo "installing packages"
+	@$(PY) tools/requirements.py > $@.txt
+	@$(PIP) install -c constraints.txt -r $@.txt
+	@touch $@
+
+$(DEV_PACKAGES): $(PACKAGES)
+	@echo "installing the developers' packages"
+	@$(PY) tools/requirements.py dev > $@.txt
+	@$(PIP) install -c constraints.txt -r $@.txt
+	@touch $@
+
+# The packages are there already, so pip has only to compile, with the tools that constraints.txt names.
+$(INSTALLED): $(PACKAGES)
+	@echo "building the kernels"
+	@rm -f $(KERNELS)
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(PIP) install --no-deps --no-build-isolation -e .
+	@touch $@

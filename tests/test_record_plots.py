@@ -14,7 +14,8 @@ from record_mission import recorded, rooms
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
 from vedette.record import Outcome, RobotSample, RunLog, Snapshot, Summary, Traffic, palette
 from vedette.record.animate import animate_gif
-from vedette.record.plots import curves_png, progress_png
+from vedette.record.curves import curves_png
+from vedette.record.progress import progress_png
 from vedette.record.raster import enlarge, fit, known_window, paint, pool
 from vedette.team import PlatformSpec
 

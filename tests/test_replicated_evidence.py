@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from fusion_network import COUNTS, SHAPE, Network, expected_classes, random_tree, ring, sparse_evidence
 from vedette.fusion import FIRM, ReplicatedEvidence
-from vedette.fusion.codec import Codec, CodePacking, Payload
+from vedette.fusion.codec import Codec, Payload
 from vedette.fusion.link import Greeting, Link
+from vedette.fusion.packing import CodePacking
 from vedette.fusion.snapshots import Delta, Snapshot
 from vedette.fusion.tiles import CELLS, LEVELS, Tiling, codes_of
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
@@ -353,6 +354,13 @@ def test_claims_about_a_robots_own_evidence_are_refused() -> None:
     forged = Delta(0, 5, tiles, mask, np.full(CELLS, 2, dtype=np.uint8))
     with pytest.raises(ValueError, match="never published"):
         robot(0).receive(1, CODEC.encode(Payload(3, sections=[((0, 7), forged)])), 0.0)
+
+
+def test_more_tiles_than_a_payload_may_hold_are_refused() -> None:
+    tiles = np.arange(TILING.count)
+    delta = Delta(0, 1, tiles, np.zeros((len(tiles), CELLS), np.bool_), np.zeros(0, np.uint8))
+    with pytest.raises(ValueError, match="more than fit"):
+        CODEC.decode(CODEC.encode(Payload(0, sections=[((i, 0), delta) for i in range(500)])))
 
 
 def test_a_deflate_bomb_is_refused() -> None:

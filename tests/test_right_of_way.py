@@ -88,8 +88,10 @@ class Traffic:
         self.open = inflated(self.solid)
         self.time = 0.0
         self.goals: list[tuple[float, float] | None] = [None] * self.n
-        self.fields: list[NDArray[np.float32] | None] = [None] * self.n
+        self.maps = [self.open] * self.n
+        self.fields = [np.zeros(self.open.shape, dtype=np.float32)] * self.n
         self.paths: list[NDArray[np.float64]] = [EMPTY] * self.n
+        self.beacons = [self.intent(i, EMPTY) for i in range(self.n)]
         self.making_room = [False] * self.n
         self.yields = np.zeros(self.n)
 
@@ -99,7 +101,9 @@ class Traffic:
     def send(self, i: int, goal: tuple[float, float]) -> float:
         """Give robot ``i`` a goal; return the length of the unobstructed way [m]."""
         self.goals[i] = goal
-        self.fields[i] = distance_field(self.open, self.cell(*goal), RESOLUTION, None)
+        dead = [(*self.bodies.poses[j, :2], 0.5) for j in range(self.n) if not self.bodies.alive[j]]
+        self.maps[i] = block_discs(self.open, RESOLUTION, dead)
+        self.fields[i] = distance_field(self.maps[i], self.cell(*goal), RESOLUTION)
         x, y, _ = self.bodies.poses[i]
         self.plan(i)
         return float(self.fields[i].flat[self.cell(x, y)])
@@ -122,33 +126,17 @@ class Traffic:
         """One decision of robot ``i``'s agent: make room, or go on."""
         path = EMPTY
         if self.goals[i] is not None:
-            path = self.route(i, self.open, self.fields[i])
-            if self.bodies.stuck_for(i) > 4.0:
-                path = self.detour(i, path)
-        others = [self.intent(j, self.paths[j]) for j in range(self.n) if j != i and self.bodies.alive[j]]
+            path = self.route(i, self.maps[i], self.fields[i])
+        others = [self.beacons[j] for j in range(self.n) if j != i and self.bodies.alive[j]]
         refuge = give_way(self.open, RESOLUTION, self.intent(i, path), others)
         self.making_room[i] = refuge is not None
         self.yields[i] += refuge is not None
         self.paths[i] = path if refuge is None else refuge
+        self.beacons[i] = self.intent(i, self.paths[i])  # up to half a second old when it is used
         if len(self.paths[i]) == 0:
             self.bodies.command(i, None)
         else:
             self.bodies.command(i, self.paths[i], self.open)
-
-    def detour(self, i: int, path: NDArray[np.float64]) -> NDArray[np.float64]:
-        """A way around robots that stand near, if there is one."""
-        x, y, _ = self.bodies.poses[i]
-        discs = [
-            (*self.bodies.poses[j, :2], 0.5)
-            for j in range(self.n)
-            if j != i
-            and not self.bodies.velocities[j].any()
-            and np.hypot(*(self.bodies.poses[j, :2] - (x, y))) < 2.0
-        ]
-        free = block_discs(self.open, RESOLUTION, discs)
-        to_goal = distance_field(free, self.cell(*self.goals[i]), RESOLUTION, None)
-        around = self.route(i, free, to_goal)
-        return path if len(around) == 0 else around
 
     def tick(self) -> None:
         count = round(self.time / DT)
@@ -162,7 +150,9 @@ class Traffic:
             if goal is not None and not self.making_room[i] and self.bodies.arrived(i):
                 self.goals[i] = None
 
-    def drive(self, goals: dict[int, tuple[float, float]], limit: float) -> tuple[dict[int, float], dict[int, float]]:
+    def drive(
+        self, goals: dict[int, tuple[float, float]], limit: float
+    ) -> tuple[dict[int, float], dict[int, float]]:
         """Send robots and wait for all; return each one's time and unobstructed time [s]."""
         ideal = {i: self.send(i, goal) / 0.5 for i, goal in goals.items()}
         times: dict[int, float] = {}
@@ -184,3 +174,190 @@ def ahead(path: NDArray[np.float64], x: float, y: float, reach: float = 3.0) -> 
     start = int(np.argmin(np.hypot(*(points - (x, y)).T)))
     rest = points[start : start + round(reach / 0.05) : 4]
     return np.vstack(((x, y), rest, points[min(start + round(reach / 0.05), len(points) - 1)]))
+
+
+def random_traffic(
+    solid: NDArray[np.bool_], n: int, seconds: float, seed: int
+) -> tuple[Traffic, float, float]:
+    """Robots with ever new random goals; return total travel over unobstructed time, and the longest time held up."""
+    rng = np.random.default_rng(seed)
+    cells = np.flatnonzero(inflated(solid, 0.3))
+    centres = [
+        ((c % solid.shape[1] + 0.5) * RESOLUTION, (c // solid.shape[1] + 0.5) * RESOLUTION) for c in cells
+    ]
+    starts: list[tuple[float, float]] = []
+    while len(starts) < n:
+        start = centres[rng.integers(len(centres))]
+        if all(np.hypot(start[0] - x, start[1] - y) > 0.6 for x, y in starts):
+            starts.append(start)
+    traffic = Traffic(solid, starts)
+    ideal, since, spent, done, worst = np.zeros(n), np.zeros(n), 0.0, 0.0, 0.0
+    while traffic.time < seconds:
+        for i in range(n):
+            if traffic.goals[i] is None:
+                spent += traffic.time - since[i]
+                done += ideal[i]
+                turn = 1.0  # turning towards the next goal takes this long on average [s]
+                ideal[i] = traffic.send(i, centres[rng.integers(len(centres))]) / 0.5 + turn
+                since[i] = traffic.time
+        traffic.tick()
+        worst = max(worst, float((traffic.time - since - ideal).max()))
+    return traffic, spent / done, worst
+
+
+@pytest.mark.parametrize(
+    ("solid", "starts", "goals", "bound"),
+    [
+        pytest.param(
+            two_rooms(), [(1.5, 3), (7.5, 3)], [(7.5, 3), (1.5, 3)], 1.2, id="head-on through a door"
+        ),
+        pytest.param(
+            two_rooms(),
+            [(1.5, 2.7), (1.5, 3.4), (7.5, 2.7), (7.5, 3.4)],
+            [(7.5, 2), (7.5, 4), (1.5, 2), (1.5, 4)],
+            1.3,
+            id="two against two through a door",
+        ),
+        pytest.param(
+            corridor(1.2),
+            [(1.5, 2), (14.5, 2)],
+            [(14.5, 2), (1.5, 2)],
+            1.15,
+            id="swapping ends of a corridor",
+        ),
+        pytest.param(
+            corridor(1.2),
+            [(1.5, 2), (1.5, 3), (14.5, 2), (14.5, 3)],
+            [(14.5, 2.5), (14.5, 1.5), (1.5, 2.5), (1.5, 1.5)],
+            1.6,
+            id="two against two in a corridor",
+        ),
+        pytest.param(
+            corridor(0.9), [(1.5, 2), (14.5, 2)], [(14.5, 2), (1.5, 2)], 1.6, id="one-lane corridor"
+        ),
+        pytest.param(
+            two_rooms(),
+            [(1 + 0.6 * (k % 3), 2.6 + 0.6 * (k // 3)) for k in range(6)] + [(7.5, 3)],
+            [(5.5 + 0.9 * (k % 3), 1.5 + 2 * (k // 3)) for k in range(6)] + [(1.5, 3)],
+            1.3,
+            id="six leave by a door while a later one enters",
+        ),
+        pytest.param(
+            two_rooms(),
+            [(7.5, 3)] + [(1 + 0.6 * (k % 3), 2.6 + 0.6 * (k // 3)) for k in range(6)],
+            [(1.5, 3)] + [(5.5 + 0.9 * (k % 3), 1.5 + 2 * (k // 3)) for k in range(6)],
+            1.5,
+            id="six leave by a door while an earlier one enters",
+        ),
+        pytest.param(
+            t_junction(),
+            [(1.6, 6.2), (10.4, 6.2), (6, 1.6)],
+            [(10.4, 6.2), (6, 1.6), (1.6, 6.2)],
+            1.2,
+            id="junction",
+        ),
+        pytest.param(
+            four_rooms(),
+            [(2.5, 2.5), (7.5, 2.5), (7.5, 7.5), (2.5, 7.5)],
+            [(7.5, 7.5), (2.5, 7.5), (2.5, 2.5), (7.5, 2.5)],
+            1.25,
+            id="four rooms, opposite corners",
+        ),
+        pytest.param(
+            box(8, 8),
+            [(4 + 3 * np.cos(a), 4 + 3 * np.sin(a)) for a in np.arange(8) * np.pi / 4],
+            [(4 - 3 * np.cos(a), 4 - 3 * np.sin(a)) for a in np.arange(8) * np.pi / 4],
+            1.5,
+            id="eight across a circle",
+        ),
+    ],
+)
+def test_robots_exchange_places_without_contact_and_without_much_delay(
+    solid: NDArray[np.bool_],
+    starts: list[tuple[float, float]],
+    goals: list[tuple[float, float]],
+    bound: float,
+) -> None:
+    traffic = Traffic(solid, starts)
+    times, ideal = traffic.drive(dict(enumerate(goals)), limit=80.0)
+    assert len(times) == len(goals)
+    assert traffic.bodies.collisions == 0
+    assert traffic.bodies.min_clearance > 0.02
+    assert np.mean([times[i] / ideal[i] for i in times]) <= bound
+
+
+@pytest.mark.parametrize(("solid", "n"), [(four_rooms(), 6), (two_rooms(), 4)])
+def test_random_goals_for_five_minutes_never_touch_and_hold_nobody_up_for_long(
+    solid: NDArray[np.bool_], n: int
+) -> None:
+    traffic, ratio, worst = random_traffic(solid, n, 300.0, seed=7)
+    assert traffic.bodies.collisions == 0
+    assert traffic.bodies.min_clearance > 0.02
+    assert ratio <= 1.3
+    assert worst <= 30.0
+
+
+@pytest.mark.parametrize("moving", [0, 1])
+def test_a_robot_standing_in_a_door_makes_room_whatever_its_priority(moving: int) -> None:
+    starts = [(4.5, 3.0), (4.5, 3.0)]
+    starts[moving] = (1.5, 3.0)
+    traffic = Traffic(two_rooms(), starts)
+    times, ideal = traffic.drive({moving: (7.5, 3.0)}, limit=40.0)
+    assert times[moving] <= 1.2 * ideal[moving]
+    assert traffic.bodies.collisions == 0
+
+
+def test_the_earlier_robot_gives_way_to_one_that_has_no_other_way_out() -> None:
+    solid = corridor(0.9)
+    solid[:, 100:] = True  # a dead end
+    traffic = Traffic(solid, [(1.5, 2.0), (8.0, 2.0)])
+    times, _ = traffic.drive({0: (8.5, 2.0), 1: (1.5, 1.0)}, limit=90.0)
+    assert set(times) == {0, 1}
+    assert traffic.bodies.collisions == 0
+
+
+def test_a_dead_robot_in_one_of_two_doors_is_driven_around() -> None:
+    solid = two_rooms()
+    solid[8:17, 44:46] = False
+    traffic = Traffic(solid, [(1.5, 3.0), (4.5, 3.0)])
+    traffic.bodies.kill(1)
+    times, _ = traffic.drive({0: (7.5, 3.0)}, limit=60.0)
+    assert 0 in times
+    assert traffic.bodies.collisions == 0
+
+
+def test_block_discs_clears_exactly_the_cells_whose_centre_lies_in_a_disc() -> None:
+    open_ = np.ones((40, 50), dtype=np.bool_)
+    discs = [(1.0, 1.0, 0.5), (4.9, 3.9, 0.33), (-0.1, 2.0, 0.4), (9.0, 9.0, 0.5)]
+    free = block_discs(open_, RESOLUTION, discs)
+    for row in range(40):
+        for col in range(50):
+            x, y = (col + 0.5) * RESOLUTION, (row + 0.5) * RESOLUTION
+            assert free[row, col] == all(np.hypot(x - a, y - b) >= r for a, b, r in discs)
+    assert open_.all()
+
+
+def test_in_the_open_nobody_gives_way() -> None:
+    open_ = inflated(box(10, 10))
+    me = Intent(1, 3.0, 5.0, np.array([(3.0, 5.0), (6.0, 5.0)]))
+    mate = Intent(0, 6.0, 5.0, np.array([(6.0, 5.0), (3.0, 5.0)]))
+    assert give_way(open_, RESOLUTION, me, [mate]) is None
+
+
+def test_before_a_door_only_the_later_robot_gives_way_and_its_refuge_is_clear_of_the_other_s_path() -> None:
+    open_ = inflated(two_rooms())
+    east = np.column_stack((np.linspace(3.0, 6.0, 16), np.full(16, 3.05)))
+    first, second = Intent(0, 3.0, 3.05, east), Intent(1, 6.0, 3.05, east[::-1])
+    assert give_way(open_, RESOLUTION, first, [second]) is None
+    refuge = give_way(open_, RESOLUTION, second, [first])
+    assert refuge is not None
+    assert refuge[0] == pytest.approx((6.0, 3.05))
+    assert np.hypot(*(east - refuge[-1]).T).min() >= 0.2 + 0.2 + 0.1
+
+
+def test_two_robots_that_go_the_same_way_through_a_door_do_not_give_way() -> None:
+    open_ = inflated(two_rooms())
+    path = np.column_stack((np.linspace(3.0, 6.0, 16), np.full(16, 3.05)))
+    leader, follower = Intent(0, 3.6, 3.05, path[3:]), Intent(1, 3.0, 3.05, path)
+    assert give_way(open_, RESOLUTION, leader, [follower]) is None
+    assert give_way(open_, RESOLUTION, follower, [leader]) is None

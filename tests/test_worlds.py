@@ -18,7 +18,7 @@ from vedette.sim.worlds import GENERATORS, cave, maze, office
 from vedette.sim.worlds.floor_plan import draw_plan
 from vedette.sim.worlds.size import Scale
 
-SIZES = [(30.0, 20.0, 0.1), (20.0, 30.0, 0.1), (10.0, 10.0, 0.1), (45.0, 35.0, 0.2), (24.0, 16.0, 0.05)]
+SIZES = [(30.0, 20.0, 0.1), (20.0, 30.0, 0.1), (10.0, 10.0, 0.1), (40.0, 30.0, 0.2), (12.0, 11.0, 0.05)]
 
 
 def flooded(cells: NDArray[np.bool_], start: tuple[int, int]) -> NDArray[np.bool_]:
@@ -61,7 +61,7 @@ def test_the_same_seed_gives_the_same_world_and_others_differ(kind: str) -> None
     assert (first != other).mean() > 0.05
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", range(6))
 def test_an_office_has_twelve_rooms_that_a_disc_of_a_quarter_metre_reaches(seed: int) -> None:
     made = office(np.random.default_rng(seed))
     plan = draw_plan(np.random.default_rng(seed), 200, 300, Scale(0.1))
@@ -78,7 +78,7 @@ def test_an_office_has_twelve_rooms_that_a_disc_of_a_quarter_metre_reaches(seed:
     assert 0.05 < furniture.sum() / claimed.sum() < 0.3
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", range(6))
 def test_every_office_door_is_nine_tenths_of_a_metre_wide_between_walls_at_most_two_thick(seed: int) -> None:
     made = office(np.random.default_rng(seed))
     plan = draw_plan(np.random.default_rng(seed), 200, 300, Scale(0.1))
@@ -99,7 +99,7 @@ def test_every_office_door_is_nine_tenths_of_a_metre_wide_between_walls_at_most_
 def test_an_office_of_any_size_is_closed_and_in_one_piece(
     width: float, height: float, resolution: float
 ) -> None:
-    for seed in range(3):
+    for seed in range(2):
         made = office(np.random.default_rng(seed), width, height, resolution)
         assert made.frame == GridFrame(resolution, round(height / resolution), round(width / resolution))
         assert in_one_piece(standable(made, 0.25))
@@ -111,12 +111,12 @@ def test_an_office_of_any_size_is_closed_and_in_one_piece(
 def test_a_cave_is_what_a_disc_1_2_m_wide_sweeps_in_one_journey(
     width: float, height: float, resolution: float
 ) -> None:
-    for seed in range(3):
+    for seed in range(2):
         made = cave(np.random.default_rng(seed), width, height, resolution)
         journey = np.argwhere(largest(standable(made, 0.6)))
         free = np.argwhere(~made.solid)
         assert 0.2 < len(free) / made.frame.size < 0.8
-        for cell in free[:: max(1, len(free) // 300)]:
+        for cell in free[:: max(1, len(free) // 100)]:
             gaps = np.maximum(np.abs(journey - cell) - 0.5, 0.0)  # from each place to the cell's square
             assert np.hypot(gaps[:, 0], gaps[:, 1]).min() * resolution < 0.6
 
@@ -125,7 +125,7 @@ def test_a_cave_is_what_a_disc_1_2_m_wide_sweeps_in_one_journey(
 def test_a_maze_is_in_one_piece_for_a_disc_1_4_m_wide_and_has_loops(
     width: float, height: float, resolution: float
 ) -> None:
-    for seed in range(3):
+    for seed in range(2):
         made = maze(np.random.default_rng(seed), width, height, resolution)
         standing = standable(made, 0.7)
         assert in_one_piece(standing)

@@ -352,6 +352,20 @@ impl Stops<'_> {
             Some(stop) => self.legs[stop * self.len() + to],
         }
     }
+
+    /// The earliest arrival at each stop by way of any others, which may be earlier than going straight:
+    /// legs between stops come from a coarser grid than the first leg (Dijkstra, dense).
+    fn earliest(&self) -> Vec<f32> {
+        let mut arrival = self.first_leg.to_vec();
+        let mut open: Vec<usize> = (0..self.len()).collect();
+        while let Some(at) = (0..open.len()).min_by(|&a, &b| arrival[open[a]].total_cmp(&arrival[open[b]])) {
+            let from = open.swap_remove(at);
+            for &to in &open {
+                arrival[to] = arrival[to].min(arrival[from] + self.leg(Some(from), to));
+            }
+        }
+        arrival
+    }
 }
 
 /// The gain tables of one best reply: for each cell that a stop touches, what a certain sighting in
@@ -518,6 +532,9 @@ impl<'a> Tours<'a> {
                 let mut gain = own[self.stops.layer(arrival)];
                 if let Some(&next) = tour.get(place) {
                     let delay = arrival + self.stops.leg(Some(stop), next) - arrivals[place];
+                    if !delay.is_finite() {
+                        continue;
+                    }
                     for (later, table) in arrivals[place..].iter().zip(&tables[place..]) {
                         gain += table[self.stops.layer(later + delay)] - table[self.stops.layer(*later)];
                     }
@@ -569,11 +586,12 @@ impl<'a> Tours<'a> {
         best
     }
 
-    /// An upper bound on any tour's marginal value: its best stops, each reached first, no overlap.
+    /// An upper bound on any tour's marginal value: its best stops, each as early as can be, no overlap.
     fn relaxed(&self) -> f64 {
+        let earliest = self.stops.earliest();
         let mut gains: Vec<f32> = (0..self.stops.len())
-            .filter(|&stop| self.stops.first_leg[stop].is_finite())
-            .map(|stop| self.by_layer(stop)[self.stops.layer(self.stops.first_leg[stop])])
+            .filter(|&stop| earliest[stop].is_finite())
+            .map(|stop| self.by_layer(stop)[self.stops.layer(earliest[stop])])
             .collect();
         gains.sort_unstable_by(|a, b| b.total_cmp(a));
         gains.iter().take(self.max_stops).map(|&g| f64::from(g)).sum()

@@ -61,3 +61,19 @@ def visible_cells(
 def line_of_sight(
     blocked: NDArray[np.uint8], from_cell: int, to_cells: NDArray[np.int64]
 ) -> NDArray[np.bool_]: ...
+
+# motion
+def clearance(
+    solid: NDArray[np.bool_], resolution: float, x: float, y: float, reach: float
+) -> float: ...
+def steer(
+    solid: NDArray[np.bool_],
+    traversable: NDArray[np.bool_],
+    resolution: float,
+    pose: tuple[float, float, float],
+    path: NDArray[np.float64],
+    arc: NDArray[np.float64],
+    progress: tuple[float, float],
+    others: NDArray[np.float64],
+    limits: tuple[float, float, float, float],
+) -> tuple[float, float, float, float, float]: ...

@@ -1,6 +1,6 @@
 """The agent: one state machine a robot, the same in the simulator and on a network.
 
-``step(agent, events, now) -> effects`` has no I/O, no clock and no randomness of its own. One turn of the loop:
+``step(agent, events, now) -> effects`` has no I/O, no clock and no randomness of its own. One turn of the loop is
 observation -> evidence -> belief -> strategies -> impact -> negotiation -> decision -> goal.
 """
 
@@ -106,7 +106,7 @@ def _take(agent: Agent, event: Event, now: float) -> list[Effect]:
             agent.pose = event
             agent.home = agent.home or (event.x, event.y)
         case Scan() if agent.pose is not None:
-            agent.mission.observe(event, agent.pose, agent.mates.all(now), now)
+            agent.mission.observe(event, agent.pose, agent.mates.all(), now)
         case Arrived():
             return _arrived(agent, now)
         case Stuck():
@@ -148,16 +148,14 @@ def _go_on(agent: Agent, pose: Pose, now: float) -> list[Effect]:
     if agent._redirect:
         agent._redirect = False
         effects += _follow_decision(agent, pose, now)
-    job = agent.rounds.preparation(pose, agent.mates.all(now))
-    if job is not None:
-        effects.append(job)
+    if agent.rounds.frozen:
+        effects.append(agent.rounds.preparation(pose, agent.mates.all(), now))
     if _is_due(agent, "beacon", BEACON_PERIOD, now):
         effects += _beacon(agent, pose)
     if _is_due(agent, "look out", LOOK_OUT_PERIOD, now):
         effects += _look_out(agent, pose, now)
-    if _is_due(agent, "check", CHECK_PERIOD, now) and agent.state is State.DRIVING:
-        if agent.mission.served():
-            agent.rounds.want()
+    if _is_due(agent, "check", CHECK_PERIOD, now) and agent.state is State.DRIVING and agent.mission.served():
+        agent.rounds.want()
     if _is_due(agent, "share", SHARE_PERIOD, now) and not agent.rounds.busy:
         agent.mission.publish(now)
         for neighbour in agent.rounds.tree.neighbours:
@@ -189,7 +187,7 @@ def _follow_decision(agent: Agent, pose: Pose, now: float) -> list[Effect]:
 def _go_home(agent: Agent, pose: Pose, now: float, *, blocked: bool) -> list[Effect]:
     assert agent.home
     agent.state = State.RETURNING
-    return [agent.driver.go(agent.mission.route(pose, agent.home, agent.mates.all(now), blocked))]
+    return [agent.driver.go(agent.mission.route(pose, agent.home, agent.mates.all(), blocked, now))]
 
 
 def _drive_on(agent: Agent, pose: Pose, now: float) -> list[Effect]:
@@ -200,7 +198,7 @@ def _drive_on(agent: Agent, pose: Pose, now: float) -> list[Effect]:
         return [agent.driver.go(None)]
     if agent.driver.yielding:
         return []
-    route = agent.mission.route(pose, goal, agent.mates.all(now), agent.state is State.STUCK)
+    route = agent.mission.route(pose, goal, agent.mates.all(), agent.state is State.STUCK, now)
     if route is None:
         agent.mission.release(now)
         agent.rounds.want()
@@ -238,12 +236,12 @@ def _stuck(agent: Agent, now: float) -> list[Effect]:
 
 
 def _look_out(agent: Agent, pose: Pose, now: float) -> list[Effect]:
-    mates = agent.mates.all(now)
+    mates = agent.mates.all()
     if not mates:
         return []
     if agent.driver.yielding and now > agent.driver.yielding_since + YIELD_LIMIT:
         return _stuck(agent, now)
-    standing = agent.driver.wanted or agent.mission.route(pose, (pose.x, pose.y), mates, False)
+    standing = agent.driver.wanted or agent.mission.route(pose, (pose.x, pose.y), mates, False, now)
     if standing is None:
         return []
     drive: Drive | None = agent.driver.look_out(pose, mates, standing, now)
@@ -277,4 +275,3 @@ def _beacon(agent: Agent, pose: Pose) -> list[Effect]:
 def _beacon_to(agent: Agent, beacon: Beacon, neighbours: Iterable[int]) -> list[Effect]:
     payload = messages.encode(beacon)
     return [Send(neighbour, Traffic.BEACONS, payload) for neighbour in neighbours]
-

@@ -49,7 +49,7 @@ class Driver:
         others = [
             self._intent(mate.robot, mate.x, mate.y, mate.path, mate.slowed, corner)
             for mate in mates
-            if not mate.silent
+            if not mate.silent(now)
         ]
         refuge = give_way(route.passable, self.frame.resolution, me, others)
         if refuge is None:

@@ -22,34 +22,36 @@ class Mate:
     heading: float  # [rad]
     path: NDArray[np.float64]  # (L, 2) its next few metres [m], team frame; empty: it stands
     slowed: float  # [s]
-    age: float  # of the beacon [s]
+    heard: float  # when the beacon came [s]
 
-    @property
-    def silent(self) -> bool:
+    def silent(self, now: float) -> bool:
         """Tell whether the mate may be dead: it has not been heard for seconds."""
-        return self.age > SILENT
+        return now - self.heard > SILENT
 
 
 @dataclass
 class Mates:
     """The newest beacon of every team-mate."""
 
-    _beacons: dict[int, tuple[Beacon, float]] = field(default_factory=dict)
+    _newest: dict[int, tuple[int, int]] = field(default_factory=dict)  # boot and sequence
+    _mates: dict[int, Mate] = field(default_factory=dict)
 
     def hear(self, beacon: Beacon, now: float) -> bool:
         """Keep a beacon; tell whether it is news."""
-        known = self._beacons.get(beacon.robot)
-        if known is not None and (known[0].boot, known[0].sequence) >= (beacon.boot, beacon.sequence):
+        stamp = beacon.boot, beacon.sequence
+        if self._newest.get(beacon.robot, (-1, -1)) >= stamp:
             return False
-        self._beacons[beacon.robot] = beacon, now
+        self._newest[beacon.robot] = stamp
+        self._mates[beacon.robot] = _mate(beacon, now)
         return True
 
-    def all(self, now: float) -> list[Mate]:
+    def all(self) -> list[Mate]:
         """Return all team-mates ever heard, by id."""
-        return [_mate(beacon, now - heard) for _, (beacon, heard) in sorted(self._beacons.items())]
+        return [mate for _, mate in sorted(self._mates.items())]
 
 
-def _mate(beacon: Beacon, age: float) -> Mate:
+def _mate(beacon: Beacon, heard: float) -> Mate:
     x, y = beacon.x / 100.0, beacon.y / 100.0
-    path = np.array(beacon.path[: len(beacon.path) // 2 * 2], np.float64).reshape(-1, 2) / 100.0
-    return Mate(beacon.robot, x, y, beacon.heading / 1000.0, path + (x, y), beacon.slowed / 10.0, age)
+    offsets = np.array(beacon.path[: len(beacon.path) // 2 * 2], np.float64).reshape(-1, 2) / 100.0
+    path = offsets + np.array((x, y))
+    return Mate(beacon.robot, x, y, beacon.heading / 1000.0, path, beacon.slowed / 10.0, heard)

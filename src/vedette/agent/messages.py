@@ -8,7 +8,7 @@ import msgspec
 
 
 class Beacon(msgspec.Struct, frozen=True, array_like=True, tag=0):
-    """Where a robot is and where it goes; passed on to everybody. Lengths in centimetres, angles in milliradians."""
+    """Where a robot is and where it goes, in centimetres and milliradians; passed on to everybody."""
 
     robot: int
     boot: int

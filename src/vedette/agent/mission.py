@@ -15,8 +15,14 @@ from vedette.problem import Codec
 class Mission(Protocol):
     """One robot's share of a mission. Beliefs, strategies and impacts are the domain's own (Any)."""
 
-    fusion: Fusion
-    codec: Codec[Any]
+    @property
+    def fusion(self) -> Fusion:
+        """How this robot shares evidence."""
+
+    @property
+    def codec(self) -> Codec[Any]:
+        """How impacts travel."""
+
     strategy: Any  # what the robot is doing; kept between rounds
 
     def observe(self, scan: Scan, pose: Pose, mates: Sequence[Mate], now: float) -> None:
@@ -28,7 +34,7 @@ class Mission(Protocol):
     def freeze(self) -> Any:
         """Return the belief of a round: a snapshot of what the team knows."""
 
-    def prepare(self, belief: Any, pose: Pose, mates: Sequence[Mate], blocked: bool) -> None:
+    def prepare(self, belief: Any, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float) -> None:
         """Do the slow part of planning, the present strategy restated for the round included.
 
         ``blocked``: the robot cannot go on as it would, so that its mates count as obstacles.
@@ -68,6 +74,6 @@ class Mission(Protocol):
         """Give up the present strategy: the robot cannot carry it out."""
 
     def route(
-        self, pose: Pose, goal: tuple[float, float], mates: Sequence[Mate], blocked: bool
+        self, pose: Pose, goal: tuple[float, float], mates: Sequence[Mate], blocked: bool, now: float
     ) -> Route | None:
         """Return a way to a goal on the newest map, or None."""

@@ -79,7 +79,10 @@ def give_way(
             continue
         if mate.rank > me.rank:
             bystanders = [o for o in others if o is not mate]
-            if max(me.slowed, mate.slowed) < 2.0 * SLOWED or _refuge(traversable, resolution, mate, me, bystanders) is not None:
+            if (
+                max(me.slowed, mate.slowed) < 2.0 * SLOWED
+                or _refuge(traversable, resolution, mate, me, bystanders) is not None
+            ):
                 continue
         refuge = _refuge(traversable, resolution, me, mate, [o for o in others if o is not mate])
         if refuge is not None:
@@ -192,22 +195,24 @@ def _meets_not(me: Intent, theirs: NDArray[np.float64], limit: float) -> bool:
 
 def _foresee(robot: Intent) -> NDArray[np.float64]:
     """Places ``(T, 2)`` every ``TICK`` seconds if the robot drives its path at top speed; one place if it stands."""
-    here = np.array([(robot.x, robot.y)])
-    if len(robot.path) == 0:
-        return here
-    xy = np.vstack((here, robot.path))
-    arc = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(xy, axis=0).T))))
+    xy = np.empty((len(robot.path) + 1, 2))
+    xy[0], xy[1:] = (robot.x, robot.y), robot.path
+    if len(xy) == 1:
+        return xy
+    step = xy[1:] - xy[:-1]
+    arc = np.zeros(len(xy))
+    np.cumsum(np.sqrt((step * step).sum(axis=1)), out=arc[1:])
     along = np.arange(0.0, arc[-1] + robot.speed * TICK, robot.speed * TICK)
-    return np.column_stack((np.interp(along, arc, xy[:, 0]), np.interp(along, arc, xy[:, 1])))
+    way = np.empty((len(along), 2))
+    way[:, 0], way[:, 1] = np.interp(along, arc, xy[:, 0]), np.interp(along, arc, xy[:, 1])
+    return way
 
 
 def _padded(way: NDArray[np.float64], steps: int) -> NDArray[np.float64]:
     return np.vstack((way, np.repeat(way[-1:], steps - len(way), axis=0)))
 
 
-def _box(
-    shape: tuple[int, ...], resolution: float, x: float, y: float, reach: float
-) -> tuple[slice, slice]:
+def _box(shape: tuple[int, ...], resolution: float, x: float, y: float, reach: float) -> tuple[slice, slice]:
     """Rows and columns of the cells within ``reach`` of the point, clipped to the grid."""
     low = np.floor((np.array((y, x)) - reach) / resolution).astype(int)
     high = np.floor((np.array((y, x)) + reach) / resolution).astype(int) + 1
@@ -226,9 +231,7 @@ def _points(shape: tuple[int, ...], resolution: float, flat: NDArray[np.int64]) 
     return np.column_stack(((col + 0.5) * resolution, (row + 0.5) * resolution))
 
 
-def _lookup(
-    grid: NDArray[np.bool_], resolution: float, points: NDArray[np.float64]
-) -> NDArray[np.bool_]:
+def _lookup(grid: NDArray[np.bool_], resolution: float, points: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Values of the cells that hold the points ``(n, 2)``; False outside."""
     col, row = np.floor(points / resolution).astype(int).T
     inside = (row >= 0) & (col >= 0) & (row < grid.shape[0]) & (col < grid.shape[1])

@@ -164,16 +164,20 @@ class Rounds:
         self._round.belief = self.mission.freeze()
         return effects
 
-    def preparation(self, pose: Pose, mates: list[Mate]) -> Job | None:
-        """Return the job to do between freezing and negotiating, once."""
+    @property
+    def frozen(self) -> bool:
+        """Tell whether a belief is frozen and nothing has been done with it yet."""
+        return self._round is not None and self._round.belief is not None and not self._round.preparing
+
+    def preparation(self, pose: Pose, mates: list[Mate], now: float) -> Job:
+        """Return the job to do between freezing and negotiating."""
         round_ = self._round
-        if round_ is None or round_.belief is None or round_.preparing:
-            return None
+        assert round_
         round_.preparing = True
         belief, blocked = round_.belief, self.blocked
         return Job(
             (self.tree.epoch, round_.sequence),
-            lambda: self.mission.prepare(belief, pose, mates, blocked),
+            lambda: self.mission.prepare(belief, pose, mates, blocked, now),
         )
 
     def prepared(self, key: tuple[int, int], now: float) -> list[Effect]:
@@ -247,9 +251,7 @@ class Rounds:
         return [k for k in self.tree.neighbours if k != self.tree.parent]
 
     def _matches(self, epoch: int, sequence: int) -> bool:
-        return (
-            self._round is not None and epoch == self.tree.epoch and sequence == self._round.sequence
-        )
+        return self._round is not None and epoch == self.tree.epoch and sequence == self._round.sequence
 
     def _say(self, to: int, message: Call | Begin | Flushed | Freeze | Negotiate) -> Send:
         return Send(to, Traffic.NEGOTIATION, encode(message))

@@ -35,7 +35,7 @@ STATUS = {Outcome.COMPLETE: 0, Outcome.INTERRUPTED: 130}  # any other end: 1
 _KILL = re.compile(r"(\d+)@(\d+(?:\.\d*)?)")
 
 
-class OneOf(click.ParamType):
+class OneOf(click.ParamType[str]):
     """A word of a list; for another, the nearest one is offered."""
 
     name = "name"
@@ -55,7 +55,7 @@ class OneOf(click.ParamType):
         return value
 
 
-class Positive(click.ParamType):
+class Positive(click.ParamType[float]):
     """A finite number above zero, with its unit for the message."""
 
     name = "number"
@@ -78,20 +78,64 @@ class Positive(click.ParamType):
 
 @click.command()
 @click.argument("map_path", metavar="[MAP]", required=False, type=Path)
-@click.option("--resolution", type=Positive("m per pixel"), help="Side of a cell, for a MAP that is a plain image [m].")
-@click.option("--robots", type=int, metavar="N", help=f"Size of the team.  [default: {ROBOTS}, or the team file's]")
+@click.option(
+    "--resolution", type=Positive("m per pixel"), help="Side of a cell, for a MAP that is a plain image [m]."
+)
+@click.option(
+    "--robots", type=int, metavar="N", help=f"Size of the team.  [default: {ROBOTS}, or the team file's]"
+)
 @click.option("--team", type=Path, metavar="FILE", help="Team file: bodies, lidars and starts of the robots.")
-@click.option("--starts", metavar='"x,y;x,y"', help="Where the robots start [m].  [default: together, chosen by the seed]")
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of the office, the starts and all chance.")
-@click.option("--planner", type=OneOf(list(PLANNERS)), default="tours", show_default=True, help="How the team decides.")
+@click.option(
+    "--starts",
+    metavar='"x,y;x,y"',
+    help="Where the robots start [m].  [default: together, chosen by the seed]",
+)
+@click.option(
+    "--seed",
+    type=click.IntRange(min=0),
+    default=0,
+    show_default=True,
+    help="Of the office, the starts and all chance.",
+)
+@click.option(
+    "--planner", type=OneOf(list(PLANNERS)), default="tours", show_default=True, help="How the team decides."
+)
 @click.option("--scheme", type=OneOf(SCHEMES), default="token", show_default=True, help="How it negotiates.")
-@click.option("--fusion", type=OneOf(list(FUSIONS)), default="replicated", show_default=True, help="How it shares what it sees.")
-@click.option("--max-time", type=Positive("s"), default=3600.0, show_default=True, help="Simulated time limit [s].")
-@click.option("--link-delay", type=Positive("s", most=10.0), default=0.02, show_default=True, help="Of a message on a link [s].")
-@click.option("--link-loss", type=click.FloatRange(0.0, 0.9), default=0.0, show_default=True, help="Share of messages lost.")
-@click.option("--kill", "kills", multiple=True, metavar="R@T", help="Robot R (from 1) dies at T seconds; may be repeated.")
+@click.option(
+    "--fusion",
+    type=OneOf(list(FUSIONS)),
+    default="replicated",
+    show_default=True,
+    help="How it shares what it sees.",
+)
+@click.option(
+    "--max-time", type=Positive("s"), default=3600.0, show_default=True, help="Simulated time limit [s]."
+)
+@click.option(
+    "--link-delay",
+    type=Positive("s", most=10.0),
+    default=0.02,
+    show_default=True,
+    help="Of a message on a link [s].",
+)
+@click.option(
+    "--link-loss",
+    type=click.FloatRange(0.0, 0.9),
+    default=0.0,
+    show_default=True,
+    help="Share of messages lost.",
+)
+@click.option(
+    "--kill",
+    "kills",
+    multiple=True,
+    metavar="R@T",
+    help="Robot R (from 1) dies at T seconds; may be repeated.",
+)
 @click.option("--return-home", is_flag=True, help="The robots drive back to their starts in the end.")
-@click.option("--out", type=Path, metavar="DIR", help="Folder for the results.  [default: a new one under runs/]")
+@click.option(
+    "--out", type=Path, metavar="DIR", help="Folder for the results.  [default: a new one under runs/]"
+)
 @click.option("--force", is_flag=True, help="Write into DIR although it exists.")
 @click.option("--json", "as_json", is_flag=True, help="Print the summary alone, as JSON.")
 @click.option("--animate", is_flag=True, help="Make a GIF of the mission as well.")
@@ -140,9 +184,7 @@ def explore(
     with ExitStack() as sinks:
         live = sinks.enter_context(LiveView(world.name, world.frame, planning, quiet=as_json))
         names = [spec.name for spec in specs]
-        mcap = sinks.enter_context(
-            McapWriter(folder / "run.mcap", world.name, world.frame, planning, names)
-        )
+        mcap = sinks.enter_context(McapWriter(folder / "run.mcap", world.name, world.frame, planning, names))
         report = run_mission(prepared, (live, mcap))
     _write(report, world, folder, animate)
     click.echo(report.summary.to_json() if as_json else _closing(report.summary, folder), nl=not as_json)
@@ -171,9 +213,7 @@ def _team(team: Path | None, robots: int | None, starts: str | None) -> list[Pla
         specs = [PlatformSpec(name=f"robot-{number}") for number in range(1, count + 1)]
     if len(places) > len(specs):
         raise InputError(f"--starts has {len(places)} places for {len(specs)} robots; leave some out")
-    return [
-        replace(spec, start=places[i]) if i < len(places) else spec for i, spec in enumerate(specs)
-    ]
+    return [replace(spec, start=places[i]) if i < len(places) else spec for i, spec in enumerate(specs)]
 
 
 def _kill(text: str, robots: int) -> tuple[int, float]:

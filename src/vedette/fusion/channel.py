@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.fusion.codec import Codec, Payload, WordPacking, join_word, split_word
+from vedette.fusion.codec import Codec, Payload
 from vedette.fusion.link import Boots, Key, Link, check_boot
+from vedette.fusion.packing import WordPacking, join_word, split_word
 from vedette.fusion.snapshots import NONE, Snapshot, tiles_to_publish
 from vedette.fusion.tiles import (
     CELLS,

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.fusion.codec import MOST_SECTIONS, MOST_TILES, Codec, CodePacking, Payload
+from vedette.fusion.codec import MOST_SECTIONS, MOST_TILES, Codec, Payload
 from vedette.fusion.link import Boots, Key, Link, check_boot
+from vedette.fusion.packing import CodePacking
 from vedette.fusion.snapshots import NONE, Change, Snapshot, tiles_to_publish
 from vedette.fusion.tiles import CELLS, WORDS, TeamMap, Tiling, classes_of, codes_of
 

@@ -24,6 +24,7 @@ from vedette.maps import GridFrame
 from vedette.team import PlatformSpec
 
 GAIN_HIT, GAIN_MISS, CLAMP = 4, 2, 20  # log-odds of one observation and of all [0.2 nats]
+NUDGE = 0.25  # a return lies in the wall, not on its face: it counts as so much farther [cells]
 SIGHTING_STRIDE = 8  # one beam in so many teaches the sighting model
 COUNTS_PERIOD = 10.0  # the model's counts are shared at most so often [s]
 MATE_MARGIN = 0.15  # a return this near a mate's rim is the mate [m]
@@ -47,7 +48,6 @@ class Exploration:
     counts: NDArray[np.int64] = field(init=False)  # (4, BINS) own sightings
     _changed: list[NDArray[np.int64]] = field(default_factory=list)  # cells whose own class changed
     _counts_due: float = 0.0
-    _now: float = 0.0
     _passable: tuple[int, NDArray[np.bool_]] | None = None  # by the map's digest
 
     def __post_init__(self) -> None:
@@ -60,11 +60,10 @@ class Exploration:
 
     def observe(self, scan: Scan, pose: Pose, mates: Sequence[Mate], now: float) -> None:
         """Add a scan to the robot's own evidence; returns from team-mates are not obstacles."""
-        self._now = now
         ranges = np.minimum(scan.ranges, self.spec.range)
         hits = scan.ranges < self.spec.range
         for mate in mates:
-            self._leave_out(mate, pose, scan.angles, ranges, hits)
+            self._leave_out(mate, pose, scan.angles, ranges, hits, now)
         x, y = pose.x - self.frame.origin_x, pose.y - self.frame.origin_y
         resolution = self.frame.resolution
         seen = lidar.count_sightings(
@@ -78,6 +77,7 @@ class Exploration:
             self.spec.range,
             BIN,
             SIGHTING_STRIDE,
+            NUDGE * resolution,
         )
         self.counts[:, : seen.shape[1]] += seen[:, :BINS]
         changed = lidar.integrate_scan(
@@ -91,7 +91,7 @@ class Exploration:
             GAIN_HIT,
             GAIN_MISS,
             CLAMP,
-            0.25 * resolution,
+            NUDGE * resolution,
         )
         if len(changed):
             self._changed.append(changed)
@@ -103,10 +103,11 @@ class Exploration:
         angles: NDArray[np.float64],
         ranges: NDArray[np.float64],
         hits: NDArray[np.bool_],
+        now: float,
     ) -> None:
         """Turn returns from a mate's body into free space up to just before it."""
         dx, dy = mate.x - pose.x, mate.y - pose.y
-        moved = self.spec.speed * min(mate.age, 0.5)
+        moved = self.spec.speed * min(now - mate.heard, 0.5)
         reach = self.spec.radius + MATE_MARGIN + moved
         if np.hypot(dx, dy) > self.spec.range + reach:
             return
@@ -140,21 +141,23 @@ class Exploration:
             counts=self.fusion.counts.reshape(4, BINS).copy(),
         )
 
-    def prepare(self, belief: MapBelief, pose: Pose, mates: Sequence[Mate], blocked: bool) -> None:
+    def prepare(
+        self, belief: MapBelief, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float
+    ) -> None:
         """Find the stops of a round and restate the present tour over them."""
-        team = [(mate.robot, mate.x, mate.y) for mate in mates if not mate.silent]
+        team = [(mate.robot, mate.x, mate.y) for mate in mates if not mate.silent(now)]
         self.platform.place(
-            pose.x, pose.y, self._discs(pose, mates, blocked), [(-1, pose.x, pose.y), *team], self._now
+            pose.x, pose.y, self._discs(pose, mates, blocked, now), [(-1, pose.x, pose.y), *team], now
         )
         self.platform.prepare(belief)
         self.strategy = self.platform.carry_over(self.strategy)
 
-    def _discs(self, pose: Pose, mates: Sequence[Mate], blocked: bool) -> list[Disc]:
+    def _discs(self, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float) -> list[Disc]:
         """Mates that stand in the way: the silent ones, and for a robot that is blocked all those near it."""
         return [
             (mate.x, mate.y, self.spec.radius)
             for mate in mates
-            if mate.silent or (blocked and np.hypot(mate.x - pose.x, mate.y - pose.y) < 3.0)
+            if mate.silent(now) or (blocked and np.hypot(mate.x - pose.x, mate.y - pose.y) < 3.0)
         ]
 
     def key(self, strategy: Tour) -> Hashable:
@@ -219,11 +222,11 @@ class Exploration:
         self.strategy = STAY
 
     def route(
-        self, pose: Pose, goal: tuple[float, float], mates: Sequence[Mate], blocked: bool
+        self, pose: Pose, goal: tuple[float, float], mates: Sequence[Mate], blocked: bool, now: float
     ) -> Route | None:
         """Return the shortest way to a goal on the newest team map, straightened; None if there is none."""
         passable = self._passable_now()
-        for x, y, radius in self._discs(pose, mates, blocked):
+        for x, y, radius in self._discs(pose, mates, blocked, now):
             passable = passable & ~self._disc(x, y, radius + self.spec.radius + CLEARANCE)
         source, target = self._cell(pose.x, pose.y), self._cell(*goal)
         span = distance.distance_field(passable, source, self.frame.resolution, np.array([target]))
@@ -252,4 +255,3 @@ class Exploration:
         rows = frame.origin_y + (np.arange(frame.rows) + 0.5) * frame.resolution - y
         cols = frame.origin_x + (np.arange(frame.cols) + 0.5) * frame.resolution - x
         return rows[:, None] ** 2 + cols**2 < radius**2
-

@@ -2,7 +2,7 @@
 
 A mission adds `Snapshot`s to a `RunLog`, which forwards them to its sinks while it runs
 (`vedette.record.mcap.McapWriter`, `vedette.record.live.LiveView`) and feeds the pictures afterwards
-(`vedette.record.plots`, `vedette.record.animate`). Import these by name: they load much.
+(`vedette.record.progress`, `curves`, `animate`). Import these by name: they load large libraries.
 """
 
 from vedette.record.log import RobotSample, RunLog, Sink, Snapshot

@@ -65,7 +65,12 @@ def _coverage(axes: Axes, log: RunLog, summary: Summary) -> None:
             label=f"$t_{{{level}}}$ = {t:.1f} s",
         )  # fmt: skip
     axes.fill_between((), (), color=_FAINT, alpha=0.5, lw=0, label=f"area above = {summary.auc_s:.1f} s")
-    axes.legend(loc="lower right", frameon=True, framealpha=0.9, edgecolor="none", labelspacing=0.55)
+    axes.legend(
+        loc="lower right" if log.coverage[-1] > 0.55 else "upper left",  # where the curve is not
+        framealpha=0.9,
+        edgecolor="none",
+        labelspacing=0.55,
+    )
     axes.set(ylabel="coverage", ylim=(0, 1.04), yticks=np.linspace(0, 1, 6))
     axes.yaxis.set_major_formatter(PercentFormatter(1.0))
 

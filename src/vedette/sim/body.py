@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -102,7 +103,8 @@ class Bodies:
         if task is None:
             return True
         end = task.xy[-1]
-        away = float(np.hypot(*(self.poses[i, :2] - end)))
+        x, y, _ = self.poses[i].tolist()
+        away = math.hypot(x - end[0], y - end[1])
         if away > ARRIVAL_IF_TAKEN or away <= ARRIVAL:
             return away <= ARRIVAL
         others = np.hypot(*(self.poses[:, :2] - end).T) < self._radii + self.specs[i].radius
@@ -144,20 +146,22 @@ class Bodies:
         else:
             task.idle += dt
         middle = heading + 0.5 * chosen.turn * dt
-        velocity = chosen.speed * np.array((np.cos(middle), np.sin(middle)))
-        if not self._admit(i, x + velocity[0] * dt, y + velocity[1] * dt):
-            velocity[:] = 0.0
-        self.velocities[i] = velocity
-        self.poses[i] = (x + velocity[0] * dt, y + velocity[1] * dt, heading + chosen.turn * dt)
-        self.travelled[i] += float(np.hypot(*velocity)) * dt
+        vx, vy = chosen.speed * math.cos(middle), chosen.speed * math.sin(middle)
+        if not self._admit(i, x + vx * dt, y + vy * dt):
+            vx = vy = 0.0
+        self.velocities[i] = vx, vy
+        self.poses[i] = x + vx * dt, y + vy * dt, heading + chosen.turn * dt
+        self.travelled[i] += math.hypot(vx, vy) * dt
 
     def _sensed(self, i: int) -> NDArray[np.float64]:
         """Rows ``x, y, vx, vy, radius, courtesy`` of the other bodies within 3 m of robot ``i``."""
-        near = np.hypot(*(self.poses[:, :2] - self.poses[i, :2]).T) < SENSING_RANGE
+        away = self.poses[:, :2] - self.poses[i, :2]
+        near = (away * away).sum(axis=1) < SENSING_RANGE**2
         near[i] = False
-        return np.column_stack(
-            (self.poses[near, :2], self.velocities[near], self._radii[near], self._courtesy[i, near])
-        )
+        rows = np.empty((int(near.sum()), 6))
+        rows[:, :2], rows[:, 2:4] = self.poses[near, :2], self.velocities[near]
+        rows[:, 4], rows[:, 5] = self._radii[near], self._courtesy[i, near]
+        return rows
 
     def _admit(self, i: int, x: float, y: float) -> bool:
         """Physics: record the clearance at a new place, and refuse the place on contact."""
@@ -175,7 +179,7 @@ class Bodies:
 
 def _without_repeats(xy: NDArray[np.float64], here: NDArray[np.float64]) -> NDArray[np.float64]:
     """Drop consecutive equal points; a path of a single point starts ``here``."""
-    if len(xy) == 1 or np.allclose(xy, xy[0], atol=1e-6):
+    if len(xy) == 1 or float(np.abs(xy - xy[0]).max()) < 1e-6:
         start = here if np.hypot(*(here - xy[0])) > 1e-6 else xy[0] - (1e-3, 0.0)
         return np.ascontiguousarray(np.vstack((start, xy[0])))
     keep = np.concatenate(([True], np.hypot(*np.diff(xy, axis=0).T) > 1e-9))

@@ -54,9 +54,7 @@ def explore(simulation: Simulation, sinks: Sequence[Sink] = ()) -> Report:
     observer = Observer(simulation, reference, sinks)
     simulation.clock.start()
     outcome = simulation.run(observer.look, observer.period)
-    return Report(
-        observer.summary(outcome), timing(simulation), observer.log, observer.delivered_map()
-    )
+    return Report(observer.summary(outcome), timing(simulation), observer.log, observer.delivered_map())
 
 
 class Observer:
@@ -85,7 +83,7 @@ class Observer:
         log_odds = np.zeros(self._simulation.world.frame.shape, np.int16)
         seen = np.zeros(log_odds.shape, bool)
         for i in self._simulation.living:
-            own = self._simulation.mission(i).log_odds
+            own = self._simulation.missions[i].log_odds
             log_odds += own
             seen |= own != 0
         known = np.where(log_odds < 0, FREE, OCCUPIED).astype(np.uint8)
@@ -125,7 +123,7 @@ class Observer:
     def delivered_map(self) -> NDArray[np.uint8]:
         """Return the team map as the first living robot holds it; what all saw, if none lives."""
         living = self._simulation.living
-        return self._simulation.mission(living[0]).fusion.classes.copy() if living else self._union()
+        return self._simulation.missions[living[0]].fusion.classes.copy() if living else self._union()
 
     def summary(self, outcome: Outcome) -> Summary:
         """Return the figures of the mission, in simulated time."""
@@ -154,14 +152,14 @@ class Observer:
             map_errors=wrong,
             map_error_share=wrong / known if known else 0.0,
             path_m=dict(zip(names, simulation.bodies.travelled.tolist(), strict=True)),
-            overlap=overlap([simulation.mission(i).log_odds != 0 for i in range(len(names))]),
+            overlap=overlap([simulation.missions[i].log_odds != 0 for i in range(len(names))]),
             collisions=simulation.bodies.collisions,
             min_clearance_m=simulation.bodies.min_clearance,
             rounds=leader.decisions,
             sweeps=leader.sweeps,
             bound_ratio=float(np.mean(ratios)) if ratios else None,
-            messages=_traffic(names, simulation.links.messages),
-            bytes=_traffic(names, simulation.links.bytes),
+            messages=_traffic(names, simulation.links.messages_sent),
+            bytes=_traffic(names, simulation.links.bytes_sent),
         )
 
 

@@ -19,20 +19,20 @@ class Links:
     delay: float  # one way [s]
     loss: float  # probability that a message is lost
     rng: np.random.Generator
-    messages: dict[Traffic, list[int]] = field(init=False)  # sent, by kind and robot
-    bytes: dict[Traffic, list[int]] = field(init=False)
+    messages_sent: dict[Traffic, list[int]] = field(init=False)  # by kind and robot
+    bytes_sent: dict[Traffic, list[int]] = field(init=False)
     _queue: list[tuple[float, int, int, int, bytes]] = field(default_factory=list)
     _sent: int = 0
     _last: defaultdict[tuple[int, int], float] = field(default_factory=lambda: defaultdict(float))
 
     def __post_init__(self) -> None:
-        self.messages = {kind: [0] * self.robots for kind in Traffic}
-        self.bytes = {kind: [0] * self.robots for kind in Traffic}
+        self.messages_sent = {kind: [0] * self.robots for kind in Traffic}
+        self.bytes_sent = {kind: [0] * self.robots for kind in Traffic}
 
     def send(self, sender: int, send: Send, now: float) -> None:
         """Put a message on its link."""
-        self.messages[send.traffic][sender] += 1
-        self.bytes[send.traffic][sender] += len(send.payload)
+        self.messages_sent[send.traffic][sender] += 1
+        self.bytes_sent[send.traffic][sender] += len(send.payload)
         if self.loss > 0 and self.rng.random() < self.loss:
             return
         link = sender, send.to

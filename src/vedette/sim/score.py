@@ -14,6 +14,8 @@ from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.sim.world import World, reachable_poses
 from vedette.team import PlatformSpec
 
+ROOM = 0.01  # a disc that would touch both sides of a slot does not fit through it [m]
+
 
 @dataclass(frozen=True, eq=False)
 class Reference:
@@ -31,7 +33,7 @@ class Reference:
             (spec.radius, spec.range): start for spec, start in zip(self.specs, self.starts, strict=True)
         }
         for (radius, reach), start in bodies.items():
-            poses = reachable_poses(self.world, radius, start[0], start[1])
+            poses = reachable_poses(self.world, radius + ROOM, start[0], start[1])
             seen |= visible_cells(self.world.solid, poses, reach / self.world.frame.resolution)
         return seen & ~self.world.solid
 

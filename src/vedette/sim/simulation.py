@@ -10,7 +10,6 @@ import heapq
 import time as wall
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +29,7 @@ from vedette.sim.links import Links
 from vedette.sim.world import World
 from vedette.team import PlatformSpec
 
+BOOT = 1  # simulated robots start once
 TICK = 0.1  # of bodies and poses [s]
 JOB_TIME = 0.03  # charged for preparing a round [s]
 STUCK_AFTER = 4.0  # without progress [s]
@@ -96,24 +96,29 @@ class Simulation:
         seeds = np.random.SeedSequence(setup.seed).spawn(n + 1)
         self._noise = [np.random.default_rng(seed) for seed in seeds[:n]]
         self.links = Links(n, setup.link_delay, setup.link_loss, np.random.default_rng(seeds[n]))
-        self.agents = [self._agent(i) for i in range(n)]
+        self.missions = [self._mission(i) for i in range(n)]
+        self.agents = [
+            Agent(i, BOOT, spec, world.frame, mission, setup.scheme, setup.return_home)
+            for i, (spec, mission) in enumerate(zip(self.specs, self.missions, strict=True))
+        ]
         self.clock = Clock()
         self.now = 0.0
         self._jobs: list[tuple[float, int, Job]] = []
         self._tree_due = [0.0]
         self._epoch = 0
         self._kills = sorted(setup.kills, key=lambda kill: kill[1])
+        self._radii = np.array([spec.radius for spec in self.specs])
+        self._beams = [
+            np.radians(spec.view) * ((np.arange(spec.beams) + 0.5) / spec.beams - 0.5) for spec in self.specs
+        ]
         self._next_scan = [0.0] * n
         self._stuck_told = [0.0] * n
         self._told_arrival = [True] * n
         self._last_change = 0.0
 
-    def _agent(self, i: int) -> Agent:
-        fusion: Fusion = FUSIONS[self.setup.fusion](i, 1, self.world.frame.shape, 4 * BINS)
-        mission = Exploration(self.world.frame, self.specs[i], planner(self.setup.planner), fusion)
-        return Agent(
-            i, 1, self.specs[i], self.world.frame, mission, self.setup.scheme, self.setup.return_home
-        )
+    def _mission(self, i: int) -> Exploration:
+        fusion: Fusion = FUSIONS[self.setup.fusion](i, BOOT, self.world.frame.shape, 4 * BINS)
+        return Exploration(self.world.frame, self.specs[i], planner(self.setup.planner), fusion)
 
     @property
     def living(self) -> list[int]:
@@ -124,11 +129,6 @@ class Simulation:
         """Return x, y [m] and heading [rad] of a robot, team frame."""
         x, y, heading = self.bodies.poses[i].tolist()
         return x + self._corner[0], y + self._corner[1], heading
-
-    def mission(self, i: int) -> Exploration:
-        """Return a robot's mission."""
-        mission: Any = self.agents[i].mission
-        return mission
 
     # -- the loop -----------------------------------------------------------------------------------
 
@@ -211,12 +211,8 @@ class Simulation:
 
     def _scan(self, i: int, x: float, y: float, heading: float) -> Scan:
         spec = self.specs[i]
-        beams = (np.arange(spec.beams) + 0.5) / spec.beams - 0.5
-        angles = heading + np.radians(spec.view) * beams
-        others = [k for k in range(len(self.specs)) if k != i]
-        discs = np.column_stack(
-            (self.bodies.poses[others, :2], [self.specs[k].radius for k in others])
-        )
+        angles = heading + self._beams[i]
+        discs = np.column_stack((self.bodies.poses[:, :2], self._radii))[np.arange(len(self.specs)) != i]
         local = self.bodies.poses[i]
         ranges = cast_rays(
             self.world.solid, self.world.frame.resolution, local[0], local[1], angles, spec.range, discs
@@ -258,18 +254,16 @@ class Simulation:
         match effect:
             case Send():
                 self.links.send(i, effect, self.now)
-            case Drive(route=None):
-                self.bodies.command(i, None)
-                self._told_arrival[i] = True
             case Drive(route):
-                self.bodies.command(i, route.path - self._corner, route.passable)
-                self._told_arrival[i] = False
-                self._last_change = self.now
+                self._told_arrival[i] = route is None
+                if route is None:
+                    self.bodies.command(i, None)
+                else:
+                    self.bodies.command(i, route.path - self._corner, route.passable)
+                    self._last_change = self.now
             case Job():
                 began = wall.process_time()
                 effect.run()
                 key = i, *effect.key
-                self.clock.planning[key] = (
-                    self.clock.planning.get(key, 0.0) + wall.process_time() - began
-                )
+                self.clock.planning[key] = self.clock.planning.get(key, 0.0) + wall.process_time() - began
                 heapq.heappush(self._jobs, (self.now + JOB_TIME, i, effect))

@@ -145,7 +145,7 @@ def _check_together(
 
 
 def _joins(world: World, radius: float, area: NDArray[np.bool_], x: float, y: float) -> bool:
-    """Tell whether a disc can drive from a point to the area's cell nearest to it, a short search if it can."""
+    """Tell whether a disc can drive from a point to the area, by a search for the nearest of its cells."""
     cells = np.flatnonzero(area)
     if not cells.size:
         return False

@@ -84,7 +84,8 @@ def freeze(
     if hidden > 0:
         local += LN2 * hidden / frame.resolution**2 * _behind(crop, cells, starts, factor)
     first = (rows.start // factor, cols.start // factor)
-    weights = np.zeros(planning.shape, np.float32)
+    # Outside the window nothing is known, and each robot's window is its own.
+    weights = LN2 * np.outer(_sizes(frame.rows, factor), _sizes(frame.cols, factor)).astype(np.float32)
     weights[first[0] : first[0] + local.shape[0], first[1] : first[1] + local.shape[1]] = local
     return MapBelief(
         window, crop, planning, factor, first, unknown, weights.ravel(), cells, starts, layers, counts
@@ -102,6 +103,11 @@ def _window(classes: NDArray[np.uint8], factor: int, reach: int) -> tuple[slice,
         return slice(start, min(size, -(-(int(where[-1]) + 1 + reach) // factor) * factor))
 
     return span(classes.any(axis=1), classes.shape[0]), span(classes.any(axis=0), classes.shape[1])
+
+
+def _sizes(cells: int, factor: int) -> NDArray[np.int64]:
+    """Cells along one side in each planning cell; the last may have fewer."""
+    return np.minimum(factor, cells - np.arange(0, cells, factor))
 
 
 def _block_sum(mask: NDArray[np.bool_], factor: int) -> NDArray[np.uint16]:

@@ -42,8 +42,8 @@ NOTHING = Impact(np.empty(0, np.uint32), np.empty(0, np.uint8))
 
 
 def quantise(share: NDArray[np.float32]) -> Misses:
-    """Round probabilities of being seen to the nearest log-miss level, once."""
-    return _LEVELS[np.rint(np.clip(share, 0, 1) * 8).astype(np.intp)]
+    """Round probabilities of being seen to the nearest log-miss level, halves up, once."""
+    return _LEVELS[np.floor(np.clip(share, 0, 1) * 8 + 0.5).astype(np.intp)]
 
 
 def final_miss(impact: Impact, size: int) -> NDArray[np.float32]:
@@ -79,13 +79,12 @@ class ImpactCodec:
         Raises:
             ValueError: the payload is not an impact over this many planning cells.
         """
-        limit = 4 * LAYERS + 6 * self._cells * LAYERS
         try:
             unpacker = zlib.decompressobj(wbits=-15)
-            body = unpacker.decompress(payload, limit)
+            body = unpacker.decompress(payload, self._largest_body + 1)
         except zlib.error as error:
             raise ValueError(f"impact does not inflate: {error}") from None
-        if not unpacker.eof or len(body) < 4 * LAYERS:
+        if not unpacker.eof or unpacker.unused_data or len(body) < 4 * LAYERS:
             raise ValueError("impact is cut short or too large")
         counts = np.frombuffer(body, "<u4", LAYERS).astype(np.int64)
         total = int(counts.sum())
@@ -115,5 +114,9 @@ class ImpactCodec:
     @property
     def bound(self) -> int:
         """Largest encoding of any impact over this many planning cells [bytes]; no team size in it."""
-        raw = 4 * LAYERS + 6 * self._cells * LAYERS
-        return raw + 5 * (raw // 16383 + 1) + 64
+        return self._largest_body + 5 * (self._largest_body // 16383 + 1) + 64  # deflate at its worst
+
+    @property
+    def _largest_body(self) -> int:
+        """Counts, two bytes an entry, four more a wide gap: the gaps of a layer sum to less than the cells."""
+        return 4 * LAYERS + LAYERS * (2 * self._cells + 4 * (self._cells // 255))

@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.impact import NOTHING, Impact
 from vedette.kernels import coverage
+from vedette.problem import Objective
 
 
-class MappingObjective:
+class MappingObjective(Objective[MapBelief, Impact]):
     """``psi(impact) = sum_s H_s sum_b w_b (1 - prod_i m_i(s, b))``  [nats].
 
     With one layer this is the paper's eq. (41) in gain form; with weights ``1/t_b - 1/t_{b+1}`` it is its eq.

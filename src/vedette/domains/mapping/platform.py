@@ -135,7 +135,8 @@ class MappingPlatform:
                 break
             away = np.hypot(self.stops.targets[:, 0] - x, self.stops.targets[:, 1] - y)
             nearest = int(np.argmin(away))
-            if away[nearest] <= SAME_PLACE and nearest not in order:
+            reachable = np.isfinite(self.stops.first_leg[nearest])
+            if away[nearest] <= SAME_PLACE and reachable and nearest not in order:
                 order.append(nearest)
         return self.tour(np.array(order, np.int64))
 
@@ -146,8 +147,8 @@ class MappingPlatform:
             return STAY
         legs = np.concatenate(
             ([self.stops.first_leg[order[0]]], self.stops.legs[order[:-1], order[1:]])
-        ).astype(np.float64)
-        arrivals = np.cumsum(legs)
+        )
+        arrivals = np.cumsum(legs, dtype=np.float32).astype(np.float64)  # to the bit as the kernel's
         order = order[: int(np.isfinite(arrivals).sum())]
         return Tour(
             self.stops.targets[order],

@@ -55,29 +55,35 @@ class BurgardPlatform(MappingPlatform):
         return self.tour(np.array([chosen])) if chosen >= 0 else STAY
 
     def _costs(self, belief: MapBelief, current: Tour) -> NDArray[np.float64]:
-        """Path lengths [m] of all robots (rows, by id) to all stops; this robot's row is its own."""
+        """Path lengths [m] of all robots (rows, by place) to all stops; this robot's row is its own."""
         assert self.stops is not None
         assert self.ground is not None
         frame = belief.frame
         views = np.array([frame.flat(x, y) for x, y in self.stops.views])
         reachable = np.isfinite(self.stops.first_leg)
         rows = []
-        for robot, (_, x, y) in enumerate(self.team):
+        for robot, (x, y) in enumerate(self._places):
             if robot == self._row:
                 row = self.stops.first_leg.astype(np.float64) * self.spec.speed
                 if len(current):
                     row[current.stops[0]] -= STICK
             else:
+                r, c = np.clip(frame.cell(x, y), 0, (frame.rows - 1, frame.cols - 1))
                 field = distance.distance_field(
-                    self.ground.passable, frame.flat(x, y), frame.resolution, views
+                    self.ground.passable, int(r * frame.cols + c), frame.resolution, views
                 )
                 row = field.ravel()[views].astype(np.float64)
             rows.append(np.where(reachable, row, np.inf))
         return np.array(rows)
 
     @property
+    def _places(self) -> list[tuple[float, float]]:
+        """Where all robots are, in an order that all agree on: ties must fall alike for everybody."""
+        return sorted((x, y) for _, x, y in self.team)
+
+    @property
     def _row(self) -> int:
-        here = [np.hypot(x - self.x, y - self.y) for _, x, y in self.team]
+        here = [np.hypot(x - self.x, y - self.y) for x, y in self._places]
         return int(np.argmin(here))
 
     def _assign(self, costs: NDArray[np.float64]) -> int:
