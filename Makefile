@@ -26,10 +26,10 @@ explore: ready ## Watch three robots map an office; the first run also installs 
 	@$(BIN)/vedette explore $(ARGS)
 
 test: ready-dev ## Run the quick tests
-	@PATH="$(CURDIR)/$(BIN):$$PATH" $(PY) -m pytest -m "not slow" -n auto --maxprocesses 4 --dist loadgroup $(ARGS)
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(PY) -m pytest -m "not slow" -n auto --maxprocesses 4 --dist loadfile $(ARGS)
 
 test-all: ready-dev ## Run all tests, the slow ones too
-	@PATH="$(CURDIR)/$(BIN):$$PATH" $(PY) -m pytest -n auto --maxprocesses 4 --dist loadgroup $(ARGS)
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(PY) -m pytest -n auto --maxprocesses 4 --dist loadfile $(ARGS)
 
 check: lint types contracts rust-lint ## Do all that .ci/run does: lint, types, import contracts, quick tests
 	@$(MAKE) --no-print-directory test
@@ -42,7 +42,7 @@ types: ready-dev ## Check the types
 	@$(BIN)/mypy
 
 contracts: ready-dev ## Check that imports run one way
-	@$(BIN)/lint-imports
+	@$(BIN)/lint-imports --no-logo
 
 rust-lint: ready-dev ## Lint and check the formatting of the Rust code
 	@cargo fmt --manifest-path rust/Cargo.toml --check
@@ -64,7 +64,7 @@ clean: ## Remove all that make has made; runs/ stays
 
 # Installing compiles the kernels, so make has to look at their age afresh after it.
 ready: $(INSTALLED)
-	@$(MAKE) --no-print-directory $(KERNELS)
+	@$(MAKE) --no-print-directory --silent $(KERNELS)
 
 ready-dev: $(DEV_PACKAGES) ready
 

@@ -6,7 +6,7 @@
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-pub const LAYERS: usize = 16;
+pub const LAYERS: usize = 32;
 const STEPS_PER_NAT: f64 = 16.0;
 const FREE: u8 = 1;
 const OCCUPIED: u8 = 2;
@@ -152,11 +152,12 @@ pub fn footprints(
     let mut share = vec![0.0_f32; coarse_rows * coarse_cols];
     let mut coarse_touched: Vec<usize> = Vec::new();
     let (mut starts, mut cells, mut shares) = (vec![0_i64], Vec::new(), Vec::new());
+    let room = room(classes, rows, cols);
     for (&view, &heading) in views.iter().zip(facing) {
         for ray in 0..rays {
             let turn = std::f64::consts::TAU * ((ray as f64 + 0.5) / rays as f64 - 0.5);
             if turn.abs() <= 0.5 * sensor.view {
-                trace(classes, rows, cols, view as usize, heading + turn, sensor, |cell, p| {
+                trace(classes, &room, rows, cols, view as usize, heading + turn, sensor, |cell, p| {
                     if seen[cell] == 0.0 {
                         touched.push(cell);
                     }
@@ -193,9 +194,35 @@ pub fn footprints(
     (starts, cells, shares)
 }
 
+/// Chebyshev distance [cells] from each cell to the nearest that is not free, outside included; at most 255.
+fn room(classes: &[u8], rows: usize, cols: usize) -> Vec<u8> {
+    let mut room: Vec<u8> = classes.iter().map(|&class| if class == FREE { 255 } else { 0 }).collect();
+    let at = |room: &[u8], row: i64, col: i64| {
+        let inside = row >= 0 && col >= 0 && row < rows as i64 && col < cols as i64;
+        if inside { room[row as usize * cols + col as usize] } else { 0 }
+    };
+    for forward in [true, false] {
+        let back: i64 = if forward { -1 } else { 1 };
+        for i in 0..rows * cols {
+            let cell = if forward { i } else { rows * cols - 1 - i };
+            if room[cell] > 0 {
+                let (row, col) = ((cell / cols) as i64, (cell % cols) as i64);
+                let nearest = (-1..=1)
+                    .map(|side| at(&room, row + back, col + side))
+                    .chain([at(&room, row, col + back)])
+                    .fold(254, u8::min);
+                room[cell] = room[cell].min(nearest + 1);
+            }
+        }
+    }
+    room
+}
+
 /// Walk one ray from a cell's centre, reporting each unknown cell with its probability of being seen.
+#[allow(clippy::too_many_arguments)]
 fn trace(
     classes: &[u8],
+    room: &[u8],
     rows: usize,
     cols: usize,
     from: usize,
@@ -210,8 +237,24 @@ fn trace(
     let (mut next_row, mut next_col) = (0.5 * per_row, 0.5 * per_col);
     let (mut travelled, mut unknown) = (0.0_f64, 0.0_f64);
     loop {
-        let leave = next_row.min(next_col).min(sensor.range_cells);
         let cell = row as usize * cols + col as usize;
+        if room[cell] > 2 {
+            // All cells this near are free: leap to the last crossing inside them.
+            let more = f64::from(room[cell] - 2);
+            let end = (next_row + more * per_row).min(next_col + more * per_col);
+            if end >= sensor.range_cells {
+                return;
+            }
+            let crossed_rows = ((end - next_row) / per_row).floor() + 1.0;
+            let crossed_cols = ((end - next_col) / per_col).floor() + 1.0;
+            row += row_step * crossed_rows as i64;
+            col += col_step * crossed_cols as i64;
+            next_row += crossed_rows * per_row;
+            next_col += crossed_cols * per_col;
+            travelled = end;
+            continue;
+        }
+        let leave = next_row.min(next_col).min(sensor.range_cells);
         match classes[cell] {
             OCCUPIED => return,
             FREE => {}
@@ -388,24 +431,33 @@ impl<'a> Tours<'a> {
         max_stops: usize,
     ) -> Self {
         let miss = miss_table();
-        let mut cells: Vec<u32> = stops.cells.to_vec();
-        cells.sort_unstable();
-        cells.dedup();
+        let first = stops.cells.iter().min().copied().unwrap_or(0);
+        let last = stops.cells.iter().max().copied().unwrap_or(0);
+        let mut numbers = vec![0_u32; (last - first) as usize + 1]; // local number of a cell, from 1; 0: none
+        let mut cells: Vec<u32> = Vec::new();
+        let mut local = Vec::with_capacity(stops.cells.len());
+        for &cell in stops.cells {
+            let number = &mut numbers[(cell - first) as usize];
+            if *number == 0 {
+                cells.push(cell);
+                *number = cells.len() as u32;
+            }
+            local.push(*number - 1);
+        }
+        let mut added = vec![[0_u8; LAYERS]; cells.len()];
+        for (&key, &q) in others.0.iter().zip(others.1) {
+            let place = (key / LAYERS as u32).wrapping_sub(first) as usize;
+            let number = numbers.get(place).copied().unwrap_or(0);
+            if number > 0 {
+                added[number as usize - 1][(key % LAYERS as u32) as usize] = q;
+            }
+        }
         let mut worth = Vec::with_capacity(cells.len());
-        let mut at = 0;
-        for &cell in &cells {
-            while at < others.0.len() && others.0[at] / (LAYERS as u32) < cell {
-                at += 1;
-            }
-            let mut totals = [0_u8; LAYERS];
-            while at < others.0.len() && others.0[at] / LAYERS as u32 == cell {
-                totals[(others.0[at] % LAYERS as u32) as usize] = others.1[at];
-                at += 1;
-            }
+        for (&cell, added) in cells.iter().zip(&added) {
             let mut total = 0_u8;
             let mut suffix = [0.0_f64; LAYERS];
             for layer in 0..LAYERS {
-                total = total.saturating_add(totals[layer]);
+                total = total.saturating_add(added[layer]);
                 suffix[layer] = layer_weights[layer] * miss[total as usize];
             }
             let weight = f64::from(weights[cell as usize]);
@@ -417,11 +469,6 @@ impl<'a> Tours<'a> {
             }
             worth.push(row);
         }
-        let local = stops
-            .cells
-            .iter()
-            .map(|cell| cells.binary_search(cell).expect("own cell") as u32)
-            .collect();
         let seen = stops
             .misses
             .iter()
@@ -446,6 +493,15 @@ impl<'a> Tours<'a> {
             }
         }
         sums
+    }
+
+    fn in_layer(&self, stop: usize, layer: usize) -> f32 {
+        self.entries(stop)
+            .map(|entry| {
+                let cell = self.local[entry] as usize;
+                self.seen[entry] * self.missed[cell] * self.worth[cell][layer]
+            })
+            .sum()
     }
 
     fn observe(&mut self, stop: usize) {
@@ -492,9 +548,12 @@ impl<'a> Tours<'a> {
     }
 
     /// Insert the stop that adds most, where it adds most, until nothing adds or the tour is full.
-    fn insert_greedily(&mut self, tour: &mut Vec<usize>) {
+    ///
+    /// `tables` holds at least what each stop adds in every layer: that only shrinks as the tour grows,
+    /// so a table is brought up to date only when its stop looks best.
+    fn insert_greedily(&mut self, tour: &mut Vec<usize>, tables: &mut [[f32; LAYERS]]) {
         while tour.len() < self.max_stops.min(self.stops.len()) {
-            let Some((stop, place)) = self.best_insertion(tour) else { return };
+            let Some((stop, place)) = self.best_insertion(tour, tables) else { return };
             let before = self.score(tour);
             tour.insert(place, stop);
             if self.score(tour) <= before {
@@ -504,50 +563,40 @@ impl<'a> Tours<'a> {
         }
     }
 
-    fn best_insertion(&mut self, tour: &[usize]) -> Option<(usize, usize)> {
+    fn best_insertion(&mut self, tour: &[usize], tables: &mut [[f32; LAYERS]]) -> Option<(usize, usize)> {
         // What each stop of the tour is worth in every layer, given the stops before it.
         let mut arrivals = Vec::with_capacity(tour.len());
-        let mut tables = Vec::with_capacity(tour.len());
+        let mut present = Vec::with_capacity(tour.len());
         let (mut now, mut from) = (0.0, None);
         for &stop in tour {
             now += self.stops.leg(from, stop);
             arrivals.push(now);
-            tables.push(self.by_layer(stop));
+            present.push(self.by_layer(stop));
             self.observe(stop);
             from = Some(stop);
         }
-        let mut best = (0.0_f32, None);
-        for stop in 0..self.stops.len() {
-            if tour.contains(&stop) {
-                continue;
+        let place = |stop: usize, table: &[f32; LAYERS]| match tour.contains(&stop) {
+            true => (0.0, 0),
+            false => best_place(&self.stops, stop, table, tour, &arrivals, &present),
+        };
+        let mut best: Vec<(f32, usize)> =
+            tables.iter().enumerate().map(|(stop, table)| place(stop, table)).collect();
+        let mut exact = vec![false; best.len()];
+        let found = loop {
+            let by_gain = |a: &usize, b: &usize| best[*a].0.total_cmp(&best[*b].0).then(b.cmp(a));
+            let stop = (0..best.len()).max_by(by_gain)?;
+            if best[stop].0 <= 0.0 {
+                break None;
             }
-            let own = self.by_layer(stop);
-            for place in 0..=tour.len() {
-                let from = place.checked_sub(1).map(|i| tour[i]);
-                let start = place.checked_sub(1).map_or(0.0, |i| arrivals[i]);
-                let arrival = start + self.stops.leg(from, stop);
-                if !arrival.is_finite() {
-                    continue;
-                }
-                let mut gain = own[self.stops.layer(arrival)];
-                if let Some(&next) = tour.get(place) {
-                    let delay = arrival + self.stops.leg(Some(stop), next) - arrivals[place];
-                    if !delay.is_finite() {
-                        continue;
-                    }
-                    for (later, table) in arrivals[place..].iter().zip(&tables[place..]) {
-                        gain += table[self.stops.layer(later + delay)] - table[self.stops.layer(*later)];
-                    }
-                }
-                // A hair less for a later arrival: inside a layer the nearer stop comes first.
-                gain *= 1.0 - 1e-4 * arrival.min(1e3) / 1e3;
-                if gain > best.0 {
-                    best = (gain, Some((stop, place)));
-                }
+            if exact[stop] {
+                break Some((stop, best[stop].1));
             }
-        }
+            tables[stop] = self.by_layer(stop);
+            best[stop] = place(stop, &tables[stop]);
+            exact[stop] = true;
+        };
         self.forget(tour);
-        best.1
+        found
     }
 
     /// Move a stop or reverse a stretch as long as that helps.
@@ -591,11 +640,47 @@ impl<'a> Tours<'a> {
         let earliest = self.stops.earliest();
         let mut gains: Vec<f32> = (0..self.stops.len())
             .filter(|&stop| earliest[stop].is_finite())
-            .map(|stop| self.by_layer(stop)[self.stops.layer(earliest[stop])])
+            .map(|stop| self.in_layer(stop, self.stops.layer(earliest[stop])))
             .collect();
         gains.sort_unstable_by(|a, b| b.total_cmp(a));
         gains.iter().take(self.max_stops).map(|&g| f64::from(g)).sum()
     }
+}
+
+/// Where in a tour a stop adds most, and how much: what it sees, less what it delays.
+fn best_place(
+    stops: &Stops,
+    stop: usize,
+    table: &[f32; LAYERS],
+    tour: &[usize],
+    arrivals: &[f32],
+    present: &[[f32; LAYERS]],
+) -> (f32, usize) {
+    let mut best = (0.0_f32, 0);
+    for place in 0..=tour.len() {
+        let from = place.checked_sub(1).map(|i| tour[i]);
+        let start = place.checked_sub(1).map_or(0.0, |i| arrivals[i]);
+        let arrival = start + stops.leg(from, stop);
+        if !arrival.is_finite() {
+            continue;
+        }
+        let mut gain = table[stops.layer(arrival)];
+        if let Some(&next) = tour.get(place) {
+            let delay = arrival + stops.leg(Some(stop), next) - arrivals[place];
+            if !delay.is_finite() {
+                continue;
+            }
+            for (later, worth) in arrivals[place..].iter().zip(&present[place..]) {
+                gain += worth[stops.layer(later + delay)] - worth[stops.layer(*later)];
+            }
+        }
+        // A hair less for a later arrival: inside a layer the nearer stop comes first.
+        gain *= 1.0 - 1e-4 * arrival.min(1e3) / 1e3;
+        if gain > best.0 {
+            best = (gain, place);
+        }
+    }
+    best
 }
 
 pub struct Reply {
@@ -619,10 +704,12 @@ pub fn best_tour(
     let current_gain = tours.value(&current).0;
     let mut best: Vec<usize> = Vec::new();
     let mut best_score = 0.0;
-    for mut tour in [Vec::new(), current] {
-        tours.insert_greedily(&mut tour);
+    let again = !current.is_empty();
+    let tables: Vec<_> = (0..tours.stops.len()).map(|stop| tours.by_layer(stop)).collect();
+    for mut tour in std::iter::once(Vec::new()).chain(again.then_some(current)) {
+        tours.insert_greedily(&mut tour, &mut tables.clone());
         tours.improve(&mut tour);
-        tours.insert_greedily(&mut tour);
+        tours.insert_greedily(&mut tour, &mut tables.clone());
         let score = tours.score(&tour);
         if score > best_score {
             best = tour;

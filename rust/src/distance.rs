@@ -25,13 +25,7 @@ pub fn distance_field(
 ) -> Vec<f32> {
     let moves = allowed_moves(open, cols);
     let mut search = Search::new(&moves, cols);
-    let left = search.want(
-        stop_at
-            .unwrap_or(&[])
-            .iter()
-            .copied()
-            .filter(|&cell| open[cell] != 0),
-    );
+    let left = search.want(stop_at.unwrap_or(&[]).iter().copied().filter(|&cell| open[cell] != 0));
     let last = match stop_at {
         Some(_) if left == 0 => 0,
         _ => search.run(&connections(open, cols, source), UNREACHED - 1, left),
@@ -60,11 +54,7 @@ pub fn distance_matrix(open: &[u8], cols: usize, cells: &[usize], resolution: f6
     let mut matrix = vec![f32::INFINITY; size * size];
     for i in 0..size {
         let left = search.want(doors[i + 1..].iter().flatten().map(|&(cell, _)| cell));
-        let last = if left == 0 {
-            0
-        } else {
-            search.run(&doors[i], limit, left)
-        };
+        let last = if left == 0 { 0 } else { search.run(&doors[i], limit, left) };
         matrix[i * size + i] = 0.0;
         for j in i + 1..size {
             let settled = doors[j].iter().filter(|&&(cell, _)| search.cost[cell] <= last);
@@ -82,19 +72,13 @@ pub fn distance_matrix(open: &[u8], cols: usize, cells: &[usize], resolution: f6
 }
 
 fn checked_cells(cells: &PyReadonlyArray1<'_, i64>, size: usize) -> PyResult<Vec<usize>> {
-    cells
-        .as_slice()?
-        .iter()
-        .map(|&cell| checked_cell(cell, size))
-        .collect()
+    cells.as_slice()?.iter().map(|&cell| checked_cell(cell, size)).collect()
 }
 
 fn check_resolution(resolution: f64) -> PyResult<()> {
     match resolution > 0.0 && resolution.is_finite() {
         true => Ok(()),
-        false => Err(PyValueError::new_err(format!(
-            "resolution must be > 0 m; got {resolution}"
-        ))),
+        false => Err(PyValueError::new_err(format!("resolution must be > 0 m; got {resolution}"))),
     }
 }
 
@@ -109,16 +93,8 @@ fn py_distance_field<'py>(
     let [rows, cols] = [traversable.shape()[0], traversable.shape()[1]];
     check_resolution(resolution)?;
     let source = checked_cell(source, rows * cols)?;
-    let stop_at = stop_at
-        .map(|cells| checked_cells(&cells, rows * cols))
-        .transpose()?;
-    let field = distance_field(
-        traversable.as_slice()?,
-        cols,
-        source,
-        resolution,
-        stop_at.as_deref(),
-    );
+    let stop_at = stop_at.map(|cells| checked_cells(&cells, rows * cols)).transpose()?;
+    let field = distance_field(traversable.as_slice()?, cols, source, resolution, stop_at.as_deref());
     field.into_pyarray(py).reshape([rows, cols])
 }
 
@@ -133,9 +109,7 @@ fn py_distance_matrix<'py>(
     let [rows, cols] = [traversable.shape()[0], traversable.shape()[1]];
     check_resolution(resolution)?;
     if limit_m.is_nan() || limit_m < 0.0 {
-        return Err(PyValueError::new_err(format!(
-            "limit_m must be >= 0 m; got {limit_m}"
-        )));
+        return Err(PyValueError::new_err(format!("limit_m must be >= 0 m; got {limit_m}")));
     }
     let cells = checked_cells(&cells, rows * cols)?;
     let matrix = if cells.is_empty() {

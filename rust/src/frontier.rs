@@ -50,12 +50,7 @@ fn for_each_border_cell(
         }
     };
     for r in 0..rows {
-        mark_row(
-            [row_at(r.wrapping_sub(1)), row_at(r), row_at(r + 1)],
-            &is_centre,
-            neighbour,
-            &mut marks,
-        );
+        mark_row([row_at(r.wrapping_sub(1)), row_at(r), row_at(r + 1)], &is_centre, neighbour, &mut marks);
         for (k, chunk) in marks.chunks(STRIDE).enumerate() {
             if chunk.iter().fold(0, |any, &mark| any | mark) != 0 {
                 let marked = (0..chunk.len()).filter(|&i| chunk[i] != 0);
@@ -70,8 +65,7 @@ fn stamp_widths(radius_cells: f64) -> Vec<usize> {
     let gap = |cells: usize| (cells as f64 - 0.5).max(0.0).powi(2);
     let limit = radius_cells * radius_cells - 1e-9; // 0.35 / 0.1 is not quite 3.5
     let rows = (0..).take_while(|&dr| gap(dr) < limit);
-    rows.map(|dr| (0..).take_while(|&dc| gap(dr) + gap(dc) < limit).count() - 1)
-        .collect()
+    rows.map(|dr| (0..).take_while(|&dc| gap(dr) + gap(dc) < limit).count() - 1).collect()
 }
 
 /// Mark the free cells whose centre is at least the radius away from every square that is not free.
@@ -181,10 +175,7 @@ fn cluster(cells: &[(u32, u32)]) -> Vec<Vec<(u32, u32)>> {
 /// Bisect a cluster at the median of its longer side until no side of its bounding box exceeds `max_extent`.
 fn split(mut cells: Vec<(u32, u32)>, max_extent: u32, parts: &mut Vec<Vec<(u32, u32)>>) {
     let side = |axis: fn(&(u32, u32)) -> u32| {
-        let (low, high) = cells
-            .iter()
-            .map(axis)
-            .fold((u32::MAX, 0), |(l, h), v| (l.min(v), h.max(v)));
+        let (low, high) = cells.iter().map(axis).fold((u32::MAX, 0), |(l, h), v| (l.min(v), h.max(v)));
         high - low + 1
     };
     let (height, width) = (side(|c| c.0), side(|c| c.1));
@@ -255,9 +246,7 @@ fn py_traversable<'py>(
         return Vec::new().into_pyarray(py).reshape([rows, cols]);
     }
     let radius_cells = (radius_m / resolution).min((rows + cols) as f64);
-    traversable(classes.as_slice()?, rows, cols, radius_cells)
-        .into_pyarray(py)
-        .reshape([rows, cols])
+    traversable(classes.as_slice()?, rows, cols, radius_cells).into_pyarray(py).reshape([rows, cols])
 }
 
 #[pyfunction(name = "find_frontiers")]

@@ -146,18 +146,12 @@ pub fn count_sightings(
 
 fn lattice_of<T: numpy::Element>(grid: &Bound<'_, PyArray2<T>>, resolution: f64) -> PyResult<Lattice> {
     if !(resolution > 0.0 && resolution.is_finite()) {
-        return Err(PyValueError::new_err(format!(
-            "resolution must be > 0 m; got {resolution}"
-        )));
+        return Err(PyValueError::new_err(format!("resolution must be > 0 m; got {resolution}")));
     }
     if !grid.is_c_contiguous() {
         return Err(PyValueError::new_err("the grid must be C-contiguous, [row, col]"));
     }
-    Ok(Lattice {
-        rows: grid.shape()[0],
-        cols: grid.shape()[1],
-        resolution,
-    })
+    Ok(Lattice { rows: grid.shape()[0], cols: grid.shape()[1], resolution })
 }
 
 fn check_finite(name: &str, values: &[f64]) -> PyResult<()> {
@@ -179,13 +173,7 @@ fn scan_of<'a>(x: f64, y: f64, angles: &'a [f64], ranges: &'a [f64], hits: &'a [
     check_finite("the sensor's position", &[x, y])?;
     check_finite("angles", angles)?;
     check_finite("ranges", ranges)?;
-    Ok(Scan {
-        x,
-        y,
-        angles,
-        ranges,
-        hits,
-    })
+    Ok(Scan { x, y, angles, ranges, hits })
 }
 
 #[pyfunction(name = "cast_rays")]
@@ -202,19 +190,12 @@ fn py_cast_rays<'py>(
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let lattice = lattice_of(&solid, resolution)?;
     if discs.shape()[1] != 3 {
-        return Err(PyValueError::new_err(format!(
-            "discs must be (D, 3); got {:?}",
-            discs.shape()
-        )));
+        return Err(PyValueError::new_err(format!("discs must be (D, 3); got {:?}", discs.shape())));
     }
     let angles = angles.as_slice()?;
     check_finite("the sensor's position", &[x, y])?;
     check_finite("angles", angles)?;
-    let discs: Vec<[f64; 3]> = discs
-        .as_slice()?
-        .chunks_exact(3)
-        .map(|d| [d[0], d[1], d[2]])
-        .collect();
+    let discs: Vec<[f64; 3]> = discs.as_slice()?.chunks_exact(3).map(|d| [d[0], d[1], d[2]]).collect();
     Ok(cast_rays(solid.as_slice()?, lattice, x, y, angles, max_range, &discs).into_pyarray(py))
 }
 
@@ -241,11 +222,7 @@ fn py_integrate_scan<'py>(
             "clamp must be in 1..127 and gains in 0..1000; got {clamp}, {gain_hit}, {gain_miss}"
         )));
     }
-    let gains = Gains {
-        hit: gain_hit,
-        miss: gain_miss,
-        clamp,
-    };
+    let gains = Gains { hit: gain_hit, miss: gain_miss, clamp };
     Ok(integrate_scan(log_odds.as_slice_mut()?, lattice, scan, gains, nudge).into_pyarray(py))
 }
 
@@ -272,10 +249,7 @@ fn py_count_sightings<'py>(
             "max_range, bin_m and stride must be > 0; got {max_range}, {bin_m}, {stride}"
         )));
     }
-    let bins = Bins {
-        max_range,
-        width: bin_m,
-    };
+    let bins = Bins { max_range, width: bin_m };
     let counts = count_sightings(log_odds.as_slice()?, lattice, scan, bins, stride, nudge);
     counts.into_pyarray(py).reshape([4, bins.count()])
 }

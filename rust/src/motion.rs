@@ -99,10 +99,7 @@ impl Path<'_> {
         let i = self.segment(s);
         let span = self.arc[i + 1] - self.arc[i];
         let (x, y) = (self.xy[2 * i], self.xy[2 * i + 1]);
-        let (tx, ty) = (
-            (self.xy[2 * i + 2] - x) / span,
-            (self.xy[2 * i + 3] - y) / span,
-        );
+        let (tx, ty) = ((self.xy[2 * i + 2] - x) / span, (self.xy[2 * i + 3] - y) / span);
         let along = (s - self.arc[i]).clamp(0.0, span);
         (x + along * tx, y + along * ty, tx, ty)
     }
@@ -117,10 +114,7 @@ impl Path<'_> {
             }
             let span = self.arc[i + 1] - self.arc[i];
             let (ax, ay) = (self.xy[2 * i], self.xy[2 * i + 1]);
-            let (tx, ty) = (
-                (self.xy[2 * i + 2] - ax) / span,
-                (self.xy[2 * i + 3] - ay) / span,
-            );
+            let (tx, ty) = ((self.xy[2 * i + 2] - ax) / span, (self.xy[2 * i + 3] - ay) / span);
             let along = ((x - ax) * tx + (y - ay) * ty)
                 .clamp((from - self.arc[i]).max(0.0), (to - self.arc[i]).min(span));
             let (dx, dy) = (x - ax - along * tx, y - ay - along * ty);

@@ -44,11 +44,7 @@ pub fn segment_clear(cols: usize, from: usize, to: usize, clear: impl Fn(usize) 
 
 /// Mark the cells within `levels` 4-connected free steps of a pose; a segment of that many steps sees no further.
 fn near_poses(solid: &[u8], poses: &[u8], cols: usize, levels: usize) -> Vec<u8> {
-    let mut near: Vec<u8> = solid
-        .iter()
-        .zip(poses)
-        .map(|(&s, &p)| u8::from(s == 0 && p != 0))
-        .collect();
+    let mut near: Vec<u8> = solid.iter().zip(poses).map(|(&s, &p)| u8::from(s == 0 && p != 0)).collect();
     let mut wave: Vec<usize> = (0..near.len()).filter(|&cell| near[cell] != 0).collect();
     for _ in 0..levels {
         let mut next = Vec::new();
@@ -194,19 +190,8 @@ impl Scene<'_> {
 /// Mark the cells, not solid, that some pose cell sees within the range.
 pub fn visible_cells(solid: &[u8], poses: &[u8], rows: usize, cols: usize, range_cells: f64) -> Vec<u8> {
     let range = range_cells.min((rows + cols) as f64); // no segment in the grid is longer
-    let scene = Scene {
-        solid,
-        poses,
-        rows: rows as i64,
-        cols: cols as i64,
-        range_squared: range * range,
-    };
-    let mut seen = near_poses(
-        solid,
-        poses,
-        cols,
-        (range * std::f64::consts::SQRT_2).ceil() as usize,
-    );
+    let scene = Scene { solid, poses, rows: rows as i64, cols: cols as i64, range_squared: range * range };
+    let mut seen = near_poses(solid, poses, cols, (range * std::f64::consts::SQRT_2).ceil() as usize);
     let mut open: [Vec<(f64, f64)>; 8] = Default::default();
     let mut spare = Vec::new();
     for cell in 0..seen.len() {

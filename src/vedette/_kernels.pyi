@@ -77,3 +77,67 @@ def steer(
     others: NDArray[np.float64],
     limits: tuple[float, float, float, float],
 ) -> tuple[float, float, float, float, float]: ...
+
+# coverage
+LAYERS: int
+
+def viewpoints(
+    field: NDArray[np.float32],
+    classes: NDArray[np.uint8],
+    cells: NDArray[np.int64],
+    starts: NDArray[np.int64],
+    reach: int,
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]: ...
+def footprints(
+    classes: NDArray[np.uint8],
+    views: NDArray[np.int64],
+    facing: NDArray[np.float64],
+    range_cells: float,
+    view: float,
+    table: NDArray[np.float32],
+    by_distance: bool,
+    factor: int,
+    floor: float,
+) -> tuple[NDArray[np.int64], NDArray[np.uint32], NDArray[np.float32]]: ...
+def combine(
+    keys_a: NDArray[np.uint32],
+    misses_a: NDArray[np.uint8],
+    keys_b: NDArray[np.uint32],
+    misses_b: NDArray[np.uint8],
+) -> tuple[NDArray[np.uint32], NDArray[np.uint8]]: ...
+def marginals(
+    weights: NDArray[np.float32],
+    layer_weights: NDArray[np.float64],
+    others_keys: NDArray[np.uint32],
+    others_misses: NDArray[np.uint8],
+    starts: NDArray[np.int64],
+    keys: NDArray[np.uint32],
+    misses: NDArray[np.uint8],
+) -> NDArray[np.float64]: ...
+def best_tour(
+    weights: NDArray[np.float32],
+    layer_weights: NDArray[np.float64],
+    edges: NDArray[np.float64],
+    others_keys: NDArray[np.uint32],
+    others_misses: NDArray[np.uint8],
+    starts: NDArray[np.int64],
+    cells: NDArray[np.uint32],
+    misses: NDArray[np.uint8],
+    first_leg: NDArray[np.float32],
+    legs: NDArray[np.float32],
+    current: NDArray[np.int64],
+    max_stops: int,
+) -> tuple[NDArray[np.int64], float, float]: ...
+def most_any_tour_adds(
+    weights: NDArray[np.float32],
+    layer_weights: NDArray[np.float64],
+    edges: NDArray[np.float64],
+    team_keys: NDArray[np.uint32],
+    team_misses: NDArray[np.uint8],
+    starts: NDArray[np.int64],
+    cells: NDArray[np.uint32],
+    misses: NDArray[np.uint8],
+    first_leg: NDArray[np.float32],
+    legs: NDArray[np.float32],
+    max_stops: int,
+) -> float: ...

@@ -14,16 +14,7 @@ pub const CONNECTION: i64 = 3;
 const RING: usize = 64;
 
 /// Row and column steps of the eight moves, counter-clockwise from +x; the odd ones are diagonal.
-pub const MOVES: [(i64, i64); 8] = [
-    (0, 1),
-    (1, 1),
-    (1, 0),
-    (1, -1),
-    (0, -1),
-    (-1, -1),
-    (-1, 0),
-    (-1, 1),
-];
+pub const MOVES: [(i64, i64); 8] = [(0, 1), (1, 1), (1, 0), (1, -1), (0, -1), (-1, -1), (-1, 0), (-1, 1)];
 
 /// Stands for "no move": where a search starts.
 const START: u8 = 8;
@@ -34,10 +25,7 @@ pub fn allowed_moves(open: &[u8], cols: usize) -> Vec<u8> {
     let mut moves = vec![0u8; open.len()];
     let mut padded = [vec![0u8; cols + 2], vec![0u8; cols + 2], vec![0u8; cols + 2]];
     let load = |row: usize, line: &mut Vec<u8>| match row < rows {
-        true => line[1..=cols]
-            .iter_mut()
-            .zip(&open[row * cols..])
-            .for_each(|(a, &b)| *a = u8::from(b != 0)),
+        true => line[1..=cols].iter_mut().zip(&open[row * cols..]).for_each(|(a, &b)| *a = u8::from(b != 0)),
         false => line.fill(0),
     };
     load(0, &mut padded[2]);

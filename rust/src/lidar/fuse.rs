@@ -18,16 +18,11 @@ struct Marks {
 
 impl Marks {
     fn around(scan: Scan, lattice: Lattice, nudge: f64) -> Self {
-        let reach = (0..scan.angles.len())
-            .map(|b| scan.reach(b, nudge))
-            .fold(0.0, f64::max);
+        let reach = (0..scan.angles.len()).map(|b| scan.reach(b, nudge)).fold(0.0, f64::max);
         let clip = |position: f64, size: usize| {
             let low = ((position - reach) / lattice.resolution).floor() - 1.0;
             let high = ((position + reach) / lattice.resolution).floor() + 2.0;
-            (
-                low.clamp(0.0, size as f64) as usize,
-                high.clamp(0.0, size as f64) as usize,
-            )
+            (low.clamp(0.0, size as f64) as usize, high.clamp(0.0, size as f64) as usize)
         };
         let (first_row, last_row) = clip(scan.y, lattice.rows);
         let (first_col, last_col) = clip(scan.x, lattice.cols);
@@ -109,11 +104,7 @@ pub fn integrate_scan(
     for &local in &marks.touched {
         let (row, col) = (local as usize / marks.cols, local as usize % marks.cols);
         let cell = (row + marks.first_row as usize) * lattice.cols + col + marks.first_col as usize;
-        let step = if marks.marks[local as usize] == HIT {
-            gains.hit
-        } else {
-            -gains.miss
-        };
+        let step = if marks.marks[local as usize] == HIT { gains.hit } else { -gains.miss };
         let old = log_odds[cell];
         let new = (i32::from(old) + step).clamp(-gains.clamp, gains.clamp) as i8;
         log_odds[cell] = new;

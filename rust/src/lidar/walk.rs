@@ -34,17 +34,9 @@ pub struct Walk {
 /// Step, metres to the first crossing and metres between crossings along one axis.
 fn axis(position: f64, cell: f64, direction: f64, resolution: f64) -> (i64, f64, f64) {
     if direction > 0.0 {
-        (
-            1,
-            (cell + 1.0 - position) * resolution / direction,
-            resolution / direction,
-        )
+        (1, (cell + 1.0 - position) * resolution / direction, resolution / direction)
     } else if direction < 0.0 {
-        (
-            -1,
-            (cell - position) * resolution / direction,
-            -resolution / direction,
-        )
+        (-1, (cell - position) * resolution / direction, -resolution / direction)
     } else {
         (0, f64::INFINITY, f64::INFINITY)
     }

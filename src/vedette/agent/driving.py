@@ -33,6 +33,11 @@ class Driver:
         """Tell whether the robot is making room for another."""
         return self.refuge is not None
 
+    @property
+    def standing(self) -> bool:
+        """Tell whether the robot neither wants to go anywhere nor makes room."""
+        return self.wanted is None and self.refuge is None
+
     def go(self, route: Route | None) -> Drive:
         """Want this route from now on; None: stand."""
         self.wanted, self.refuge = route, None
@@ -45,12 +50,10 @@ class Driver:
         """
         route = self.wanted or standing
         corner = np.array((self.frame.origin_x, self.frame.origin_y))
-        me = self._intent(self.robot, pose.x, pose.y, self.ahead(pose), pose.slowed, corner)
-        others = [
-            self._intent(mate.robot, mate.x, mate.y, mate.path, mate.slowed, corner)
-            for mate in mates
-            if not mate.silent(now)
-        ]
+        here = np.array((pose.x, pose.y)) - corner
+        ahead = self.ahead(pose) - corner
+        me = Intent(self.robot, here[0], here[1], ahead, self.spec.radius, self.spec.speed, pose.slowed)
+        others = [_intent(mate, corner) for mate in mates if not mate.silent(now)]
         refuge = give_way(route.passable, self.frame.resolution, me, others)
         if refuge is None:
             if not self.yielding:
@@ -74,18 +77,10 @@ class Driver:
             return remaining(self.refuge, pose.x, pose.y, HORIZON)
         return self.ahead(pose)
 
-    def _intent(
-        self,
-        robot: int,
-        x: float,
-        y: float,
-        path: NDArray[np.float64],
-        slowed: float,
-        corner: NDArray[np.float64],
-    ) -> Intent:
-        return Intent(
-            robot, x - corner[0], y - corner[1], path - corner, self.spec.radius, self.spec.speed, slowed
-        )
+
+def _intent(mate: Mate, corner: NDArray[np.float64]) -> Intent:
+    x, y = (mate.x, mate.y) - corner
+    return Intent(mate.robot, x, y, mate.path - corner, mate.radius, mate.speed, mate.slowed)
 
 
 def remaining(path: NDArray[np.float64], x: float, y: float, length: float) -> NDArray[np.float64]:

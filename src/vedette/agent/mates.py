@@ -22,6 +22,8 @@ class Mate:
     heading: float  # [rad]
     path: NDArray[np.float64]  # (L, 2) its next few metres [m], team frame; empty: it stands
     slowed: float  # [s]
+    radius: float  # [m]
+    speed: float  # at most [m/s]
     heard: float  # when the beacon came [s]
 
     def silent(self, now: float) -> bool:
@@ -54,4 +56,14 @@ def _mate(beacon: Beacon, heard: float) -> Mate:
     x, y = beacon.x / 100.0, beacon.y / 100.0
     offsets = np.array(beacon.path[: len(beacon.path) // 2 * 2], np.float64).reshape(-1, 2) / 100.0
     path = offsets + np.array((x, y))
-    return Mate(beacon.robot, x, y, beacon.heading / 1000.0, path, beacon.slowed / 10.0, heard)
+    return Mate(
+        beacon.robot,
+        x,
+        y,
+        beacon.heading / 1000.0,
+        path,
+        beacon.slowed / 10.0,
+        beacon.radius / 100.0,
+        beacon.speed / 100.0,
+        heard,
+    )

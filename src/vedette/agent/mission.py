@@ -73,6 +73,9 @@ class Mission(Protocol):
     def release(self, now: float) -> None:
         """Give up the present strategy: the robot cannot carry it out."""
 
+    def postponed(self, now: float) -> bool:
+        """Tell whether something worth doing was put off for a while: the mission is not over then."""
+
     def route(
         self, pose: Pose, goal: tuple[float, float], mates: Sequence[Mate], blocked: bool, now: float
     ) -> Route | None:

@@ -1,9 +1,9 @@
 """Right of way in narrow places: who makes room for whom, and where to.
 
-Robots that meet in the open pass each other by themselves (``vedette.kernels.motion.steer``). Where two cannot
-pass side by side, one of them makes room: a standing robot for a moving one, the higher index for the lower; but
-the other way round where the one that should has nowhere to go. Both sides work this out for themselves from
-what they beacon, about twice a second.
+Robots that meet in the open pass each other by themselves (``vedette.kernels.motion.steer``). Where two
+cannot pass side by side, one of them makes room: a standing robot for a moving one, the higher index for the
+lower; but the other way round where the one that should has nowhere to go. The longer somebody is held up,
+the more room everybody near gives. Each robot works this out for itself from what all beacon, twice a second.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Intent:
 def block_discs(
     traversable: NDArray[np.bool_], resolution: float, discs: Iterable[tuple[float, float, float]]
 ) -> NDArray[np.bool_]:
-    """Return a copy of ``traversable`` ``(R, C)`` without the cells whose centre lies in a disc ``(x, y, r)`` [m].
+    """Return ``traversable`` ``(R, C)`` without the cells whose centre lies in a disc ``(x, y, r)`` [m].
 
     For a centre to keep clear of a body, ``r`` is the sum of both radii and the gap wanted.
     """
@@ -69,8 +69,8 @@ def give_way(
 ) -> NDArray[np.float64] | None:
     """Return the path to a refuge if I must make room for a team-mate; None if not, or if there is no refuge.
 
-    ``traversable`` ``(R, C)``: cells where my map allows my centre. ``me.path`` is where I want to go, whether or not I
-    am making room at present. The path ``(L, 2)`` [m] starts where I am; a single point means: wait here.
+    ``traversable`` ``(R, C)``: cells where my map allows my centre. ``me.path`` is where I want to go, even
+    while I am making room. The path ``(L, 2)`` [m] starts where I am; a single point means: wait here.
     The mate has passed when a later call returns None.
     """
     near = [o for o in others if np.hypot(o.x - me.x, o.y - me.y) < 2.0 * HORIZON and len(o.path) > 0]
@@ -91,7 +91,7 @@ def give_way(
 
 
 def _conflict(traversable: NDArray[np.bool_], resolution: float, me: Intent, mate: Intent) -> bool:
-    """Tell whether we shall meet head-on, or I stand in the mate's way, where two cannot pass side by side."""
+    """Tell whether we meet head-on, or I stand in the mate's way, where two cannot pass side by side."""
     mine, theirs = _foresee(me), _foresee(mate)
     steps = max(len(mine), len(theirs))
     apart = np.hypot(*(_padded(mine, steps) - _padded(theirs, steps)).T)
@@ -194,7 +194,7 @@ def _meets_not(me: Intent, theirs: NDArray[np.float64], limit: float) -> bool:
 
 
 def _foresee(robot: Intent) -> NDArray[np.float64]:
-    """Places ``(T, 2)`` every ``TICK`` seconds if the robot drives its path at top speed; one place if it stands."""
+    """Places ``(T, 2)`` every ``TICK`` seconds if the robot drives its path freely; one if it stands."""
     xy = np.empty((len(robot.path) + 1, 2))
     xy[0], xy[1:] = (robot.x, robot.y), robot.path
     if len(xy) == 1:

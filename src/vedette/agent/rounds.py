@@ -26,7 +26,7 @@ MAX_SWEEPS = 12
 
 
 def patience(size: int) -> float:
-    """Return how long a round of so many robots may last [s]."""
+    """Return how long a robot of so many hears nothing of a round before it takes it for lost [s]."""
     return 1.0 + 0.3 * size
 
 
@@ -37,6 +37,7 @@ class Decision:
     time: float
     outcome: Outcome
     approximate: bool  # this robot's belief was not the root's
+    blocked: bool  # this robot planned with its mates in the way
 
 
 @dataclass
@@ -44,14 +45,15 @@ class _Round:
     """One round as this robot sees it."""
 
     sequence: int
-    began: float
+    heard: float  # when it last went on [s]
     waiting: set[int]  # children that have not flushed yet
     belief: Any = None
     approximate: bool = False
     preparing: bool = False
+    blocked: bool = False
     participant: RoundParticipant | None = None
     negotiator: Negotiator[Any] | None = None
-    early: list[tuple[int, bytes]] = field(default_factory=list)  # negotiation messages before we were ready
+    early: list[tuple[int, Negotiate]] = field(default_factory=list)  # came before we were ready
 
 
 @dataclass
@@ -98,14 +100,16 @@ class Rounds:
     def tick(self, now: float) -> list[Effect]:
         """Do what is due: end a round that takes too long, call or begin one that is wanted."""
         late = 1.0 if self.tree.parent is None else 1.5  # the root gives up first
-        if self._round and now > self._round.began + late * patience(self.tree.size):
+        if self._round and now > self._round.heard + late * patience(self.tree.size):
             self._end(now)
             self._wanted = True
         if self._round or now < self._ended + INTERVAL:
             return []
         if self.tree.parent is None:
             return self._begin(now) if self._wanted or now >= self._ended + PERIOD else []
-        if self._wanted and now >= self._called + CALL_AGAIN:
+        # A root that takes the mission for finished begins no round: who does not, calls for one.
+        wanted = self._wanted or now >= self._ended + 2.0 * PERIOD
+        if wanted and now >= self._called + CALL_AGAIN:
             self._called = now
             return [self._say(self.tree.parent, Call(self.tree.epoch))]
         return []
@@ -136,7 +140,10 @@ class Rounds:
         if not self._matches(message.epoch, message.sequence):
             return []
         assert self._round
+        if sender not in self._round.waiting:
+            return []
         self._round.waiting.discard(sender)
+        self._round.heard = now
         return self._flush(now)
 
     def _flush(self, now: float) -> list[Effect]:
@@ -152,11 +159,13 @@ class Rounds:
         """Everything known has arrived: freeze it."""
         if not self._matches(message.epoch, message.sequence):
             return []
-        return self._freeze(message.digest, now)
+        assert self._round
+        return self._freeze(message.digest, now) if self._round.belief is None else []
 
     def _freeze(self, digest: int, now: float) -> list[Effect]:
         assert self._round
         effects: list[Effect] = []
+        self._round.heard = now
         for child in self._children:
             effects += self.news(child, now)
             effects.append(self._say(child, Freeze(self.tree.epoch, self._round.sequence, digest)))
@@ -173,7 +182,7 @@ class Rounds:
         """Return the job to do between freezing and negotiating."""
         round_ = self._round
         assert round_
-        round_.preparing = True
+        round_.preparing, round_.blocked = True, self.blocked
         belief, blocked = round_.belief, self.blocked
         return Job(
             (self.tree.epoch, round_.sequence),
@@ -186,16 +195,20 @@ class Rounds:
             return []
         round_ = self._round
         assert round_
-        self.blocked = False
+        round_.heard = now
         round_.participant = RoundParticipant(self.mission, round_.belief)
         node = TokenNode if self.scheme == "token" else JacobiNode
         round_.negotiator = node(
             self.tree.neighbours, self.tree.parent, round_.participant, max_sweeps=MAX_SWEEPS
         )
-        effects = self._send(round_.negotiator.start(), now)
-        for sender, data in round_.early:
-            effects += self._negotiate(sender, data, now)
-        return effects
+        return self._send(round_.negotiator.start(), now)
+
+    def take_early(self) -> list[tuple[int, Negotiate]]:
+        """Return the negotiation messages, with their senders, that came before this robot was prepared."""
+        if self._round is None or self._round.negotiator is None:
+            return []
+        early, self._round.early = self._round.early, []
+        return early
 
     def negotiate(self, sender: int, message: Negotiate, now: float) -> list[Effect]:
         """Take in a negotiation message."""
@@ -203,15 +216,11 @@ class Rounds:
             return []
         assert self._round
         if self._round.negotiator is None:
-            self._round.early.append((sender, message.data))
+            self._round.early.append((sender, message))
             return []
-        return self._negotiate(sender, message.data, now)
-
-    def _negotiate(self, sender: int, data: bytes, now: float) -> list[Effect]:
-        if self._round is None or self._round.negotiator is None:
-            return []
-        message = messages.decode(data, self.mission.codec)
-        return self._send(self._round.negotiator.receive(sender, message), now)
+        sends = self._round.negotiator.receive(sender, messages.decode(message.data, self.mission.codec))
+        self._round.heard = now
+        return self._send(sends, now)
 
     def _send(self, sends: list[Any], now: float) -> list[Effect]:
         round_ = self._round
@@ -235,9 +244,9 @@ class Rounds:
             self.sweeps += outcome.sweeps
             if outcome.bound is not None and outcome.bound > 0:
                 self.bound_ratios.append(outcome.value / outcome.bound)
-            approximate = round_.approximate
+            self.blocked &= not round_.blocked  # taken into account
             self._end(now)
-            self.decided(Decision(now, outcome, approximate))
+            self.decided(Decision(now, outcome, round_.approximate, round_.blocked))
         return effects
 
     def _end(self, now: float) -> None:

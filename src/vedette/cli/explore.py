@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
-from contextlib import ExitStack
+import signal
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -24,7 +26,7 @@ from vedette.record.progress import progress_png
 from vedette.record.summary import Outcome, Summary
 from vedette.sim.explore import Report, planning_frame, prepare
 from vedette.sim.explore import explore as run_mission
-from vedette.sim.simulation import FUSIONS, SCHEMES, Setup
+from vedette.sim.simulation import FUSIONS, SCHEMES, Setup, Simulation
 from vedette.sim.starts import parse_starts
 from vedette.sim.world import World
 from vedette.sim.worlds import office
@@ -180,15 +182,39 @@ def explore(
     # Everything that can be wrong with the input is found before the folder is made.
     prepared = prepare(world, specs, setup)
     folder = new_directory("runs", world.name) if out is None else output_directory(out, force)
-    planning = planning_frame(world)
-    with ExitStack() as sinks:
-        live = sinks.enter_context(LiveView(world.name, world.frame, planning, quiet=as_json))
-        names = [spec.name for spec in specs]
-        mcap = sinks.enter_context(McapWriter(folder / "run.mcap", world.name, world.frame, planning, names))
-        report = run_mission(prepared, (live, mcap))
-    _write(report, world, folder, animate)
+    with _ending_on_ctrl_c(prepared):
+        report = _run(prepared, folder, quiet=as_json)
+        _write(report, world, folder, animate)
     click.echo(report.summary.to_json() if as_json else _closing(report.summary, folder), nl=not as_json)
     raise SystemExit(STATUS.get(report.summary.outcome, 1))
+
+
+def _run(prepared: Simulation, folder: Path, quiet: bool) -> Report:
+    """Run the mission, shown live unless ``quiet`` and recorded in the folder."""
+    world, planning = prepared.world, planning_frame(prepared.world)
+    with ExitStack() as sinks:
+        live = sinks.enter_context(LiveView(world.name, world.frame, planning, quiet=quiet))
+        names = [spec.name for spec in prepared.specs]
+        mcap = sinks.enter_context(McapWriter(folder / "run.mcap", world.name, world.frame, planning, names))
+        return run_mission(prepared, (live, mcap))
+
+
+@contextmanager
+def _ending_on_ctrl_c(simulation: Simulation) -> Iterator[None]:
+    """Let the first Ctrl-C end the mission between two steps, so that files are whole; a second aborts."""
+
+    def stop(*_: object) -> None:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        simulation.stop()
+
+    if threading.current_thread() is not threading.main_thread():  # only the main one may handle signals
+        yield
+        return
+    before = signal.signal(signal.SIGINT, stop)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _world(path: Path | None, resolution: float | None, seed: int) -> World:

@@ -51,16 +51,15 @@ def steer(
     """Choose the command whose 2 s roll-out has the least ``time to go + penalties``.
 
     The roll-outs are followers of the path with different sideways offsets, speeds and look-aheads (a dynamic
-    window in path coordinates): each turns towards its point ahead and slows down while it is askew. A roll-out
-    holds where it would leave the traversable cells, come within 5 cm of a disc (others move on at constant
-    velocity) or, in its first half second, within 2.5 cm of a wall; unless that is no worse than before. So
-    every candidate is safe, and waiting is what a blocked one does. The plain follower is taken at once where
-    nothing is in its way. Head-on, robots keep to the right.
+    window in path coordinates): each turns towards its point ahead and slows down while it is askew. One that
+    would leave the traversable cells, or come within 5 cm of a disc (others move on at constant velocity) or
+    2.5 cm of a wall, waits for that step, unless it is no worse than before. So every candidate is safe. The
+    first that costs at most 0.1 s more than conceivable is taken. Head-on, robots keep to the right.
 
-    ``solid`` ``(R, C)``: the true walls, as a ring of proximity sensors around the body feels them.
+    ``solid`` ``(R, C)``: the true walls, as a ring of proximity sensors feels them within a metre.
     ``traversable`` ``(R, C)``: cells where the map allows the robot's centre.
-    ``pose``: x, y [m] from the grid's lower-left corner, heading [rad]. ``path`` ``(L, 2)`` [m], L >= 2, no two
-    consecutive points equal; ``arc`` ``(L,)`` its arc length at each point [m].
+    ``pose``: x, y [m] from the grid's lower-left corner, heading [rad].
+    ``path`` ``(L, 2)`` [m], L >= 2, no two consecutive points equal; ``arc`` ``(L,)`` its arc length [m].
     ``progress``: arc length reached and offset followed so far, both from the last command (0, 0 at first).
     ``others`` ``(D, 6)``: x, y, vx, vy, radius, and the gap one would rather keep (> 0) [m, m/s].
     """

@@ -45,7 +45,8 @@ def clearance(solid: NDArray[np.bool_], resolution: float, x: float, y: float, r
     row, col = np.nonzero(solid)
     dx = np.maximum(np.maximum(col * resolution - x, x - (col + 1) * resolution), 0.0)
     dy = np.maximum(np.maximum(row * resolution - y, y - (row + 1) * resolution), 0.0)
-    return min(border, reach, float(np.sqrt(dx * dx + dy * dy).min(initial=np.inf)))
+    nearest = float(np.sqrt(dx * dx + dy * dy).min(initial=np.inf))
+    return float(min(border, reach, nearest))
 
 
 class Scene(NamedTuple):
@@ -75,12 +76,12 @@ class Scene(NamedTuple):
         return x + along * tx, y + along * ty, tx, ty
 
     def project(self, x: float, y: float, low: float, high: float) -> tuple[float, float]:
-        """Arc length, within ``[low, high]``, of the path's point nearest to the given one; and its distance."""
+        """Arc length, within ``[low, high]``, of the path's nearest point; and its distance."""
         low, high = max(low, 0.0), min(high, float(self.arc[-1]))
         best = (low, math.inf)
         for i in range(len(self.arc) - 1):
             start, end = self.arc[i : i + 2].tolist()
-            if end <= low and i < len(self.arc) - 2 or start > high:
+            if (end <= low and i < len(self.arc) - 2) or start > high:
                 continue
             (ax, ay), (bx, by) = self.path[i].tolist(), self.path[i + 1].tolist()
             span = end - start
@@ -135,7 +136,7 @@ class Scene(NamedTuple):
     def price(
         self, f: Follower, pose: Pose, s: float, last_offset: float, enough: float = math.inf
     ) -> Command:
-        """Roll a follower out and price it; infinity once its own speed along the path cannot beat ``enough``."""
+        """Roll a follower out and price it; infinity once its own speed cannot beat ``enough``."""
         period, keep = self.limits.period, self.limits.radius + WALL_GUARD
         x, y, heading = pose
         speed, turn, first_arc = 0.0, 0.0, s

@@ -15,7 +15,14 @@ from vedette.domains.mapping.belief import MapBelief, freeze, planning_factor
 from vedette.domains.mapping.impact import Impact, ImpactCodec
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.planners import Planner
-from vedette.domains.mapping.platform import STAY, MappingPlatform, Tour
+from vedette.domains.mapping.platform import (
+    LEFT_ALONE,
+    SAME_PLACE,
+    STAY,
+    GivenUp,
+    MappingPlatform,
+    Tour,
+)
 from vedette.domains.mapping.sightings import BIN, BINS, empty_counts
 from vedette.domains.mapping.stops import CLEARANCE, Disc, unknown_near
 from vedette.fusion import Fusion
@@ -25,10 +32,12 @@ from vedette.team import PlatformSpec
 
 GAIN_HIT, GAIN_MISS, CLAMP = 4, 2, 20  # log-odds of one observation and of all [0.2 nats]
 NUDGE = 0.25  # a return lies in the wall, not on its face: it counts as so much farther [cells]
-SIGHTING_STRIDE = 8  # one beam in so many teaches the sighting model
+SIGHTING_STRIDE = 4  # one beam in so many teaches the sighting model
+LEARNING_STEP = 2.0  # a robot learns from one scan in so many metres of its way [m]
 COUNTS_PERIOD = 10.0  # the model's counts are shared at most so often [s]
 MATE_MARGIN = 0.15  # a return this near a mate's rim is the mate [m]
 AVOID_TIME = 20.0  # a stop that could not be carried out is left alone for so long [s]
+TRIES = 3  # a stop that could not be carried out so often is given up
 SERVED_SHARE = 0.4  # a frontier with less than this of its unknown cells left has lost its point
 
 
@@ -48,6 +57,8 @@ class Exploration:
     counts: NDArray[np.int64] = field(init=False)  # (4, BINS) own sightings
     _changed: list[NDArray[np.int64]] = field(default_factory=list)  # cells whose own class changed
     _counts_due: float = 0.0
+    _learned: tuple[float, float, NDArray[np.int8]] | None = None  # where it last learned; its evidence then
+    _released: list[tuple[float, float]] = field(default_factory=list)  # stops that could not be carried out
     _passable: tuple[int, NDArray[np.bool_]] | None = None  # by the map's digest
 
     def __post_init__(self) -> None:
@@ -66,20 +77,7 @@ class Exploration:
             self._leave_out(mate, pose, scan.angles, ranges, hits, now)
         x, y = pose.x - self.frame.origin_x, pose.y - self.frame.origin_y
         resolution = self.frame.resolution
-        seen = lidar.count_sightings(
-            self.log_odds,
-            resolution,
-            x,
-            y,
-            scan.angles,
-            ranges,
-            hits,
-            self.spec.range,
-            BIN,
-            SIGHTING_STRIDE,
-            NUDGE * resolution,
-        )
-        self.counts[:, : seen.shape[1]] += seen[:, :BINS]
+        self._learn(scan.angles, ranges, hits, x, y)
         changed = lidar.integrate_scan(
             self.log_odds,
             resolution,
@@ -96,6 +94,39 @@ class Exploration:
         if len(changed):
             self._changed.append(changed)
 
+    def _learn(
+        self,
+        angles: NDArray[np.float64],
+        ranges: NDArray[np.float64],
+        hits: NDArray[np.bool_],
+        x: float,
+        y: float,
+    ) -> None:
+        """Count what a scan reveals of what was unknown when the robot last was a way from here.
+
+        That is what the planner asks of a stop. Counting every scan would teach it that unknown cells are never
+        seen, the more so the longer a robot stands.
+        """
+        if self._learned is None:
+            self._learned = x, y, np.zeros_like(self.log_odds)
+        elif np.hypot(x - self._learned[0], y - self._learned[1]) < LEARNING_STEP:
+            return
+        seen = lidar.count_sightings(
+            self._learned[2],
+            self.frame.resolution,
+            x,
+            y,
+            angles,
+            ranges,
+            hits,
+            self.spec.range,
+            BIN,
+            SIGHTING_STRIDE,
+            NUDGE * self.frame.resolution,
+        )
+        self.counts[:, : seen.shape[1]] += seen[:, :BINS]
+        self._learned = x, y, self.log_odds.copy()
+
     def _leave_out(
         self,
         mate: Mate,
@@ -107,8 +138,8 @@ class Exploration:
     ) -> None:
         """Turn returns from a mate's body into free space up to just before it."""
         dx, dy = mate.x - pose.x, mate.y - pose.y
-        moved = self.spec.speed * min(now - mate.heard, 0.5)
-        reach = self.spec.radius + MATE_MARGIN + moved
+        moved = mate.speed * min(now - mate.heard, 0.5)
+        reach = mate.radius + MATE_MARGIN + moved
         if np.hypot(dx, dy) > self.spec.range + reach:
             return
         off = np.hypot(ranges * np.cos(angles) - dx, ranges * np.sin(angles) - dy)
@@ -155,7 +186,7 @@ class Exploration:
     def _discs(self, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float) -> list[Disc]:
         """Mates that stand in the way: the silent ones, and for a robot that is blocked all those near it."""
         return [
-            (mate.x, mate.y, self.spec.radius)
+            (mate.x, mate.y, mate.radius)
             for mate in mates
             if mate.silent(now) or (blocked and np.hypot(mate.x - pose.x, mate.y - pose.y) < 3.0)
         ]
@@ -215,11 +246,27 @@ class Exploration:
             self.strategy = self.strategy.after_first()
 
     def release(self, now: float) -> None:
-        """Drop the tour, and leave its first stop alone for a while."""
+        """Drop the tour; leave its first stop alone for a while, after some tries until the map changes."""
         if len(self.strategy):
             x, y = self.strategy.targets[0].tolist()
-            self.platform.avoided.append((x, y, now + AVOID_TIME))
+            self._released.append((x, y))
+            near = [np.hypot(x - u, y - v) < SAME_PLACE for u, v in self._released]
+            if sum(near) < TRIES:
+                self.platform.avoided.append((x, y, now + AVOID_TIME))
+            else:
+                self.platform.given_up.append(GivenUp(x, y, self._unknown_at(self.strategy.targets[0])))
+                self._released = [spot for spot, same in zip(self._released, near, strict=True) if not same]
         self.strategy = STAY
+
+    def postponed(self, now: float) -> bool:
+        """Tell whether a stop of the last round is left alone for a while only."""
+        stops = self.platform.stops
+        if stops is None:
+            return False
+        return any(
+            until > now and np.any(np.hypot(*(stops.targets - (x, y)).T) < LEFT_ALONE)
+            for x, y, until in self.platform.avoided
+        )
 
     def route(
         self, pose: Pose, goal: tuple[float, float], mates: Sequence[Mate], blocked: bool, now: float

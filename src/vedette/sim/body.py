@@ -98,7 +98,10 @@ class Bodies:
                 self._move(i, dt)
 
     def arrived(self, i: int) -> bool:
-        """Tell whether robot ``i`` is at its path's end, or near it while another robot stands there."""
+        """Tell whether robot ``i`` is at its path's end, or near it while another robot stands there.
+
+        A robot that was told to stand still has arrived.
+        """
         task = self._tasks[i]
         if task is None:
             return True

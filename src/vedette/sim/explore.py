@@ -54,6 +54,7 @@ def explore(simulation: Simulation, sinks: Sequence[Sink] = ()) -> Report:
     observer = Observer(simulation, reference, sinks)
     simulation.clock.start()
     outcome = simulation.run(observer.look, observer.period)
+    observer.finish()
     return Report(observer.summary(outcome), timing(simulation), observer.log, observer.delivered_map())
 
 
@@ -68,26 +69,44 @@ class Observer:
         self.period = 0.5 if world.frame.size <= 1_000_000 else 2.0  # of looking [s]
         self.log = RunLog(world.name, world.frame, planning_frame(world), simulation.specs, sinks)
         self._looks = 0
+        self._logged = -1.0  # time of the last snapshot [s]
 
     def look(self) -> None:
         """Measure the mission, and log every second look."""
-        classes = self._union()
-        share = coverage(self._reference, classes)
-        self._progress.add(self._simulation.now, share)
-        if self._looks % 2 == 0 or all(agent.done for agent in self._simulation.agents):
-            self.log.add(self._snapshot(classes, share))
+        self._measure(log=self._looks % 2 == 0)
         self._looks += 1
 
+    def finish(self) -> None:
+        """Measure and log how the mission ended."""
+        self._measure(log=True)
+
+    def _measure(self, log: bool) -> None:
+        classes = self._union()
+        share = coverage(self._reference, classes)
+        now = self._simulation.now
+        self._progress.add(now, share)
+        if log and now > self._logged:
+            self.log.add(self._snapshot(classes, share))
+            self._logged = now
+
     def _union(self) -> NDArray[np.uint8]:
-        """What the living robots have seen together, whether or not they have told each other."""
+        """What the living robots know together, whether or not they have told each other; if none lives, all.
+
+        That is what they saw themselves, and what they hold from the dead.
+        """
+        living, missions = self._simulation.living, self._simulation.missions
         log_odds = np.zeros(self._simulation.world.frame.shape, np.int16)
         seen = np.zeros(log_odds.shape, bool)
-        for i in self._simulation.living:
-            own = self._simulation.missions[i].log_odds
+        for i in living or range(len(missions)):
+            own = missions[i].log_odds
             log_odds += own
             seen |= own != 0
         known = np.where(log_odds < 0, FREE, OCCUPIED).astype(np.uint8)
-        return np.where(seen, known, UNKNOWN).astype(np.uint8)
+        known[~seen] = UNKNOWN
+        if len(living) < len(missions):
+            for i in living:
+                np.copyto(known, missions[i].fusion.classes, where=known == UNKNOWN)
+        return known
 
     def _snapshot(self, classes: NDArray[np.uint8], share: float) -> Snapshot:
         unknown = int(np.count_nonzero(classes == UNKNOWN))

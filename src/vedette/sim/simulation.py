@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from vedette.agent import Agent, step
 from vedette.agent.effects import Drive, Effect, Job, Send
 from vedette.agent.events import Arrived, Event, JobDone, Message, Pose, Scan, Stuck, TreeChanged
+from vedette.agent.messages import Negotiate, decode
 from vedette.domains.mapping.planners import planner
 from vedette.domains.mapping.sightings import BINS
 from vedette.fusion import ChannelFilter, Fusion, ReplicatedEvidence
@@ -61,11 +62,11 @@ class Setup:
 
 @dataclass
 class Clock:
-    """CPU and wall-clock figures of a run, apart from everything simulated."""
+    """Wall-clock figures of a run, apart from all that is simulated; on an idle core also its CPU time."""
 
     started: float = 0.0
     planning: dict[tuple[int, int, int], float] = field(default_factory=dict)  # robot, epoch, round: [s]
-    answers: list[float] = field(default_factory=list)  # one negotiation message answered [s]
+    answers: list[float] = field(default_factory=list)  # a negotiation message, each [s]
 
     def start(self) -> None:
         """Begin counting."""
@@ -115,6 +116,7 @@ class Simulation:
         self._stuck_told = [0.0] * n
         self._told_arrival = [True] * n
         self._last_change = 0.0
+        self._stopped = False
 
     def _mission(self, i: int) -> Exploration:
         fusion: Fusion = FUSIONS[self.setup.fusion](i, BOOT, self.world.frame.shape, 4 * BINS)
@@ -151,14 +153,19 @@ class Simulation:
                 self.bodies.step(TICK)
         except KeyboardInterrupt:
             outcome = Outcome.INTERRUPTED
-        observe()
         return outcome
+
+    def stop(self) -> None:
+        """Interrupt the mission at the end of the present tick; may be called from a signal handler."""
+        self._stopped = True
 
     def _over(self) -> Outcome | None:
         if not self.living:
             return Outcome.TEAM_LOST
         if all(self.agents[i].done for i in self.living):
             return Outcome.COMPLETE
+        if self._stopped:
+            return Outcome.INTERRUPTED
         if self.now >= self.setup.max_time:
             return Outcome.TIME_LIMIT
         if self.now > self._last_change + NO_PROGRESS:
@@ -238,14 +245,14 @@ class Simulation:
 
     def _step(self, i: int, events: list[Event]) -> None:
         agent = self.agents[i]
-        began = wall.process_time()
+        began = wall.perf_counter()
         before = agent.rounds.decisions
         effects = step(agent, events, self.now)
-        took = wall.process_time() - began
+        took = wall.perf_counter() - began
         if agent.rounds.busy or agent.rounds.decisions != before:
             key = i, *agent.rounds.stamp
             self.clock.planning[key] = self.clock.planning.get(key, 0.0) + took
-            if isinstance(events[0], Message):
+            if agent.rounds.decisions == before and _negotiates(events[0]):
                 self.clock.answers.append(took)
         for effect in effects:
             self._carry_out(i, effect)
@@ -262,8 +269,12 @@ class Simulation:
                     self.bodies.command(i, route.path - self._corner, route.passable)
                     self._last_change = self.now
             case Job():
-                began = wall.process_time()
+                began = wall.perf_counter()
                 effect.run()
                 key = i, *effect.key
-                self.clock.planning[key] = self.clock.planning.get(key, 0.0) + wall.process_time() - began
+                self.clock.planning[key] = self.clock.planning.get(key, 0.0) + wall.perf_counter() - began
                 heapq.heappush(self._jobs, (self.now + JOB_TIME, i, effect))
+
+
+def _negotiates(event: Event) -> bool:
+    return isinstance(event, Message) and isinstance(decode(event.payload), Negotiate)

@@ -55,8 +55,8 @@ def freeze(
 ) -> MapBelief:
     """Snapshot a team map for a round.
 
-    A planning cell is worth ln 2 for each unknown cell in it (paper, section 4.1, P = 0.5), and the unknown cells
-    that touch a frontier carry the hidden area expected behind it.  docs/theory.md (V24)
+    A planning cell is worth ln 2 for each unknown cell in it (paper, section 4.1, P = 0.5), and the unknown
+    cells that touch a frontier carry the hidden area expected behind it.  docs/theory.md (V24)
 
     Args:
         classes: (R, C) team map; copied.
@@ -70,10 +70,11 @@ def freeze(
     factor = planning_factor(frame.resolution)
     planning = frame.coarse(factor)
     rows, cols = _window(classes, factor, int(np.ceil(reach / frame.resolution)))
-    crop = np.ascontiguousarray(classes[rows, cols])
+    crop = classes[rows, cols].copy()  # the map goes on changing while a round lasts
     window = GridFrame(
         frame.resolution,
-        *crop.shape,
+        crop.shape[0],
+        crop.shape[1],
         frame.origin_x + cols.start * frame.resolution,
         frame.origin_y + rows.start * frame.resolution,
     )
@@ -85,7 +86,8 @@ def freeze(
         local += LN2 * hidden / frame.resolution**2 * _behind(crop, cells, starts, factor)
     first = (rows.start // factor, cols.start // factor)
     # Outside the window nothing is known, and each robot's window is its own.
-    weights = LN2 * np.outer(_sizes(frame.rows, factor), _sizes(frame.cols, factor)).astype(np.float32)
+    weights = np.outer(_sizes(frame.rows, factor), _sizes(frame.cols, factor))
+    weights *= np.float32(LN2)
     weights[first[0] : first[0] + local.shape[0], first[1] : first[1] + local.shape[1]] = local
     return MapBelief(
         window, crop, planning, factor, first, unknown, weights.ravel(), cells, starts, layers, counts
@@ -95,19 +97,19 @@ def freeze(
 def _window(classes: NDArray[np.uint8], factor: int, reach: int) -> tuple[slice, slice]:
     """The known part, grown by the sensor's reach and aligned to planning cells."""
 
-    def span(known: NDArray[np.bool_], size: int) -> slice:
+    def span(known: NDArray[np.uint8], size: int) -> slice:
         where = np.flatnonzero(known)
         if not len(where):
             return slice(0, size)
         start = max(0, int(where[0]) - reach) // factor * factor
         return slice(start, min(size, -(-(int(where[-1]) + 1 + reach) // factor) * factor))
 
-    return span(classes.any(axis=1), classes.shape[0]), span(classes.any(axis=0), classes.shape[1])
+    return span(classes.max(axis=1), classes.shape[0]), span(classes.max(axis=0), classes.shape[1])
 
 
-def _sizes(cells: int, factor: int) -> NDArray[np.int64]:
+def _sizes(cells: int, factor: int) -> NDArray[np.float32]:
     """Cells along one side in each planning cell; the last may have fewer."""
-    return np.minimum(factor, cells - np.arange(0, cells, factor))
+    return np.minimum(factor, cells - np.arange(0, cells, factor)).astype(np.float32)
 
 
 def _block_sum(mask: NDArray[np.bool_], factor: int) -> NDArray[np.uint16]:

@@ -43,7 +43,9 @@ NOTHING = Impact(np.empty(0, np.uint32), np.empty(0, np.uint8))
 
 def quantise(share: NDArray[np.float32]) -> Misses:
     """Round probabilities of being seen to the nearest log-miss level, halves up, once."""
-    return _LEVELS[np.floor(np.clip(share, 0, 1) * 8 + 0.5).astype(np.intp)]
+    eighths = np.floor(np.clip(share, 0, 1) * 8 + 0.5).astype(np.intp)
+    misses: Misses = _LEVELS[eighths]
+    return misses
 
 
 def final_miss(impact: Impact, size: int) -> NDArray[np.float32]:
@@ -118,5 +120,5 @@ class ImpactCodec:
 
     @property
     def _largest_body(self) -> int:
-        """Counts, two bytes an entry, four more a wide gap: the gaps of a layer sum to less than the cells."""
+        """Counts, two bytes an entry, four more a wide gap: a layer's gaps sum to less than the cells."""
         return 4 * LAYERS + LAYERS * (2 * self._cells + 4 * (self._cells // 255))

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from vedette.kernels.coverage import LAYERS
 
-FIRST_EDGE = 2.0  # [s]
-RATIO = 1.45  # between successive edges: 2 s ... 527 s
+STEP = 5.0  # between the first EVEN edges [s]
+EVEN = 20
+RATIO = 1.16  # between later ones: 100 s ... 594 s
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,8 +19,8 @@ class TimeLayers:
     """``worth(t) = sum of weights[b] over layers b with edges[b] >= t``: a non-increasing step function.
 
     An observation that arrives in layer b counts in b and in every later layer, so a planning cell first
-    seen in layer b contributes ``worth(edges[b])`` of its weight, however many see it later: variable horizons
-    stay partially separable.  docs/theory.md (V22)
+    seen in layer b contributes ``worth(edges[b])`` of its weight, however many see it later: variable
+    horizons stay partially separable.  docs/theory.md (V22)
     """
 
     edges: NDArray[np.float64]  # (LAYERS,) upper edge of each layer [s]; the last takes all later arrivals
@@ -31,7 +32,8 @@ class TimeLayers:
 
 
 def _edges() -> NDArray[np.float64]:
-    return FIRST_EDGE * RATIO ** np.arange(LAYERS)
+    even = STEP * np.arange(1, EVEN + 1)
+    return np.concatenate((even, even[-1] * RATIO ** np.arange(1, LAYERS - EVEN + 1)))
 
 
 def _layers(worth: NDArray[np.float64]) -> TimeLayers:
@@ -44,7 +46,7 @@ def discounted(tau: float) -> TimeLayers:
 
 
 def rate() -> TimeLayers:
-    """Worth ``1 / t``: the paper's rate of uncertainty reduction, eq. (42), as docs/theory.md (V23) reads it."""
+    """Worth ``1 / t``: the paper's rate of uncertainty reduction, eq. (42), read as docs/theory.md (V23)."""
     return _layers(1.0 / _edges())
 
 

@@ -1,4 +1,4 @@
-"""The team's mapping objective: the entropy that the team's strategies are expected to remove, by time layers."""
+"""The team's mapping objective: the entropy that its strategies are expected to remove, by time layers."""
 
 from __future__ import annotations
 

@@ -44,9 +44,7 @@ PLANNERS = {
         0.0,
         lambda spec: MappingPlatform(spec, max_stops=1, measured="distance"),
     ),
-    "nearest": Planner(
-        "nearest frontier, uncoordinated (Yamauchi)", layers.plain(), 0.0, NearestPlatform
-    ),
+    "nearest": Planner("nearest frontier, uncoordinated (Yamauchi)", layers.plain(), 0.0, NearestPlatform),
     "burgard": Planner(
         "coordinated assignment of frontiers (Burgard et al.)", layers.plain(), 0.0, BurgardPlatform
     ),

@@ -83,7 +83,7 @@ class MappingPlatform:
         team: list[tuple[int, float, float]],
         now: float,
     ) -> None:
-        """Say where the robot and its team-mates are [m], team frame, which discs do not move, what time it is."""
+        """Say where the robot and its mates are [m], team frame, which discs do not move, what time it is."""
         self.x, self.y, self.obstacles, self.team, self.now = x, y, obstacles, team, now
 
     def model(self, belief: MapBelief) -> SightingModel:
@@ -174,7 +174,10 @@ class MappingPlatform:
         return Impact(distinct.astype(np.uint32), np.minimum(total, CERTAIN).astype(np.uint8))
 
     def reply(self, belief: MapBelief, others: Impact, current: Tour) -> Tour:
-        """Best tour found against the rest of the team; the present one unless clearly beaten; paper, eq. (30)."""
+        """Best tour found against the rest of the team, if clearly better than the present one.
+
+        Source: paper, eq. (30).
+        """
         assert self.stops is not None
         order, gain, present = coverage.best_tour(
             belief.weights,

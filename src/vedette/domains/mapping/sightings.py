@@ -38,7 +38,7 @@ def empty_counts() -> NDArray[np.int64]:
 def measured_model(
     counts: NDArray[np.int64], resolution: float, cells: int, *, by_distance: bool
 ) -> SightingModel:
-    """Learned share of unknown cells seen at each depth; additive counts, so a team pools them; paper, Fig. 3.
+    """Learned share of unknown cells seen at each depth; counts add, so a team pools them; paper, Fig. 3.
 
     Each bin is shrunk to ``exp(-depth / 3 m)`` with the weight of 20 trials, and the curve is made
     non-increasing by pooling adjacent violators.  docs/theory.md (V25)

@@ -1,4 +1,4 @@
-"""What one robot could do in a round: the stops it can reach, what each would reveal, how long each leg takes."""
+"""What one robot could do in a round: the stops it can reach, what each would reveal, how long legs take."""
 
 from __future__ import annotations
 
@@ -145,5 +145,5 @@ def _legs(belief: MapBelief, ground: Ground, views: NDArray[np.int64]) -> NDArra
     for row in range(factor):
         for col in range(factor):
             coarse |= padded[row::factor, col::factor]
-    cells = views // cols // factor * coarse.shape[1] + views % cols // factor
+    cells = views // cols // factor * belief.unknown.shape[1] + views % cols // factor
     return distance.distance_matrix(coarse, cells, belief.planning.resolution, np.inf)

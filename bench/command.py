@@ -1,0 +1,64 @@
+"""What both commands share: lists of numbers as options, and errors told in one line."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+from typing import NoReturn
+
+import click
+
+from vedette.errors import InputError
+from vedette.record.files import output_directory
+
+BAD_INPUT, INTERRUPTED = 2, 130
+_RANGE = re.compile(r"(\d{1,6})(?:-(\d{1,6}))?")
+
+
+class WholeNumbers(click.ParamType[tuple[int, ...]]):
+    """Numbers and ranges such as ``0-9`` or ``1,3,6``; each once, in the order given."""
+
+    name = "numbers"
+
+    def __init__(self, least: int) -> None:
+        self.least = least
+
+    def convert(
+        self, value: str | tuple[int, ...], param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[int, ...]:
+        """Return the numbers, or refuse the text."""
+        if isinstance(value, tuple):
+            return value
+        option = param.opts[0] if param is not None else "value"
+        numbers: list[int] = []
+        for part in value.split(","):
+            match = _RANGE.fullmatch(part.strip())
+            if match is None:
+                raise InputError(f"{option} must be numbers or ranges, such as 1,3,6 or 0-9; got {value!r}")
+            first, last = int(match[1]), int(match[2] or match[1])
+            numbers.extend(range(first, last + 1))
+        if not numbers or min(numbers) < self.least:
+            raise InputError(f"{option} must be at least one number from {self.least} up; got {value!r}")
+        return tuple(dict.fromkeys(numbers))
+
+
+def results_folder(path: Path) -> Path:
+    """Return the folder for results, made if it is not there.
+
+    Raises:
+        InputError: it cannot be made or written to.
+    """
+    return output_directory(path, force=True)
+
+
+def run(command: click.Command, name: str) -> NoReturn:
+    """Run a command line: status 2 and one line for bad input, 130 for Ctrl-C."""
+    try:
+        sys.exit(command.main(prog_name=name, standalone_mode=False) or 0)
+    except (click.Abort, KeyboardInterrupt):
+        sys.exit(INTERRUPTED)
+    except (click.ClickException, InputError) as error:
+        text = error.format_message() if isinstance(error, click.ClickException) else str(error)
+        click.echo(f"{name}: {' '.join(text.split())}", err=True)
+        sys.exit(BAD_INPUT)

@@ -1,0 +1,139 @@
+"""``python -m bench.missions``: whole missions beside the yardsticks, in a table that can be gone on with."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+import click
+from joblib import Parallel, delayed
+
+from bench import RESULTS, command, journal, machine
+from bench.cases import Case, Result, map_cases, office_cases, run_case
+from bench.criteria import verdicts
+from bench.missions_table import JUDGED, judge, missions_table
+from vedette.domains.mapping.planners import planner
+from vedette.errors import InputError
+from vedette.record.files import write_text
+from vedette.record.summary import Outcome
+
+Run = Callable[[Case, str], Result]  # case, commit
+
+
+@click.command()
+@click.option("--maps", type=Path, metavar="DIR", help="Run the maps of this folder too.")
+@click.option(
+    "--seeds", type=command.WholeNumbers(0), default="0-9", show_default=True, help="Of the offices."
+)
+@click.option(
+    "--robots", type=command.WholeNumbers(1), default="1,3,6", show_default=True, help="In the offices."
+)
+@click.option("--planners", default="tours,nearest,burgard", show_default=True, help="By name, with commas.")
+@click.option("--only-offices", is_flag=True, help="Leave the maps out.")
+@click.option("--only-maps", is_flag=True, help="Leave the offices out.")
+@click.option("--jobs", type=click.IntRange(min=1), default=2, show_default=True, help="Processes.")
+@click.option("--fresh", is_flag=True, help="Run the missions anew that were run before.")
+@click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for results and table.")
+def missions(
+    maps: Path | None,
+    seeds: tuple[int, ...],
+    robots: tuple[int, ...],
+    planners: str,
+    only_offices: bool,
+    only_maps: bool,
+    jobs: int,
+    fresh: bool,
+    out: Path,
+) -> None:
+    """Run the table of missions; those that are in the results file already are not run again.
+
+    Exit status 0 if all missions ran, however well, and 1 if one broke.
+    """
+    names = [planner_name(name) for name in planners.split(",")]
+    cases = [] if only_maps else office_cases(seeds, robots, names)
+    cases += [] if only_offices or maps is None else map_cases(maps, names)
+    if not cases:
+        raise InputError("nothing to run; --only-maps needs --maps DIR, and goes not with --only-offices")
+    folder = command.results_folder(out)
+    path = folder / "missions.jsonl"
+    if fresh:
+        journal.forget(path, {case.key for case in cases})
+    broken = conduct(cases, path, jobs, click.echo)
+    done = journal.read(path)
+    results = [done[case.key] for case in cases if case.key in done]
+    if results:
+        text = report(results)
+        write_text(folder / "missions.md", text)
+        click.echo("\n" + text + f"\nwritten: {folder / 'missions.md'}")
+    raise SystemExit(1 if broken else 0)
+
+
+def planner_name(name: str) -> str:
+    """Return the name without blanks around it.
+
+    Raises:
+        InputError: there is no such planner.
+    """
+    planner(name.strip())
+    return name.strip()
+
+
+def conduct(
+    cases: Sequence[Case],
+    path: Path,
+    jobs: int,
+    echo: Callable[[str], None],
+    run: Run = run_case,
+) -> int:
+    """Run the missions that ``path`` does not hold yet and add them to it; return how many broke."""
+    done = journal.read(path)
+    left = [case for case in cases if case.key not in done]
+    echo(f"{len(cases) - len(left)} of {len(cases)} missions done before; {len(left)} to run")
+    began, broken = time.perf_counter(), 0
+    for count, (case, end) in enumerate(_ends(left, jobs, run), start=1):
+        if isinstance(end, Result):
+            journal.append(path, end)
+            told = f"{end.outcome} after {end.time_s:.0f} s"
+        else:
+            broken += 1
+            told = f"broke: {end!r}"
+        remaining = (time.perf_counter() - began) / count * (len(left) - count)
+        echo(f"{count}/{len(left)}, {_minutes(remaining)} left: {case}: {told}")
+    return broken
+
+
+def _ends(cases: Sequence[Case], jobs: int, run: Run) -> Iterator[tuple[Case, Result | Exception]]:
+    """Yield the missions as they end, in any order."""
+    commit = machine.commit()
+    parallel = Parallel(n_jobs=jobs, return_as="generator_unordered")
+    yield from parallel(delayed(_guarded)(run, case, commit) for case in cases)
+
+
+def _guarded(run: Run, case: Case, commit: str) -> tuple[Case, Result | Exception]:
+    """Run one mission; one that breaks must not take the others with it."""
+    try:
+        result = run(case, commit)
+    except Exception as error:
+        return case, error
+    if result.outcome == Outcome.INTERRUPTED:
+        raise KeyboardInterrupt  # half a mission is no result
+    return case, result
+
+
+def report(results: Sequence[Result]) -> str:
+    """Return the two tables, and which commits they stand for."""
+    commits = ", ".join(sorted({result.commit for result in results}))
+    text = missions_table(results)
+    criteria = judge(results)
+    if criteria:
+        text += f"\nWhat {JUDGED} must reach in every mission:\n\n{verdicts(criteria)}"
+    return f"{text}\nCommit: {commits}\n"
+
+
+def _minutes(seconds: float) -> str:
+    return f"{seconds / 60:.0f} min" if seconds >= 90 else f"{seconds:.0f} s"
+
+
+if __name__ == "__main__":
+    command.run(missions, "bench.missions")

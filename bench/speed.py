@@ -1,0 +1,58 @@
+"""Replans, answers, real-time factor and traffic, taken from whole missions."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from vedette.maps import UNKNOWN
+from vedette.record.summary import Spread, Summary
+from vedette.sim.explore import explore, prepare
+from vedette.sim.simulation import Setup
+from vedette.sim.worlds import office
+from vedette.team import PlatformSpec
+
+
+@dataclass(frozen=True)
+class Run:
+    """What one mission took."""
+
+    seed: int
+    summary: Summary
+    planning: Spread  # CPU time of one robot's replan, all sweeps [ms]
+    answer: Spread  # CPU time of one visit of the token [ms]
+    real_time: float  # simulated over wall time of the mission's loop
+    cpu_time: float  # simulated over CPU time of the same
+    known: float  # share of the grid's cells known in the end
+
+    def negotiation(self) -> float:
+        """Return what the robot that negotiated most has sent [kB]."""
+        return max(sent.negotiation for sent in self.summary.bytes.values()) / 1e3
+
+    def fusion(self) -> float:
+        """Return what the robot that shared most evidence has sent [kB]."""
+        return max(sent.fusion for sent in self.summary.bytes.values()) / 1e3
+
+
+def run_mission(seed: int, width: float, height: float, robots: int, max_time: float) -> Run:
+    """Run the default planner in a generated office of this size [m], all agents in this process."""
+    world = office(np.random.default_rng(seed), width, height)
+    specs = [PlatformSpec(name=f"robot-{number}") for number in range(1, robots + 1)]
+    simulation = prepare(world, specs, Setup(seed=seed, max_time=max_time))
+    began = time.process_time()
+    report = explore(simulation)
+    cpu = time.process_time() - began
+    timing = report.timing
+    if timing.planning_ms is None or timing.answer_ms is None:
+        raise RuntimeError(f"office {seed}: nothing was negotiated within {max_time:g} s")
+    return Run(
+        seed,
+        report.summary,
+        timing.planning_ms,
+        timing.answer_ms,
+        timing.real_time_factor,
+        report.summary.time_s / cpu,
+        float(np.mean(report.classes != UNKNOWN)),
+    )

@@ -1,0 +1,30 @@
+"""Tables in Markdown that also read well as they are."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+
+def figure(value: float | None) -> str:
+    """Return a number with four digits that count, ``-`` where there is none."""
+    if value is None or not math.isfinite(value):
+        return "-"
+    return f"{value:.0f}" if abs(value) >= 1000 else f"{value:.4g}"
+
+
+def markdown(header: Sequence[str], rows: Sequence[Sequence[str]], align: str) -> str:
+    """Return a table; ``align`` holds ``l`` or ``r`` for each column."""
+    lines = [tuple(header), *map(tuple, rows)]
+    widths = [max(2, *map(len, column)) for column in zip(*lines, strict=True)]
+    rule = [
+        "-" * (width - 1) + (":" if side == "r" else "-") for width, side in zip(widths, align, strict=True)
+    ]
+    padded = [
+        [
+            cell.rjust(width) if side == "r" else cell.ljust(width)
+            for cell, width, side in zip(line, widths, align, strict=True)
+        ]
+        for line in lines
+    ]
+    return "".join(f"| {' | '.join(line)} |\n" for line in (padded[0], rule, *padded[1:]))

@@ -1,0 +1,252 @@
+"""Coverage kernels against dense arrays, crossing intervals and all orders of all stops."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from vedette.domains.mapping import layers
+from vedette.kernels import coverage
+from vedette.kernels import reference_coverage as reference
+from vedette.kernels.coverage import LAYERS, Footprints
+from vedette.kernels.frontier import find_frontiers
+from vedette.kernels.reference_coverage import Problem, Sparse
+
+seeds = st.integers(0, 2**32 - 1)
+CELLS = 30
+
+
+def random_map(rng: np.random.Generator) -> NDArray[np.uint8]:
+    """Unknown cells and obstacles anywhere among free ones, or beside a wide free space."""
+    rows, cols = rng.integers(4, 26, 2)
+    if rng.random() < 0.4:
+        wide = np.zeros((rows + 14, cols + 14), np.uint8)
+        wide[rng.integers(8) : -rng.integers(1, 8), rng.integers(8) : -rng.integers(1, 8)] = 1
+        wide[tuple(rng.integers(0, wide.shape[axis], 3) for axis in (0, 1))] = 2
+        return wide
+    classes = (rng.random((rows, cols)) < rng.uniform(0.2, 0.95)).astype(np.uint8)
+    classes[rng.random(classes.shape) < rng.uniform(0, 0.3)] = 2
+    return classes
+
+
+def random_impact(rng: np.random.Generator) -> Sparse:
+    keys = np.flatnonzero(rng.random(CELLS * LAYERS) < rng.choice([0.0, 0.02, 0.3]))
+    misses = rng.choice([1, 2, 9, 64, 200, 255], len(keys))
+    return keys.astype(np.uint32), misses.astype(np.uint8)
+
+
+def random_problem(rng: np.random.Generator, most_stops: int) -> Problem:
+    """Draw stops in a plane with overlapping footprints, and legs up to a fifth shorter than first legs."""
+    stops = int(rng.integers(1, most_stops + 1))
+    rows = [np.flatnonzero(rng.random(CELLS) < rng.uniform(0.05, 0.5)) for _ in range(stops)]
+    starts = np.cumsum([0, *map(len, rows)])
+    misses = rng.choice([2, 5, 11, 33, 64, 255], starts[-1]).astype(np.uint8)
+    places = rng.uniform(-40, 40, (stops, 2))
+    first_leg = np.hypot(*places.T).astype(np.float32)
+    legs = np.hypot(*(places[:, None] - places).T) * rng.uniform(0.8, 1.0)
+    unreachable = rng.random(stops) < 0.1
+    first_leg[unreachable] = np.inf
+    legs[:, unreachable] = np.inf
+    worth = [layers.discounted(rng.uniform(5, 200)), layers.rate(), layers.plain()][rng.integers(3)]
+    return Problem(
+        np.where(rng.random(CELLS) < 0.2, 0.0, rng.uniform(0, 3, CELLS)).astype(np.float32),
+        worth.weights,
+        worth.edges,
+        random_impact(rng),
+        Footprints(starts, np.concatenate(rows).astype(np.uint32), misses),
+        first_leg,
+        np.ascontiguousarray(legs, np.float32),
+    )
+
+
+def reply(problem: Problem, current: list[int], max_stops: int) -> tuple[list[int], float, float]:
+    tour, gain, present = coverage.best_tour(
+        problem.weights,
+        problem.layer_weights,
+        problem.edges,
+        problem.others,
+        problem.footprints,
+        problem.first_leg,
+        problem.legs,
+        np.array(current, np.int64),
+        max_stops,
+    )
+    return tour.tolist(), gain, present
+
+
+def most_any_tour_adds(problem: Problem, max_stops: int) -> float:
+    return coverage.most_any_tour_adds(
+        problem.weights,
+        problem.layer_weights,
+        problem.edges,
+        problem.others,
+        problem.footprints,
+        problem.first_leg,
+        problem.legs,
+        max_stops,
+    )
+
+
+def random_tour(problem: Problem, rng: np.random.Generator, max_stops: int) -> list[int]:
+    reachable = np.flatnonzero(np.isfinite(problem.first_leg))
+    return [int(stop) for stop in rng.permutation(reachable)[: rng.integers(0, max_stops + 1)]]
+
+
+@settings(deadline=None, max_examples=60)
+@given(seeds)
+def test_viewpoints_equal_trying_every_reachable_cell(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    classes = random_map(rng)
+    reachable = (classes == 1) & (rng.random(classes.shape) < rng.choice([0.1, 0.5, 1.0]))
+    field = np.where(reachable, 1.0, np.inf).astype(np.float32)
+    cells, starts = find_frontiers(classes, 1, int(rng.integers(2, 12)))
+    reach = int(rng.integers(0, 9))
+    found = coverage.viewpoints(field, classes, cells, starts, reach)
+    for kernel, twin in zip(found, reference.viewpoints(field, classes, cells, starts, reach), strict=True):
+        np.testing.assert_array_equal(kernel, twin)
+
+
+@settings(deadline=None, max_examples=60)
+@given(seeds, st.booleans())
+def test_footprints_equal_their_twin(seed: int, by_distance: bool) -> None:
+    rng = np.random.default_rng(seed)
+    classes = random_map(rng)
+    views = rng.choice(np.flatnonzero(classes.ravel() != 2), 3)
+    table = -np.sort(-rng.random(rng.integers(1, 12))).astype(np.float32)
+    table[rng.integers(1, 12) :] = 0.0
+    scan = (
+        views,
+        rng.uniform(-4, 4, 3),
+        rng.uniform(0.5, 25),
+        rng.choice([0.7, 3.0, math.tau]),
+        table,
+        by_distance,
+        int(rng.integers(1, 5)),
+        rng.uniform(0, 0.2),
+    )
+    starts, cells, shares = coverage.footprints(classes, *scan)
+    twin_starts, twin_cells, twin_shares = reference.footprints(classes, *scan)
+    np.testing.assert_array_equal(starts, twin_starts)
+    np.testing.assert_array_equal(cells, twin_cells)
+    np.testing.assert_allclose(shares, twin_shares, rtol=1e-5)
+
+
+@settings(deadline=None, max_examples=60)
+@given(seeds)
+def test_combine_equals_a_dictionary_of_saturating_sums(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    a, b = random_impact(rng), random_impact(rng)
+    (keys, misses), (twin_keys, twin_misses) = coverage.combine(*a, *b), reference.combine(*a, *b)
+    np.testing.assert_array_equal(keys, twin_keys, strict=True)
+    np.testing.assert_array_equal(misses, twin_misses, strict=True)
+
+
+@settings(deadline=None, max_examples=60)
+@given(seeds)
+def test_marginals_equal_differences_of_dense_values(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    problem = random_problem(rng, 1)
+    own = [random_impact(rng) for _ in range(4)]
+    starts = np.cumsum([0, *(len(keys) for keys, _ in own)])
+    keys, misses = (np.concatenate(part) for part in zip(*own, strict=True))
+    worth = (problem.weights, problem.layer_weights)
+    gains = coverage.marginals(*worth, problem.others, starts, keys, misses)
+    twins = reference.marginals(*worth, problem.others, starts, keys, misses)
+    np.testing.assert_allclose(gains, twins, rtol=1e-9, atol=1e-9)
+
+
+@settings(deadline=None, max_examples=100)
+@given(seeds, st.integers(1, 6))
+def test_the_gains_that_best_tour_tells_are_the_dense_values_of_its_tours(seed: int, max_stops: int) -> None:
+    rng = np.random.default_rng(seed)
+    problem = random_problem(rng, 8)
+    current = random_tour(problem, rng, max_stops)
+    tour, gain, present = reply(problem, current, max_stops)
+    assert len(set(tour)) == len(tour) <= max_stops
+    assert gain == pytest.approx(reference.tour_gain(problem, tour), rel=1e-4, abs=1e-4)
+    assert present == pytest.approx(reference.tour_gain(problem, current), rel=1e-4, abs=1e-4)
+
+
+@settings(deadline=None, max_examples=100)
+@given(seeds, st.integers(1, 6))
+def test_best_tour_is_no_worse_than_the_present_tour_and_any_single_stop(seed: int, max_stops: int) -> None:
+    rng = np.random.default_rng(seed)
+    problem = random_problem(rng, 8)
+    _, gain, present = reply(problem, random_tour(problem, rng, max_stops), max_stops)
+    singles = [reference.tour_gain(problem, [stop]) for stop in range(len(problem.first_leg))]
+    # Ties inside a time layer fall to the shorter tour, by at most 1e-4 of the value.
+    assert gain >= max(present, 0.0, *singles) * (1 - 1.1e-4) - 1e-4
+
+
+def test_best_tour_comes_close_to_the_best_of_all_tours() -> None:
+    ratios = []
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        problem = random_problem(rng, 5)
+        _, gain, _ = reply(problem, [], 4)
+        _, optimum = reference.best_tour(problem, 4)
+        assert gain <= optimum * (1 + 1e-4) + 1e-4
+        ratios.append(gain / optimum if optimum > 1e-3 else 1.0)
+    assert np.mean(ratios) >= 0.99
+    assert min(ratios) >= 0.9
+
+
+def test_best_tour_is_on_average_within_a_percent_of_greedy_insertion_at_exact_prices() -> None:
+    ahead = []
+    for seed in range(60):
+        problem = random_problem(np.random.default_rng(seed), 6)
+        _, greedy = reference.greedy_tour(problem, 4)
+        ahead.append(reply(problem, [], 4)[1] / greedy - 1.0 if greedy > 1e-3 else 0.0)
+    assert np.mean(ahead) >= -0.01
+
+
+def test_stops_that_cannot_be_reached_are_never_in_a_tour() -> None:
+    for seed in range(40):
+        problem = random_problem(np.random.default_rng(seed), 8)
+        tour, _, _ = reply(problem, [], 6)
+        assert np.isfinite(problem.first_leg[tour]).all()
+
+
+def test_inside_a_time_layer_the_shorter_tour_wins() -> None:
+    edges, weights = np.full(LAYERS, 1e3), np.eye(LAYERS)[-1]
+    first_leg, legs = np.array([1, 3], np.float32), np.array([[0, 2], [2, 0]], np.float32)
+    footprints = Footprints(np.array([0, 1, 2]), np.array([0, 1], np.uint32), np.array([64, 64], np.uint8))
+    nothing = np.empty(0, np.uint32), np.empty(0, np.uint8)
+    worth = np.array([1.0, 1.0], np.float32)
+    problem = Problem(worth, weights, edges, nothing, footprints, first_leg, legs)
+    assert reply(problem, [1, 0], 2)[0] == [0, 1]
+
+
+@settings(deadline=None, max_examples=60)
+@given(seeds, st.integers(1, 4))
+def test_no_tour_adds_more_than_the_bound_and_the_bound_equals_its_twin(seed: int, max_stops: int) -> None:
+    problem = random_problem(np.random.default_rng(seed), 4)
+    bound = most_any_tour_adds(problem, max_stops)
+    _, optimum = reference.best_tour(problem, max_stops)
+    assert bound >= optimum * (1 - 1e-5) - 1e-5
+    assert bound == pytest.approx(reference.most_any_tour_adds(problem, max_stops), rel=1e-4, abs=1e-4)
+
+
+def test_the_bound_holds_where_going_by_another_stop_is_the_shorter_way() -> None:
+    rng = np.random.default_rng(0)
+    problem = random_problem(rng, 1)
+    first_leg, legs = np.array([4, 11], np.float32), np.array([[0, 1], [1, 0]], np.float32)
+    footprints = Footprints(np.array([0, 1, 2]), np.array([0, 1], np.uint32), np.array([1, 255], np.uint8))
+    problem = dataclasses.replace(
+        problem,
+        weights=np.ones(CELLS, np.float32),
+        layer_weights=layers.rate().weights,
+        others=(np.empty(0, np.uint32), np.empty(0, np.uint8)),
+        footprints=footprints,
+        first_leg=first_leg,
+        legs=legs,
+    )
+    straight = sum(reference.tour_gain(problem, [stop]) for stop in (0, 1))
+    assert reference.tour_gain(problem, [0, 1]) > straight
+    assert most_any_tour_adds(problem, 2) >= reference.tour_gain(problem, [0, 1])
