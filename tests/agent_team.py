@@ -251,9 +251,7 @@ class Team:
     def run_round(self) -> None:
         """Let time pass until everybody has decided once more; 5 s at most."""
         before = self.decisions()
-        self.run_until(
-            lambda: all(now > then for now, then in zip(self.decisions(), before, strict=True))
-        )
+        self.run_until(lambda: all(now > then for now, then in zip(self.decisions(), before, strict=True)))
 
     def decisions(self) -> list[int]:
         """How many rounds each robot has ended with a decision."""

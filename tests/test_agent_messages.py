@@ -1,14 +1,14 @@
-"""What neighbours send, whatever it is, never stops an agent: it is taken in, ignored, or dropped and counted."""
+"""Whatever neighbours send never stops an agent: it is taken in, ignored, or dropped and counted."""
 
 from __future__ import annotations
 
 import msgspec
 import numpy as np
 import pytest
-from agent_team import Team, nested_kind, toy_team
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from agent_team import Team, nested_kind, toy_team
 from vedette import Tree
 from vedette.agent import messages
 from vedette.agent.effects import Traffic

@@ -1,13 +1,13 @@
-"""Rounds: everybody decides the same, whatever is lost or dies the next round goes on, and who is done is quiet."""
+"""Rounds: all decide the same, whatever is lost or dies the next one goes on, and who is done is quiet."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from agent_team import Post, Team, nested_kind, toy_team
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from agent_team import Post, Team, nested_kind, toy_team
 from vedette import Tree, negotiate
 from vedette.agent import messages
 from vedette.agent.effects import Traffic

@@ -1,0 +1,59 @@
+"""Small worlds and whole missions in them, a second or two each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from vedette.maps import GridFrame
+from vedette.sim.explore import Report, explore, prepare
+from vedette.sim.simulation import Setup, Simulation
+from vedette.sim.world import World
+from vedette.sim.worlds import maze, office
+from vedette.team import PlatformSpec
+
+
+@cache
+def small_maze(seed: int = 1) -> World:
+    """Ten metres square."""
+    return maze(np.random.default_rng(seed), 10.0, 10.0)
+
+
+@cache
+def small_office(seed: int = 1) -> World:
+    """Twelve by ten metres."""
+    return office(np.random.default_rng(seed), 12.0, 10.0)
+
+
+def drawn(picture: str, resolution: float = 0.1, scale: int = 5) -> World:
+    """A world from a picture: '#' is solid, one character is ``scale`` cells a side."""
+    lines = [line for line in picture.splitlines() if line]
+    width = max(map(len, lines))
+    solid = np.array([[mark == "#" for mark in line.ljust(width, "#")] for line in reversed(lines)])
+    solid = solid.repeat(scale, axis=0).repeat(scale, axis=1)
+    return World(GridFrame(resolution, *solid.shape), solid, "drawn")
+
+
+def robots(n: int, **fields: Any) -> list[PlatformSpec]:
+    """Equal robots."""
+    return [PlatformSpec(name=f"robot-{i + 1}", **fields) for i in range(n)]
+
+
+def run(world: World, specs: Sequence[PlatformSpec], **setup: Any) -> tuple[Simulation, Report]:
+    """A whole mission, at most 900 s unless the setup says otherwise."""
+    simulation = prepare(world, specs, Setup(**{"max_time": 900.0, **setup}))
+    return simulation, explore(simulation)
+
+
+def check_complete(report: Report) -> None:
+    """The mission is complete, the map whole and true, nobody touched anything."""
+    summary = report.summary
+    assert summary.outcome.value == "complete"
+    assert summary.completed
+    assert summary.coverage >= 0.995
+    assert summary.map_errors == 0
+    assert summary.collisions == 0
+    assert summary.min_clearance_m > 0.0
