@@ -1,8 +1,10 @@
 # Needs Python >= 3.11, Rust >= 1.85, a C linker and GNU make; `make help` lists the targets.
 #   make explore ARGS="--robots 5 --seed 7"     options for the command
 #   make explore PYTHON=/path/to/python3.12     another Python than the one on PATH
+#   make missions MAPS=/path/to/maps            a folder of maps besides the generated offices
 
 VENV := .venv
+MAPS ?= ../shared/maps
 BIN := $(VENV)/bin
 PY := $(BIN)/python
 PIP := $(PY) -m pip --disable-pip-version-check --quiet
@@ -49,10 +51,10 @@ rust-lint: ready-dev ## Lint and check the formatting of the Rust code
 	@cargo clippy $(CARGO_FLAGS) --quiet --all-targets -- -D warnings
 
 bench: ready-dev ## Measure speed and traffic against the targets: MET or MISSED
-	@$(PY) -m bench.bench $(ARGS)
+	@$(PY) -m bench $(ARGS)
 
 missions: ready-dev ## Run the table of missions beside the yardsticks (long)
-	@$(PY) bench/missions.py $(ARGS)
+	@$(PY) -m bench.missions $(if $(wildcard $(MAPS)),--maps $(MAPS)) $(ARGS)
 
 # The copy is moved into place: overwriting a module that a running process has loaded would crash it.
 build: ## Compile the kernels and put them in place

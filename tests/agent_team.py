@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette import Tree
-from vedette.agent import Agent, messages, step
+from vedette.agent import Agent, State, messages, step
 from vedette.agent.effects import Drive, Job, Route, Send, Traffic
 from vedette.agent.events import Event, JobDone, Message, Pose, Scan, TreeChanged
 from vedette.agent.mates import Mate
@@ -151,6 +151,17 @@ def toy_agent(robot: int, candidates: list[Float], belief: Float, scheme: str = 
     fusion = ReplicatedEvidence(robot, 1, FRAME.shape, 4)
     spec = PlatformSpec(name=f"robot-{robot + 1}")
     return Agent(robot, 1, spec, FRAME, ToyMission(fusion, candidates, belief), scheme)
+
+
+def toy(agent: Agent) -> ToyMission:
+    """An agent's mission as the toy it is."""
+    assert isinstance(agent.mission, ToyMission)
+    return agent.mission
+
+
+def state(agent: Agent) -> State:
+    """What a robot is doing now."""
+    return agent.state
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
-from agent_team import FRAME, Team, toy_agent, toy_team
+from agent_team import FRAME, Team, state, toy, toy_agent, toy_team
 from vedette import Tree
 from vedette.agent import State
 from vedette.agent.driving import YIELD_LIMIT, Driver, remaining
@@ -23,10 +24,10 @@ def driving_team(n: int = 2) -> Team:
     """A team whose robots have all been given a goal."""
     team, _, _ = toy_team(Tree.chain(n))
     for agent in team.agents:
-        agent.mission.goals = [(2.0, 2.0), (3.0, 2.0), (2.0, 3.0), (3.0, 3.0)]
+        toy(agent).goals = [(2.0, 2.0), (3.0, 2.0), (2.0, 3.0), (3.0, 3.0)]
     team.run_round()
     team.run(0.2)
-    assert all(agent.state is State.DRIVING for agent in team.agents)
+    assert all(state(agent) is State.DRIVING for agent in team.agents)
     return team
 
 
@@ -38,42 +39,42 @@ def last_goal(drive: Drive) -> tuple[float, ...] | None:
 def test_a_decision_is_driven_at_once() -> None:
     team = driving_team()
     for robot, agent in enumerate(team.agents):
-        assert last_goal(team.driven[robot][-1]) == agent.mission.goal()
+        assert last_goal(team.driven[robot][-1]) == toy(agent).goal()
 
 
 def test_arrival_leads_to_the_next_stop_or_to_waiting_and_asks_for_a_round() -> None:
     team = driving_team()
     agent, before = team.agents[1], team.decisions()
     team.tell(1, Arrived())
-    assert agent.state is State.IDLE
+    assert state(agent) is State.IDLE
     assert last_goal(team.driven[1][-1]) is None
     team.run(2.5)
     assert team.decisions()[1] > before[1]
-    assert agent.state is State.DRIVING
+    assert state(agent) is State.DRIVING
 
 
 def test_a_stuck_robot_releases_its_work_at_once_and_has_a_new_decision_within_two_rounds() -> None:
     team = driving_team()
     agent, before = team.agents[0], team.decisions()
     team.tell(0, Stuck())
-    assert (agent.state, agent.mission.released, agent.mission.strategy) == (State.STUCK, 1, None)
+    assert (agent.state, toy(agent).released, toy(agent).strategy) == (State.STUCK, 1, None)
     assert last_goal(team.driven[0][-1]) is None
     team.run(2.5)
     assert team.decisions()[0] > before[0]
-    assert agent.state is State.DRIVING
+    assert state(agent) is State.DRIVING
 
 
 def test_work_that_cannot_be_reached_is_released() -> None:
     team = driving_team()
     agent = team.agents[0]
-    agent.mission.no_way = True
+    toy(agent).no_way = True
     team.tell(0, Stuck())
     team.run(2.0)
-    assert agent.state is State.IDLE
-    assert agent.mission.strategy is None
-    agent.mission.no_way = False
+    assert state(agent) is State.IDLE
+    assert toy(agent).strategy is None
+    toy(agent).no_way = False
     team.run(8.0)
-    assert agent.state is State.DRIVING
+    assert state(agent) is State.DRIVING
 
 
 @pytest.mark.parametrize("event", [Arrived(), Stuck()])
@@ -82,10 +83,10 @@ def test_events_that_nobody_waits_for_do_nothing(event: Event) -> None:
     team = Team([agent], Tree.chain(1))
     team.tell(0, event)  # not even a pose has come
     team.run(2.0)
-    assert agent.state is State.IDLE
+    assert state(agent) is State.IDLE
     team.tell(0, event)
-    assert agent.state is State.IDLE
-    assert agent.mission.released == 0
+    assert state(agent) is State.IDLE
+    assert toy(agent).released == 0
 
 
 def home_team() -> Team:
@@ -102,7 +103,7 @@ def home_team() -> Team:
 def test_a_finished_robot_drives_home_and_is_done_there() -> None:
     team = home_team()
     agent = team.agents[0]
-    assert agent.state is State.RETURNING
+    assert state(agent) is State.RETURNING
     assert last_goal(team.driven[0][-1]) == (2.0, 2.0)
     agent.home = (1.1, 1.1)  # as if it had driven: it is there now
     team.tell(0, Arrived())
@@ -113,7 +114,7 @@ def test_a_robot_near_home_whose_place_is_taken_waits_and_tries_again() -> None:
     team = home_team()
     agent = team.agents[0]
     team.tell(0, Arrived())
-    assert agent.state is State.RETURNING
+    assert state(agent) is State.RETURNING
     assert last_goal(team.driven[0][-1]) is None
     team.run(3.5)
     assert last_goal(team.driven[0][-1]) == (2.0, 2.0)
@@ -122,9 +123,9 @@ def test_a_robot_near_home_whose_place_is_taken_waits_and_tries_again() -> None:
 def test_a_robot_that_finds_no_way_home_stays_where_it_is_in_the_end() -> None:
     team = home_team()
     agent = team.agents[0]
-    agent.mission.no_way = True
+    toy(agent).no_way = True
     team.tell(0, Stuck())
-    assert agent.state is State.RETURNING
+    assert state(agent) is State.RETURNING
     team.run(40.0)
     assert agent.done
 
@@ -141,7 +142,7 @@ def test_a_robot_that_is_done_stays_done_when_it_has_to_make_room_too_long() -> 
     assert not agent.driver.yielding
 
 
-def corridor(width: int = 8) -> np.ndarray:
+def corridor(width: int = 8) -> NDArray[np.bool_]:
     """A corridor along x through the map, ``width`` cells of it passable."""
     passable = np.zeros(FRAME.shape, np.bool_)
     passable[10 : 10 + width] = True
@@ -185,7 +186,7 @@ def test_a_robot_that_makes_room_too_long_looks_for_other_work() -> None:
     agent.driver.refuge = np.array([(1.0, 1.0)])
     agent.driver.yielding_since = team.now - YIELD_LIMIT - 1.0
     team.run(0.6)
-    assert agent.mission.released == 1
+    assert toy(agent).released == 1
 
 
 @settings(deadline=None, max_examples=100)

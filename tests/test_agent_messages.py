@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from agent_team import Team, nested_kind, toy_team
+from agent_team import Team, nested_kind, toy, toy_team
 from vedette import Tree
 from vedette.agent import messages
 from vedette.agent.effects import Traffic
@@ -108,7 +108,7 @@ def test_counts_as_large_as_the_wire_allows_never_raise() -> None:
 def test_a_malformed_negotiation_message_that_comes_early_does_not_stop_the_agent() -> None:
     team, _, _ = toy_team(Tree.star(3))
     root = team.agents[0]
-    team.run_until(lambda: root.mission.prepared == 1)
+    team.run_until(lambda: toy(root).prepared == 1)
     bad = messages.Negotiate(*root.rounds.stamp, b"nonsense")
     out_of_place = messages.Negotiate(*root.rounds.stamp, msgspec.msgpack.encode([3, None]))
     for message in (bad, out_of_place):
@@ -152,12 +152,15 @@ def test_only_the_parent_begins_and_freezes_a_round(message: messages.Wire) -> N
 def test_a_repeated_freeze_does_not_change_the_belief_of_the_round() -> None:
     team, _, _ = toy_team(Tree.chain(2))
     child = team.agents[1]
-    team.run_until(lambda: child.mission.prepared == 1)
-    belief = child.rounds._round.belief
-    child.mission.belief = belief + 1.0
+    team.run_until(lambda: toy(child).prepared == 1)
+    before = child.rounds._round
+    assert before is not None
+    belief = before.belief
+    toy(child).belief = belief + 1.0
     team.tell(1, Message(0, messages.encode(messages.Freeze(*child.rounds.stamp, 12345))))
-    assert child.rounds._round.belief is belief
-    assert child.mission.prepared == 1
+    assert child.rounds._round is before
+    assert before.belief is belief
+    assert toy(child).prepared == 1
 
 
 @pytest.mark.parametrize(
@@ -205,11 +208,11 @@ def test_a_robot_maps_only_when_its_mates_have_been_heard_or_after_a_while() -> 
     scan = Scan(np.zeros(1), np.ones(1))
     heard, _, _ = toy_team(Tree.chain(2))
     heard.tell(0, Pose(1.0, 1.0, 0.0), scan)
-    assert heard.agents[0].mission.observed == 0
+    assert toy(heard.agents[0]).observed == 0
     heard.run(0.3)
-    assert heard.agents[0].mission.observed == 1  # the held scan
+    assert toy(heard.agents[0]).observed == 1  # the held scan
     deaf, _, _ = toy_team(Tree.chain(2), lose=lambda post: post.traffic is Traffic.BEACONS)
     for _ in range(40):
         deaf.tell(0, Pose(1.0, 1.0, 0.0), scan)
         deaf.run(0.1)
-    assert 5 <= deaf.agents[0].mission.observed <= 15
+    assert 5 <= toy(deaf.agents[0]).observed <= 15

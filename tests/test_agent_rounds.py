@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from agent_team import Post, Team, nested_kind, toy_team
+from agent_team import Post, Team, nested_kind, toy, toy_team
 from vedette import Tree, negotiate
 from vedette.agent import messages
 from vedette.agent.effects import Traffic
@@ -30,7 +30,7 @@ def test_a_round_decides_what_negotiate_does_on_the_same_candidates_and_tree(
     assert team.decisions() == [1] * n
     assert team.choices() == expected.choice
     assert len({agent.rounds.stamp for agent in team.agents}) == 1
-    assert len({agent.mission.fusion.digest for agent in team.agents}) == 1
+    assert len({toy(agent).fusion.digest for agent in team.agents}) == 1
     assert [agent.dropped for agent in team.agents] == [0] * n
 
 
@@ -101,7 +101,7 @@ def test_when_a_robot_dies_the_rest_goes_on_on_a_new_tree(victim: int, when: flo
     living = [robot for robot in range(6) if robot != victim]
     before = team.decisions()
     for robot in living:
-        team.agents[robot].mission.strategy = None
+        toy(team.agents[robot]).strategy = None
     team.plant(Tree.balanced(5), living)
     team.run(4.0)
     assert all(team.decisions()[robot] > before[robot] for robot in living)
@@ -144,16 +144,16 @@ def test_negotiation_messages_that_come_before_a_robot_is_prepared_are_not_lost(
 def test_a_stuck_robots_call_is_answered_by_a_round_within_a_second_and_a_half() -> None:
     team, _, _ = toy_team(Tree.chain(3))
     for agent in team.agents:
-        agent.mission.goals = [(2.0, 2.0)]
+        toy(agent).goals = [(2.0, 2.0)]
     team.run(1.2)
     before = team.decisions()
     team.tell(2, Stuck())
-    assert team.agents[2].mission.released == 1
+    assert toy(team.agents[2]).released == 1
     team.run(1.5)
     assert [after - b for after, b in zip(team.decisions(), before, strict=True)] == [1, 1, 1]
-    assert team.agents[2].mission.blocked[-2:] == [False, True]  # its mates count as obstacles once
+    assert toy(team.agents[2]).blocked[-2:] == [False, True]  # its mates count as obstacles once
     team.run(5.0)
-    assert team.agents[2].mission.blocked[-1] is False
+    assert toy(team.agents[2]).blocked[-1] is False
 
 
 def test_rounds_are_rate_limited_however_many_are_wanted() -> None:
@@ -195,8 +195,8 @@ def test_a_finished_team_exchanges_no_negotiation_messages() -> None:
 def test_a_finished_mission_goes_on_when_something_is_worth_doing_again() -> None:
     team = finished_team()
     for agent in team.agents:
-        agent.mission.belief[:] = 1.0
-        agent.mission.goals = [(2.0, 2.0)]
+        toy(agent).belief[:] = 1.0
+        toy(agent).goals = [(2.0, 2.0)]
     team.agents[2].rounds.call(team.now)
     team.tell(0, Message(1, messages.encode(messages.Call(1))))
     team.run(2.0)
@@ -206,10 +206,10 @@ def test_a_finished_mission_goes_on_when_something_is_worth_doing_again() -> Non
 def test_a_robot_with_something_put_off_keeps_the_mission_from_ending() -> None:
     team, _, belief = toy_team(Tree.chain(3))
     belief[:] = 0.0
-    team.agents[1].mission.put_off = True
+    toy(team.agents[1]).put_off = True
     team.run(20.0)
     assert not team.agents[1].finished
-    team.agents[1].mission.put_off = False
+    toy(team.agents[1]).put_off = False
     team.run(20.0)
     assert all(agent.finished for agent in team.agents)
 

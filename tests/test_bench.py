@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from bench import __main__ as speed_command
 from bench import journal
 from bench.cases import MAP_ROBOTS, Case, Result, map_cases, office_cases
@@ -19,7 +20,6 @@ from bench.missions import conduct, missions
 from bench.missions_table import judge, missions_table
 from bench.speed import Run, run_mission
 from bench.table import figure, markdown
-
 from vedette.errors import InputError
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.sim.worlds import office

@@ -1,4 +1,4 @@
-"""Whole small missions in simulation: they end well, whatever the team, the planner, the links and the faults."""
+"""Whole small missions: they end well, whatever the team, the planner, the links and the faults."""
 
 from __future__ import annotations
 
@@ -16,6 +16,22 @@ from vedette.sim.simulation import FUSIONS, SCHEMES, Setup
 from vedette.sim.world import World
 from vedette.team import PlatformSpec
 
+TWO_DOORS = """
+########################
+#          #           #
+#          #           #
+#                      #
+#                      #
+#          #           #
+#          #           #
+#          #           #
+#          #           #
+#                      #
+#                      #
+#          #           #
+########################
+"""
+
 
 @pytest.mark.parametrize("n", [1, 2, 3])
 def test_an_office_is_explored_completely_and_without_a_touch(n: int) -> None:
@@ -31,13 +47,13 @@ def test_an_office_is_explored_completely_and_without_a_touch(n: int) -> None:
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("planner", PLANNERS)
 def test_every_planner_scheme_and_fusion_completes(planner: str, scheme: str, fusion: str) -> None:
-    _, report = run(small_maze(), robots(2), planner=planner, scheme=scheme, fusion=fusion)
+    _, report = run(drawn(TWO_DOORS), robots(2, range=4.0), planner=planner, scheme=scheme, fusion=fusion)
     check_complete(report)
     summary = report.summary
     assert (summary.planner, summary.scheme, summary.fusion) == (planner, scheme, fusion)
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [1])
 def test_a_tenth_of_all_messages_lost_does_not_stop_a_mission(seed: int) -> None:
     _, report = run(small_maze(seed), robots(3), link_loss=0.1)
     check_complete(report)
@@ -142,23 +158,6 @@ def test_given_starts_are_kept() -> None:
     assert simulation.pose(0) == pytest.approx((2.0, 1.0, np.pi / 2))
 
 
-TWO_DOORS = """
-########################
-#          #           #
-#          #           #
-#                      #
-#                      #
-#          #           #
-#          #           #
-#          #           #
-#          #           #
-#                      #
-#                      #
-#          #           #
-########################
-"""
-
-
 def test_a_dead_robot_in_a_door_is_planned_round() -> None:
     specs = [
         PlatformSpec(name="blocker", radius=0.4, start=(5.75, 4.5)),
@@ -180,9 +179,9 @@ def test_a_frame_whose_origin_lies_elsewhere_makes_no_difference() -> None:
 
 
 def test_the_same_seed_gives_the_same_mission_and_another_seed_another() -> None:
-    _, first = run(small_maze(), robots(2), seed=5)
-    _, second = run(small_maze(), robots(2), seed=5)
-    _, other = run(small_maze(), robots(2), seed=6)
+    _, first = run(drawn(TWO_DOORS), robots(2), seed=5)
+    _, second = run(drawn(TWO_DOORS), robots(2), seed=5)
+    _, other = run(drawn(TWO_DOORS), robots(2), seed=6)
     assert first.summary.to_json() == second.summary.to_json()
     np.testing.assert_array_equal(first.classes, second.classes)
     np.testing.assert_array_equal(first.log.poses, second.log.poses)

@@ -76,9 +76,7 @@ pub fn viewpoints(
 
 fn nearest_to_centroid(members: &[i64], cols: i64) -> i64 {
     let n = members.len() as i64;
-    let (row_sum, col_sum) = members
-        .iter()
-        .fold((0, 0), |(r, c), &m| (r + m / cols, c + m % cols));
+    let (row_sum, col_sum) = members.iter().fold((0, 0), |(r, c), &m| (r + m / cols, c + m % cols));
     *members
         .iter()
         .min_by_key(|&&m| {
@@ -88,14 +86,7 @@ fn nearest_to_centroid(members: &[i64], cols: i64) -> i64 {
         .expect("a cluster has members")
 }
 
-fn view_of(
-    field: &[f32],
-    classes: &[u8],
-    rows: usize,
-    cols: usize,
-    target: i64,
-    reach: i64,
-) -> i64 {
+fn view_of(field: &[f32], classes: &[u8], rows: usize, cols: usize, target: i64, reach: i64) -> i64 {
     let (row, col) = (target / cols as i64, target % cols as i64);
     let mut best = (reach * reach + 1, -1_i64);
     for ring in 0..=reach {
@@ -126,8 +117,8 @@ fn view_of(
 
 pub struct Sensor<'a> {
     pub range_cells: f64,
-    pub view: f64,        // field of view [rad]
-    pub table: &'a [f32], // probability of seeing an unknown cell, by cells of depth
+    pub view: f64,         // field of view [rad]
+    pub table: &'a [f32],  // probability of seeing an unknown cell, by cells of depth
     pub by_distance: bool, // depth is the distance; otherwise the unknown length crossed before
 }
 
@@ -199,7 +190,11 @@ fn room(classes: &[u8], rows: usize, cols: usize) -> Vec<u8> {
     let mut room: Vec<u8> = classes.iter().map(|&class| if class == FREE { 255 } else { 0 }).collect();
     let at = |room: &[u8], row: i64, col: i64| {
         let inside = row >= 0 && col >= 0 && row < rows as i64 && col < cols as i64;
-        if inside { room[row as usize * cols + col as usize] } else { 0 }
+        if inside {
+            room[row as usize * cols + col as usize]
+        } else {
+            0
+        }
     };
     for forward in [true, false] {
         let back: i64 = if forward { -1 } else { 1 };
@@ -359,8 +354,8 @@ pub fn marginal(
         }
         after.sort_unstable();
         let weight = f64::from(weights[cell as usize]);
-        gain += weight
-            * (cell_value(&after, layer_weights, &miss) - cell_value(&before, layer_weights, &miss));
+        gain +=
+            weight * (cell_value(&after, layer_weights, &miss) - cell_value(&before, layer_weights, &miss));
     }
     gain
 }
@@ -370,19 +365,17 @@ pub fn marginal(
 
 /// What one platform knows of its stops, fixed for a round.
 pub struct Stops<'a> {
-    pub starts: &'a [i64],     // (K + 1) CSR bounds of each stop's footprint
-    pub cells: &'a [u32],      // planning cells
-    pub misses: &'a [u8],      // their log-miss
-    pub first_leg: &'a [f32],  // (K) seconds from here to each stop
-    pub legs: &'a [f32],       // (K, K) seconds between stops
-    pub edges: &'a [f64],      // (LAYERS) upper edge of each time layer [s]
+    pub starts: &'a [i64],    // (K + 1) CSR bounds of each stop's footprint
+    pub cells: &'a [u32],     // planning cells
+    pub misses: &'a [u8],     // their log-miss
+    pub first_leg: &'a [f32], // (K) seconds from here to each stop
+    pub legs: &'a [f32],      // (K, K) seconds between stops
+    pub edges: &'a [f64],     // (LAYERS) upper edge of each time layer [s]
 }
 
 impl Stops<'_> {
     fn layer(&self, arrival: f32) -> usize {
-        self.edges
-            .partition_point(|&edge| edge < f64::from(arrival))
-            .min(LAYERS - 1)
+        self.edges.partition_point(|&edge| edge < f64::from(arrival)).min(LAYERS - 1)
     }
 
     fn len(&self) -> usize {
@@ -415,11 +408,12 @@ impl Stops<'_> {
 /// each layer would add to the rest of the team's impact.
 struct Tours<'a> {
     stops: Stops<'a>,
-    local: Vec<u32>,              // the local cell of each footprint entry
-    seen: Vec<f32>,               // its probability of being seen
-    worth: Vec<[f32; LAYERS]>,    // (local cell) weight times the suffix sum of layer weights times others' miss
-    missed: Vec<f32>,             // (local cell) scratch: own miss so far
+    local: Vec<u32>,           // the local cell of each footprint entry
+    seen: Vec<f32>,            // its probability of being seen
+    worth: Vec<[f32; LAYERS]>, // (local cell) weight times the suffix sum of layer weights times others' miss
+    missed: Vec<f32>,          // (local cell) scratch: own miss so far
     max_stops: usize,
+    held: usize, // stops at the head of a tour that a search leaves where they are
 }
 
 impl<'a> Tours<'a> {
@@ -469,13 +463,9 @@ impl<'a> Tours<'a> {
             }
             worth.push(row);
         }
-        let seen = stops
-            .misses
-            .iter()
-            .map(|&q| (1.0 - miss[q as usize]) as f32)
-            .collect();
+        let seen = stops.misses.iter().map(|&q| (1.0 - miss[q as usize]) as f32).collect();
         let missed = vec![1.0; cells.len()];
-        Tours { stops, local, seen, worth, missed, max_stops }
+        Tours { stops, local, seen, worth, missed, max_stops, held: 0 }
     }
 
     fn entries(&self, stop: usize) -> std::ops::Range<usize> {
@@ -547,6 +537,15 @@ impl<'a> Tours<'a> {
         value * (1.0 - 1e-4 * f64::from(end.min(1e3)) / 1e3)
     }
 
+    /// Complete and improve a tour, leaving its first `held` stops in place.
+    fn search(&mut self, mut tour: Vec<usize>, held: usize, tables: &[[f32; LAYERS]]) -> Vec<usize> {
+        self.held = held;
+        self.insert_greedily(&mut tour, &mut tables.to_vec());
+        self.improve(&mut tour);
+        self.insert_greedily(&mut tour, &mut tables.to_vec());
+        tour
+    }
+
     /// Insert the stop that adds most, where it adds most, until nothing adds or the tour is full.
     ///
     /// `tables` holds at least what each stop adds in every layer: that only shrinks as the tour grows,
@@ -577,7 +576,7 @@ impl<'a> Tours<'a> {
         }
         let place = |stop: usize, table: &[f32; LAYERS]| match tour.contains(&stop) {
             true => (0.0, 0),
-            false => best_place(&self.stops, stop, table, tour, &arrivals, &present),
+            false => best_place(&self.stops, stop, table, tour, self.held, &arrivals, &present),
         };
         let mut best: Vec<(f32, usize)> =
             tables.iter().enumerate().map(|(stop, table)| place(stop, table)).collect();
@@ -604,8 +603,8 @@ impl<'a> Tours<'a> {
         let mut best = self.score(tour);
         for _ in 0..4 {
             let before = best;
-            for i in 0..tour.len() {
-                for j in 0..tour.len() {
+            for i in self.held..tour.len() {
+                for j in self.held..tour.len() {
                     if i == j {
                         continue;
                     }
@@ -653,11 +652,12 @@ fn best_place(
     stop: usize,
     table: &[f32; LAYERS],
     tour: &[usize],
+    held: usize,
     arrivals: &[f32],
     present: &[[f32; LAYERS]],
 ) -> (f32, usize) {
     let mut best = (0.0_f32, 0);
-    for place in 0..=tour.len() {
+    for place in held..=tour.len() {
         let from = place.checked_sub(1).map(|i| tour[i]);
         let start = place.checked_sub(1).map_or(0.0, |i| arrivals[i]);
         let arrival = start + stops.leg(from, stop);
@@ -689,8 +689,11 @@ pub struct Reply {
     pub current_gain: f64, // marginal value of the current tour
 }
 
-/// The best tour found against the rest of the team: greedy insertion and 2-opt, from nothing and
-/// from the current tour.
+/// The best tour found against the rest of the team, by greedy insertion and 2-opt.
+///
+/// One search starts from nothing, another from the current tour and leaves its first stop in place: the
+/// robot is on its way there, so to turn away must pay by the share `stickiness`.
+#[allow(clippy::too_many_arguments)]
 pub fn best_tour(
     stops: Stops,
     weights: &[f32],
@@ -698,22 +701,17 @@ pub fn best_tour(
     others: (&[u32], &[u8]),
     current: &[i64],
     max_stops: usize,
+    stickiness: f64,
 ) -> Reply {
     let mut tours = Tours::new(stops, weights, layer_weights, others, max_stops);
     let current: Vec<usize> = current.iter().map(|&stop| stop as usize).collect();
     let current_gain = tours.value(&current).0;
-    let mut best: Vec<usize> = Vec::new();
-    let mut best_score = 0.0;
-    let again = !current.is_empty();
     let tables: Vec<_> = (0..tours.stops.len()).map(|stop| tours.by_layer(stop)).collect();
-    for mut tour in std::iter::once(Vec::new()).chain(again.then_some(current)) {
-        tours.insert_greedily(&mut tour, &mut tables.clone());
-        tours.improve(&mut tour);
-        tours.insert_greedily(&mut tour, &mut tables.clone());
-        let score = tours.score(&tour);
-        if score > best_score {
-            best = tour;
-            best_score = score;
+    let mut best = tours.search(Vec::new(), 0, &tables);
+    if !current.is_empty() {
+        let kept = tours.search(current, 1, &tables);
+        if tours.score(&best) <= tours.score(&kept) * (1.0 + stickiness) {
+            best = kept;
         }
     }
     let gain = tours.value(&best).0;
@@ -795,10 +793,8 @@ fn py_combine<'py>(
     keys_b: PyReadonlyArray1<'py, u32>,
     misses_b: PyReadonlyArray1<'py, u8>,
 ) -> PyResult<PySparse<'py>> {
-    let (keys, misses) = combine(
-        (keys_a.as_slice()?, misses_a.as_slice()?),
-        (keys_b.as_slice()?, misses_b.as_slice()?),
-    );
+    let (keys, misses) =
+        combine((keys_a.as_slice()?, misses_a.as_slice()?), (keys_b.as_slice()?, misses_b.as_slice()?));
     Ok((keys.into_pyarray(py), misses.into_pyarray(py)))
 }
 
@@ -845,6 +841,7 @@ fn py_best_tour<'py>(
     legs: PyReadonlyArray2<'py, f32>,
     current: PyReadonlyArray1<'py, i64>,
     max_stops: usize,
+    stickiness: f64,
 ) -> PyResult<PyReply<'py>> {
     let stops = Stops {
         starts: starts.as_slice()?,
@@ -861,6 +858,7 @@ fn py_best_tour<'py>(
         (others_keys.as_slice()?, others_misses.as_slice()?),
         current.as_slice()?,
         max_stops,
+        stickiness,
     );
     Ok((reply.tour.into_pyarray(py), reply.gain, reply.current_gain))
 }

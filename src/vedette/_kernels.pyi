@@ -63,9 +63,7 @@ def line_of_sight(
 ) -> NDArray[np.bool_]: ...
 
 # motion
-def clearance(
-    solid: NDArray[np.bool_], resolution: float, x: float, y: float, reach: float
-) -> float: ...
+def clearance(solid: NDArray[np.bool_], resolution: float, x: float, y: float, reach: float) -> float: ...
 def steer(
     solid: NDArray[np.bool_],
     traversable: NDArray[np.bool_],
@@ -127,6 +125,7 @@ def best_tour(
     legs: NDArray[np.float32],
     current: NDArray[np.int64],
     max_stops: int,
+    stickiness: float,
 ) -> tuple[NDArray[np.int64], float, float]: ...
 def most_any_tour_adds(
     weights: NDArray[np.float32],

@@ -87,13 +87,17 @@ def remaining(path: NDArray[np.float64], x: float, y: float, length: float) -> N
     """Return the path from its point nearest (x, y) on, at most ``length`` [m] of it."""
     if len(path) < 2:
         return path
-    start, step = path[:-1], np.diff(path, axis=0)
-    square = np.maximum((step**2).sum(axis=1), 1e-12)
-    along = np.clip((((x, y) - start) * step).sum(axis=1) / square, 0.0, 1.0)
+    here = np.array((x, y))
+    start, step = path[:-1], path[1:] - path[:-1]
+    square = np.maximum(np.einsum("ij,ij->i", step, step), 1e-12)
+    along = np.minimum(np.maximum(np.einsum("ij,ij->i", here - start, step) / square, 0.0), 1.0)
     foot = start + along[:, None] * step
-    leg = int(np.argmin(np.hypot(*(foot - (x, y)).T)))
-    rest = np.vstack((foot[leg], path[leg + 1 :]))
-    arc = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(rest, axis=0).T))))
+    away = foot - here
+    leg = int(np.einsum("ij,ij->i", away, away).argmin())
+    rest = path[leg:].copy()
+    rest[0] = foot[leg]
+    arc = np.zeros(len(rest))
+    np.cumsum(np.hypot(*(rest[1:] - rest[:-1]).T), out=arc[1:])
     if arc[-1] <= length:
         return rest
     inside = arc < length

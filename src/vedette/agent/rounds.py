@@ -126,7 +126,9 @@ class Rounds:
 
     def begin(self, message: Begin, now: float) -> list[Effect]:
         """Enter a round: hand the word on, and flush what this robot knows once its children have."""
-        if message.epoch != self.tree.epoch or message.sequence <= self._sequence:
+        # Between rounds any new number will do: one that came wrong must not shut this robot out for good.
+        old = self.busy and message.sequence < self._sequence
+        if message.epoch != self.tree.epoch or message.sequence == self._sequence or old:
             return []
         self._sequence = message.sequence
         self._wanted = False

@@ -78,6 +78,26 @@ class Positive(click.ParamType[float]):
         return number
 
 
+class Share(click.ParamType[float]):
+    """A number from 0 up to a most."""
+
+    name = "share"
+
+    def __init__(self, most: float) -> None:
+        self.most = most
+
+    def convert(self, value: str | float, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Return the number, or refuse it."""
+        option = param.opts[0] if param is not None else "value"
+        try:
+            number = float(value)
+        except ValueError:
+            number = math.nan
+        if not 0.0 <= number <= self.most:
+            raise InputError(f"{option} must be 0 to {self.most:g}; got {value!r}")
+        return number
+
+
 @click.command()
 @click.argument("map_path", metavar="[MAP]", required=False, type=Path)
 @click.option(
@@ -122,7 +142,7 @@ class Positive(click.ParamType[float]):
 )
 @click.option(
     "--link-loss",
-    type=click.FloatRange(0.0, 0.9),
+    type=Share(0.9),
     default=0.0,
     show_default=True,
     help="Share of messages lost.",

@@ -115,6 +115,7 @@ def best_tour(
     legs: NDArray[np.float32],
     current: NDArray[np.int64],
     max_stops: int,
+    stickiness: float = 0.0,
 ) -> tuple[NDArray[np.int64], float, float]:
     """The best tour found against the rest of the team, by greedy insertion and 2-opt.
 
@@ -126,6 +127,7 @@ def best_tour(
         legs: (K, K) travel time between stops [s].
         current: stops of the present tour, in order.
         max_stops: longest tour.
+        stickiness: a tour with another first stop than the present one's must gain this share more.
 
     Returns:
         the tour, its marginal value, and the marginal value of the present tour.
@@ -142,6 +144,7 @@ def best_tour(
         legs,
         current,
         max_stops,
+        stickiness,
     )
 
 

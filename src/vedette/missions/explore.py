@@ -104,8 +104,8 @@ class Exploration:
     ) -> None:
         """Count what a scan reveals of what was unknown when the robot last was a way from here.
 
-        That is what the planner asks of a stop. Counting every scan would teach it that unknown cells are never
-        seen, the more so the longer a robot stands.
+        That is what the planner asks of a stop. Counting every scan would teach it that unknown cells are
+        never seen, the more so the longer a robot stands.
         """
         if self._learned is None:
             self._learned = x, y, np.zeros_like(self.log_odds)

@@ -70,9 +70,7 @@ class ImpactCodec:
         gap[np.cumsum(counts)[:-1][counts[1:] > 0]] = cell[np.cumsum(counts)[:-1][counts[1:] > 0]]
         small = np.minimum(gap, 255).astype(np.uint8)
         large = gap[gap >= 255].astype("<u4")
-        body = b"".join(
-            (counts.tobytes(), small.tobytes(), impact.misses[order].tobytes(), large.tobytes())
-        )
+        body = b"".join((counts.tobytes(), small.tobytes(), impact.misses[order].tobytes(), large.tobytes()))
         return zlib.compress(body, 6, wbits=-15)
 
     def decode(self, payload: bytes) -> Impact:

@@ -43,6 +43,4 @@ class MappingObjective(Objective[MapBelief, Impact]):
         starts = np.cumsum([0, *(len(impact.keys) for impact in own)], dtype=np.int64)
         keys = np.concatenate([NOTHING.keys, *(impact.keys for impact in own)])
         misses = np.concatenate([NOTHING.misses, *(impact.misses for impact in own)])
-        return coverage.marginals(
-            belief.weights, belief.layers.weights, others.sparse, starts, keys, misses
-        )
+        return coverage.marginals(belief.weights, belief.layers.weights, others.sparse, starts, keys, misses)

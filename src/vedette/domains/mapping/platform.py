@@ -17,6 +17,7 @@ from vedette.team import PlatformSpec
 
 LEAST_AREA = 0.02  # a stop must promise this much [m^2]
 HYSTERESIS = 0.03  # a new strategy must gain this share more than the present one
+STICKINESS = 0.1  # one that turns away from the stop it drives to, this share more than the best that does not
 LEFT_ALONE = 0.5  # a frontier this near a place that is left alone is left alone too [m]
 SAME_PLACE = 1.2  # a frontier this near a stop of the last round is the same one [m]
 
@@ -36,9 +37,7 @@ class Tour:
 
     def after_first(self) -> Tour:
         """Return the tour without its first stop."""
-        return Tour(
-            self.targets[1:], self.views[1:], self.arrivals[1:], self.unknown[1:], self.stops[1:]
-        )
+        return Tour(self.targets[1:], self.views[1:], self.arrivals[1:], self.unknown[1:], self.stops[1:])
 
 
 _NONE = np.empty(0, np.int64)
@@ -145,9 +144,7 @@ class MappingPlatform:
         assert self.stops is not None
         if not len(order):
             return STAY
-        legs = np.concatenate(
-            ([self.stops.first_leg[order[0]]], self.stops.legs[order[:-1], order[1:]])
-        )
+        legs = np.concatenate(([self.stops.first_leg[order[0]]], self.stops.legs[order[:-1], order[1:]]))
         arrivals = np.cumsum(legs, dtype=np.float32).astype(np.float64)  # to the bit as the kernel's
         order = order[: int(np.isfinite(arrivals).sum())]
         return Tour(
@@ -189,6 +186,7 @@ class MappingPlatform:
             self.stops.legs,
             current.stops,
             self.max_stops,
+            STICKINESS,
         )
         return self.tour(order) if gain > present * (1.0 + HYSTERESIS) else current
 

@@ -86,9 +86,9 @@ def find_stops(
     keep = np.sort(keep[np.argsort(legs, kind="stable")[:MOST_STOPS]])
     targets, views = targets[keep], views[keep]
     starts, cells, shares = _footprints(belief, spec, model, targets, views)
-    area = np.add.reduceat(
-        np.append(shares * belief.unknown.ravel()[cells], 0.0), starts[:-1]
-    ) * (np.diff(starts) > 0)
+    area = np.add.reduceat(np.append(shares * belief.unknown.ravel()[cells], 0.0), starts[:-1]) * (
+        np.diff(starts) > 0
+    )
     enough = area * frame.resolution**2 >= least_area
     starts, cells, shares = _select(starts, cells, shares, enough)
     targets, views = targets[enough], views[enough]

@@ -1,0 +1,81 @@
+"""One small mission, frozen: its figures change only when somebody means them to.
+
+``python tests/test_missions_golden.py`` prints the figures anew, to be put in place of those below.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+
+from small_missions import check_complete, robots, run, small_office
+from vedette.sim.explore import Report
+
+GOLDEN: dict[str, Any] = {
+    "schema_version": 1,
+    "completed": True,
+    "outcome": "complete",
+    "seed": 7,
+    "robots": 2,
+    "planner": "tours",
+    "scheme": "token",
+    "fusion": "replicated",
+    "world": "office",
+    "time_s": 76.7,
+    "t50_s": 5.0,
+    "t90_s": 23.0,
+    "t95_s": 48.5,
+    "t99_s": 50.0,
+    "auc_s": 11.806318,
+    "coverage": 0.999777,
+    "map_errors": 0,
+    "map_error_share": 0.0,
+    "path_m": {"robot-1": 33.200554, "robot-2": 34.066617},
+    "overlap": 0.578031,
+    "collisions": 0,
+    "min_clearance_m": 0.025029,
+    "rounds": 27,
+    "sweeps": 41,
+    "bound_ratio": 0.84336,
+    "messages": {
+        "robot-1": {"negotiation": 95, "fusion": 62, "beacons": 258},
+        "robot-2": {"negotiation": 92, "fusion": 63, "beacons": 258},
+    },
+    "bytes": {
+        "robot-1": {"negotiation": 18892, "fusion": 6947, "beacons": 6714},
+        "robot-2": {"negotiation": 23453, "fusion": 6748, "beacons": 6839},
+    },
+}
+
+APPROXIMATE = 1e-3  # relative: other machines may round the last bits otherwise
+
+
+def golden_mission() -> Report:
+    """Two robots in a small office."""
+    _, report = run(small_office(seed=1), robots(2), seed=7)
+    return report
+
+
+def figures(report: Report) -> dict[str, Any]:
+    """All of ``summary.json``."""
+    plain: dict[str, Any] = json.loads(report.summary.to_json())
+    return plain
+
+
+def test_the_frozen_mission_has_its_figures() -> None:
+    report = golden_mission()
+    check_complete(report)
+    measured = figures(report)
+    assert list(measured) == list(GOLDEN)
+    for name, value in measured.items():
+        wanted = GOLDEN[name]
+        if isinstance(wanted, float) or name == "path_m":
+            assert value == pytest.approx(wanted, rel=APPROXIMATE), name
+        else:
+            assert value == wanted, name
+
+
+if __name__ == "__main__":
+    print("GOLDEN: dict[str, Any] =", figures(golden_mission()))
