@@ -127,8 +127,9 @@ def test_footprints_equal_their_twin(seed: int, by_distance: bool) -> None:
         rng.choice([0.7, 3.0, math.tau]),
         table,
         by_distance,
+        int(rng.integers(16, 160)),
         int(rng.integers(1, 5)),
-        rng.uniform(0, 0.2),
+        np.float32(rng.uniform(0, 0.2)),
     )
     starts, cells, shares = coverage.footprints(classes, *scan)
     twin_starts, twin_cells, twin_shares = reference.footprints(classes, *scan)

@@ -12,7 +12,7 @@ from mapping_scenes import CORRIDOR, FRAME, SPEC, explored, frozen, placed
 from vedette.domains.mapping.impact import NOTHING, Impact
 from vedette.domains.mapping.layers import TimeLayers, discounted, plain, rate
 from vedette.domains.mapping.objective import MappingObjective
-from vedette.domains.mapping.platform import HYSTERESIS, STAY, MappingPlatform, Tour
+from vedette.domains.mapping.platform import STAY, STICKINESS, MappingPlatform, Tour
 from vedette.domains.mapping.stops import Stops
 from vedette.kernels import coverage
 from vedette.kernels.coverage import LAYERS
@@ -96,7 +96,7 @@ def test_no_tour_adds_more_than_the_slack() -> None:
             assert platform.slack(belief, others) >= gain * (1 - 1e-5)
 
 
-def test_a_robot_changes_its_tour_if_and_only_if_the_new_one_gains_clearly_more() -> None:
+def test_a_robot_turns_away_from_its_stop_if_and_only_if_another_gains_clearly_more() -> None:
     belief, platform = frozen(), ready(max_stops=1)
     singles = [platform.tour(np.array([stop])) for stop in range(len(stops_of(platform)))]
     for seed in range(10):
@@ -104,9 +104,9 @@ def test_a_robot_changes_its_tour_if_and_only_if_the_new_one_gains_clearly_more(
         gains = OBJECTIVE.values(belief, others, [platform.impact(belief, tour) for tour in singles])
         gains -= OBJECTIVE.value(belief, others)
         for tour, gain in zip(singles, gains, strict=True):
-            if abs(gains.max() / gain - 1.0 - HYSTERESIS) > 1e-3:  # not on the edge
+            if abs(gains.max() / gain - 1.0 - STICKINESS) > 1e-3:  # not on the edge
                 kept = platform.reply(belief, others, tour) is tour
-                assert kept == (gains.max() <= gain * (1.0 + HYSTERESIS))
+                assert kept == (gains.max() <= gain * (1.0 + STICKINESS))
 
 
 def test_a_tour_ends_before_the_first_stop_that_cannot_be_reached() -> None:

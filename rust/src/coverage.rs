@@ -120,6 +120,8 @@ pub struct Sensor<'a> {
     pub view: f64,         // field of view [rad]
     pub table: &'a [f32],  // probability of seeing an unknown cell, by cells of depth
     pub by_distance: bool, // depth is the distance; otherwise the unknown length crossed before
+    pub rays: usize,       // in a full turn
+    pub floor: f32,        // a ray ends where a cell is seen less likely, and lower shares are left out
 }
 
 /// Footprints of viewpoints as CSR over planning cells of `factor x factor` cells: the expected share
@@ -133,9 +135,7 @@ pub fn footprints(
     facing: &[f64],
     sensor: &Sensor,
     factor: usize,
-    floor: f32,
 ) -> (Vec<i64>, Vec<u32>, Vec<f32>) {
-    let rays = ((std::f64::consts::TAU * sensor.range_cells).ceil() as usize).max(16);
     let coarse_cols = cols.div_ceil(factor);
     let coarse_rows = rows.div_ceil(factor);
     let mut seen = vec![0.0_f32; rows * cols];
@@ -145,8 +145,8 @@ pub fn footprints(
     let (mut starts, mut cells, mut shares) = (vec![0_i64], Vec::new(), Vec::new());
     let room = room(classes, rows, cols);
     for (&view, &heading) in views.iter().zip(facing) {
-        for ray in 0..rays {
-            let turn = std::f64::consts::TAU * ((ray as f64 + 0.5) / rays as f64 - 0.5);
+        for ray in 0..sensor.rays {
+            let turn = std::f64::consts::TAU * ((ray as f64 + 0.5) / sensor.rays as f64 - 0.5);
             if turn.abs() <= 0.5 * sensor.view {
                 trace(classes, &room, rows, cols, view as usize, heading + turn, sensor, |cell, p| {
                     if seen[cell] == 0.0 {
@@ -175,7 +175,7 @@ pub fn footprints(
             }
             let p = share[coarse] / unknown as f32;
             share[coarse] = 0.0;
-            if p >= floor {
+            if p >= sensor.floor {
                 cells.push(coarse as u32);
                 shares.push(p.min(1.0));
             }
@@ -185,29 +185,29 @@ pub fn footprints(
     (starts, cells, shares)
 }
 
-/// Chebyshev distance [cells] from each cell to the nearest that is not free, outside included; at most 255.
+/// Chebyshev distance [cells] from each free cell to the nearest that is not, outside included; at most 255.
 fn room(classes: &[u8], rows: usize, cols: usize) -> Vec<u8> {
-    let mut room: Vec<u8> = classes.iter().map(|&class| if class == FREE { 255 } else { 0 }).collect();
-    let at = |room: &[u8], row: i64, col: i64| {
-        let inside = row >= 0 && col >= 0 && row < rows as i64 && col < cols as i64;
-        if inside {
-            room[row as usize * cols + col as usize]
-        } else {
-            0
-        }
-    };
-    for forward in [true, false] {
-        let back: i64 = if forward { -1 } else { 1 };
-        for i in 0..rows * cols {
-            let cell = if forward { i } else { rows * cols - 1 - i };
-            if room[cell] > 0 {
-                let (row, col) = ((cell / cols) as i64, (cell % cols) as i64);
-                let nearest = (-1..=1)
-                    .map(|side| at(&room, row + back, col + side))
-                    .chain([at(&room, row, col + back)])
-                    .fold(254, u8::min);
-                room[cell] = room[cell].min(nearest + 1);
+    // One cell of padding all round stands for the outside.
+    let wide = cols + 2;
+    let mut padded = vec![0_u8; (rows + 2) * wide];
+    for row in 0..rows {
+        let start = (row + 1) * wide + 1;
+        for col in 0..cols {
+            if classes[row * cols + col] == FREE {
+                let at = start + col;
+                let above = padded[at - wide - 1].min(padded[at - wide]).min(padded[at - wide + 1]);
+                padded[at] = above.min(padded[at - 1]).saturating_add(1);
             }
+        }
+    }
+    let mut room = vec![0_u8; rows * cols];
+    for row in (0..rows).rev() {
+        let start = (row + 1) * wide + 1;
+        for col in (0..cols).rev() {
+            let at = start + col;
+            let below = padded[at + wide - 1].min(padded[at + wide]).min(padded[at + wide + 1]);
+            padded[at] = padded[at].min(below.min(padded[at + 1]).saturating_add(1));
+            room[row * cols + col] = padded[at];
         }
     }
     room
@@ -240,12 +240,12 @@ fn trace(
             if end >= sensor.range_cells {
                 return;
             }
-            let crossed_rows = ((end - next_row) / per_row).floor() + 1.0;
-            let crossed_cols = ((end - next_col) / per_col).floor() + 1.0;
-            row += row_step * crossed_rows as i64;
-            col += col_step * crossed_cols as i64;
-            next_row += crossed_rows * per_row;
-            next_col += crossed_cols * per_col;
+            let crossed_rows = ((end - next_row) / per_row + 1.0) as i64; // 0 if the first is beyond
+            let crossed_cols = ((end - next_col) / per_col + 1.0) as i64; // 0 if the first is beyond
+            row += row_step * crossed_rows;
+            col += col_step * crossed_cols;
+            next_row += crossed_rows as f64 * per_row;
+            next_col += crossed_cols as f64 * per_col;
             travelled = end;
             continue;
         }
@@ -256,8 +256,8 @@ fn trace(
             _ => {
                 let depth = if sensor.by_distance { 0.5 * (travelled + leave) } else { unknown };
                 let p = sensor.table[(depth as usize).min(sensor.table.len() - 1)];
-                if p <= 0.0 {
-                    return;
+                if p <= 0.0 || p < sensor.floor {
+                    return; // deeper cells are seen less still
                 }
                 report(cell, p);
                 unknown += leave - travelled;
@@ -404,17 +404,23 @@ impl Stops<'_> {
     }
 }
 
-/// The gain tables of one best reply: for each cell that a stop touches, what a certain sighting in
-/// each layer would add to the rest of the team's impact.
+/// The gains of one best reply. What a certain sighting of a cell in a layer would add to the rest of the
+/// team's impact is `left[cell] * discounts[discount[cell]][layer]`, less as the platform's own tour sees it.
 struct Tours<'a> {
     stops: Stops<'a>,
-    local: Vec<u32>,           // the local cell of each footprint entry
-    seen: Vec<f32>,            // its probability of being seen
-    worth: Vec<[f32; LAYERS]>, // (local cell) weight times the suffix sum of layer weights times others' miss
-    missed: Vec<f32>,          // (local cell) scratch: own miss so far
+    local: Vec<u32>,               // the local cell of each footprint entry
+    seen: [f32; 256],              // probability of being seen, by log-miss
+    weight: Vec<f32>,              // (local cell) its worth
+    left: Vec<f32>,                // (local cell) scratch: its worth times own miss so far
+    discount: Vec<u32>,            // (local cell) row of `discounts`; 0 where the others see nothing
+    discounts: Vec<[f32; LAYERS]>, // suffix sums of layer weights times others' miss
     max_stops: usize,
-    held: usize, // stops at the head of a tour that a search leaves where they are
+    held: usize,   // stops at the head of a tour that a search leaves where they are
+    budget: usize, // footprint entries that a search may still visit to improve a tour
 }
+
+/// Bounds the time of a reply where footprints are vast; in an office it is never used up.
+const BUDGET: usize = 150_000;
 
 impl<'a> Tours<'a> {
     fn new(
@@ -428,59 +434,63 @@ impl<'a> Tours<'a> {
         let first = stops.cells.iter().min().copied().unwrap_or(0);
         let last = stops.cells.iter().max().copied().unwrap_or(0);
         let mut numbers = vec![0_u32; (last - first) as usize + 1]; // local number of a cell, from 1; 0: none
-        let mut cells: Vec<u32> = Vec::new();
+        let mut weight: Vec<f32> = Vec::new();
         let mut local = Vec::with_capacity(stops.cells.len());
         for &cell in stops.cells {
             let number = &mut numbers[(cell - first) as usize];
             if *number == 0 {
-                cells.push(cell);
-                *number = cells.len() as u32;
+                weight.push(weights[cell as usize]);
+                *number = weight.len() as u32;
             }
             local.push(*number - 1);
         }
-        let mut added = vec![[0_u8; LAYERS]; cells.len()];
-        for (&key, &q) in others.0.iter().zip(others.1) {
-            let place = (key / LAYERS as u32).wrapping_sub(first) as usize;
-            let number = numbers.get(place).copied().unwrap_or(0);
+        let mut discount = vec![0_u32; weight.len()];
+        let mut discounts = vec![suffix_sums(layer_weights, &[0; LAYERS], &miss)];
+        let mut at = others.0.partition_point(|&key| key / (LAYERS as u32) < first);
+        while at < others.0.len() && others.0[at] / LAYERS as u32 <= last {
+            let cell = others.0[at] / LAYERS as u32;
+            let mut added = [0_u8; LAYERS];
+            while at < others.0.len() && others.0[at] / LAYERS as u32 == cell {
+                added[(others.0[at] % LAYERS as u32) as usize] = others.1[at];
+                at += 1;
+            }
+            let number = numbers[(cell - first) as usize];
             if number > 0 {
-                added[number as usize - 1][(key % LAYERS as u32) as usize] = q;
+                discount[number as usize - 1] = discounts.len() as u32;
+                discounts.push(suffix_sums(layer_weights, &added, &miss));
             }
         }
-        let mut worth = Vec::with_capacity(cells.len());
-        for (&cell, added) in cells.iter().zip(&added) {
-            let mut total = 0_u8;
-            let mut suffix = [0.0_f64; LAYERS];
-            for layer in 0..LAYERS {
-                total = total.saturating_add(added[layer]);
-                suffix[layer] = layer_weights[layer] * miss[total as usize];
-            }
-            let weight = f64::from(weights[cell as usize]);
-            let mut row = [0.0_f32; LAYERS];
-            let mut sum = 0.0;
-            for layer in (0..LAYERS).rev() {
-                sum += suffix[layer];
-                row[layer] = (weight * sum) as f32;
-            }
-            worth.push(row);
-        }
-        let seen = stops.misses.iter().map(|&q| (1.0 - miss[q as usize]) as f32).collect();
-        let missed = vec![1.0; cells.len()];
-        Tours { stops, local, seen, worth, missed, max_stops, held: 0 }
+        let seen = miss.map(|miss| (1.0 - miss) as f32);
+        let left = weight.clone();
+        Tours { stops, local, seen, weight, left, discount, discounts, max_stops, held: 0, budget: 0 }
     }
 
     fn entries(&self, stop: usize) -> std::ops::Range<usize> {
         self.stops.starts[stop] as usize..self.stops.starts[stop + 1] as usize
     }
 
+    fn seen(&self, entry: usize) -> f32 {
+        self.seen[self.stops.misses[entry] as usize]
+    }
+
     /// What a stop adds in every layer, given the platform's own misses so far.
     fn by_layer(&self, stop: usize) -> [f32; LAYERS] {
         let mut sums = [0.0_f32; LAYERS];
+        let mut alone = 0.0;
         for entry in self.entries(stop) {
             let cell = self.local[entry] as usize;
-            let p = self.seen[entry] * self.missed[cell];
-            for (sum, worth) in sums.iter_mut().zip(&self.worth[cell]) {
-                *sum += p * worth;
+            let p = self.seen(entry) * self.left[cell];
+            match self.discount[cell] {
+                0 => alone += p,
+                row => {
+                    for (sum, discount) in sums.iter_mut().zip(&self.discounts[row as usize]) {
+                        *sum += p * discount;
+                    }
+                }
             }
+        }
+        for (sum, discount) in sums.iter_mut().zip(&self.discounts[0]) {
+            *sum += alone * discount;
         }
         sums
     }
@@ -489,21 +499,32 @@ impl<'a> Tours<'a> {
         self.entries(stop)
             .map(|entry| {
                 let cell = self.local[entry] as usize;
-                self.seen[entry] * self.missed[cell] * self.worth[cell][layer]
+                self.seen(entry) * self.left[cell] * self.discounts[self.discount[cell] as usize][layer]
             })
             .sum()
     }
 
+    /// For each stop and layer, at least what a visit adds: what it adds alone and as early as can be.
+    fn ceilings(&self) -> Vec<[f32; LAYERS]> {
+        let earliest = self.stops.earliest();
+        let most = |(stop, arrival): (usize, &f32)| match arrival.is_finite() {
+            true => [self.in_layer(stop, self.stops.layer(*arrival)); LAYERS],
+            false => [0.0; LAYERS],
+        };
+        earliest.iter().enumerate().map(most).collect()
+    }
+
     fn observe(&mut self, stop: usize) {
         for entry in self.entries(stop) {
-            self.missed[self.local[entry] as usize] *= 1.0 - self.seen[entry];
+            self.left[self.local[entry] as usize] *= 1.0 - self.seen(entry);
         }
     }
 
     fn forget(&mut self, tour: &[usize]) {
         for &stop in tour {
             for entry in self.entries(stop) {
-                self.missed[self.local[entry] as usize] = 1.0;
+                let cell = self.local[entry] as usize;
+                self.left[cell] = self.weight[cell];
             }
         }
     }
@@ -521,14 +542,19 @@ impl<'a> Tours<'a> {
             let mut sum = 0.0_f32;
             for entry in self.entries(stop) {
                 let cell = self.local[entry] as usize;
-                sum += self.seen[entry] * self.missed[cell] * self.worth[cell][layer];
-                self.missed[cell] *= 1.0 - self.seen[entry];
+                let p = self.seen(entry) * self.left[cell];
+                sum += p * self.discounts[self.discount[cell] as usize][layer];
+                self.left[cell] -= p;
             }
             value += f64::from(sum);
             from = Some(stop);
         }
         self.forget(tour);
         (value, now)
+    }
+
+    fn size(&self, tour: &[usize]) -> usize {
+        tour.iter().map(|&stop| self.entries(stop).len()).sum()
     }
 
     /// Value with ties inside a time layer broken towards the shorter tour.
@@ -538,11 +564,12 @@ impl<'a> Tours<'a> {
     }
 
     /// Complete and improve a tour, leaving its first `held` stops in place.
-    fn search(&mut self, mut tour: Vec<usize>, held: usize, tables: &[[f32; LAYERS]]) -> Vec<usize> {
-        self.held = held;
-        self.insert_greedily(&mut tour, &mut tables.to_vec());
+    fn search(&mut self, mut tour: Vec<usize>, held: usize, ceilings: &[[f32; LAYERS]]) -> Vec<usize> {
+        (self.held, self.budget) = (held, BUDGET);
+        let mut tables = ceilings.to_vec();
+        self.insert_greedily(&mut tour, &mut tables);
         self.improve(&mut tour);
-        self.insert_greedily(&mut tour, &mut tables.to_vec());
+        self.insert_greedily(&mut tour, &mut tables);
         tour
     }
 
@@ -598,7 +625,7 @@ impl<'a> Tours<'a> {
         found
     }
 
-    /// Move a stop or reverse a stretch as long as that helps.
+    /// Move a stop or reverse a stretch as long as that helps and the budget lasts.
     fn improve(&mut self, tour: &mut Vec<usize>) {
         let mut best = self.score(tour);
         for _ in 0..4 {
@@ -626,6 +653,8 @@ impl<'a> Tours<'a> {
     }
 
     fn keep_better(&mut self, tour: &mut Vec<usize>, other: Vec<usize>, best: f64) -> f64 {
+        let Some(budget) = self.budget.checked_sub(self.size(&other)) else { return best };
+        self.budget = budget;
         let score = self.score(&other);
         if score > best * (1.0 + 1e-9) {
             *tour = other;
@@ -636,14 +665,27 @@ impl<'a> Tours<'a> {
 
     /// An upper bound on any tour's marginal value: its best stops, each as early as can be, no overlap.
     fn relaxed(&self) -> f64 {
-        let earliest = self.stops.earliest();
-        let mut gains: Vec<f32> = (0..self.stops.len())
-            .filter(|&stop| earliest[stop].is_finite())
-            .map(|stop| self.in_layer(stop, self.stops.layer(earliest[stop])))
-            .collect();
+        let mut gains: Vec<f32> = self.ceilings().iter().map(|layers| layers[0]).collect();
         gains.sort_unstable_by(|a, b| b.total_cmp(a));
         gains.iter().take(self.max_stops).map(|&g| f64::from(g)).sum()
     }
+}
+
+/// For every layer, the sum over it and all later ones of its weight times the others' miss.
+fn suffix_sums(layer_weights: &[f64], added: &[u8; LAYERS], miss: &[f64; 256]) -> [f32; LAYERS] {
+    let mut products = [0.0; LAYERS];
+    let mut total = 0_u8;
+    for layer in 0..LAYERS {
+        total = total.saturating_add(added[layer]);
+        products[layer] = layer_weights[layer] * miss[total as usize];
+    }
+    let mut sum = 0.0;
+    let mut sums = [0.0_f32; LAYERS];
+    for layer in (0..LAYERS).rev() {
+        sum += products[layer];
+        sums[layer] = sum as f32;
+    }
+    sums
 }
 
 /// Where in a tour a stop adds most, and how much: what it sees, less what it delays.
@@ -706,10 +748,10 @@ pub fn best_tour(
     let mut tours = Tours::new(stops, weights, layer_weights, others, max_stops);
     let current: Vec<usize> = current.iter().map(|&stop| stop as usize).collect();
     let current_gain = tours.value(&current).0;
-    let tables: Vec<_> = (0..tours.stops.len()).map(|stop| tours.by_layer(stop)).collect();
-    let mut best = tours.search(Vec::new(), 0, &tables);
+    let ceilings = tours.ceilings();
+    let mut best = tours.search(Vec::new(), 0, &ceilings);
     if !current.is_empty() {
-        let kept = tours.search(current, 1, &tables);
+        let kept = tours.search(current, 1, &ceilings);
         if tours.score(&best) <= tours.score(&kept) * (1.0 + stickiness) {
             best = kept;
         }
@@ -767,21 +809,14 @@ fn py_footprints<'py>(
     view: f64,
     table: PyReadonlyArray1<'py, f32>,
     by_distance: bool,
+    rays: usize,
     factor: usize,
     floor: f32,
 ) -> PyResult<PyFootprints<'py>> {
     let [rows, cols] = [classes.as_array().nrows(), classes.as_array().ncols()];
-    let sensor = Sensor { range_cells, view, table: table.as_slice()?, by_distance };
-    let (starts, cells, shares) = footprints(
-        classes.as_slice()?,
-        rows,
-        cols,
-        views.as_slice()?,
-        facing.as_slice()?,
-        &sensor,
-        factor,
-        floor,
-    );
+    let sensor = Sensor { range_cells, view, table: table.as_slice()?, by_distance, rays, floor };
+    let (starts, cells, shares) =
+        footprints(classes.as_slice()?, rows, cols, views.as_slice()?, facing.as_slice()?, &sensor, factor);
     Ok((starts.into_pyarray(py), cells.into_pyarray(py), shares.into_pyarray(py)))
 }
 

@@ -94,6 +94,7 @@ def footprints(
     view: float,
     table: NDArray[np.float32],
     by_distance: bool,
+    rays: int,
     factor: int,
     floor: float,
 ) -> tuple[NDArray[np.int64], NDArray[np.uint32], NDArray[np.float32]]: ...

@@ -135,7 +135,7 @@ class Share(click.ParamType[float]):
 )
 @click.option(
     "--link-delay",
-    type=Positive("s", most=10.0),
+    type=Positive("s", most=0.3),
     default=0.02,
     show_default=True,
     help="Of a message on a link [s].",

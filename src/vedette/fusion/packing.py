@@ -75,7 +75,7 @@ class WordPacking:
 
     def unpack(self, body: Body, tiles: int) -> tuple[NDArray[np.bool_], NDArray[np.int32]]:
         """Return mask and words."""
-        bits = body.take(tiles * CELLS // 8).reshape(tiles, -1)
+        bits = body.take(tiles * CELLS // 8).reshape(tiles, CELLS // 8)
         mask = np.unpackbits(bits, axis=1).astype(np.bool_)
         words = from_planes(body, int(mask.sum()), "<i4").astype(np.int32)
         code, live = split_word(words)

@@ -60,6 +60,7 @@ def footprints(
     view: float,
     table: NDArray[np.float32],
     by_distance: bool,
+    rays: int,
     factor: int,
     floor: float,
 ) -> tuple[NDArray[np.int64], NDArray[np.uint32], NDArray[np.float32]]:
@@ -72,13 +73,16 @@ def footprints(
         range_cells: sensor range [cells].
         table: (T,) probability of seeing an unknown cell at each depth [cells]; the last entry holds beyond.
         by_distance: depth is the distance from the sensor; otherwise the unknown length crossed before.
+        rays: how many to cast in a full turn.
         factor: side of a planning cell [cells].
-        floor: shares below it are left out.
+        floor: a ray ends where a cell is seen less likely than that, and lower shares are left out.
 
     Returns:
         starts (K + 1,), planning cells (M,) and shares (M,).
     """
-    return _kernels.footprints(classes, views, facing, range_cells, view, table, by_distance, factor, floor)
+    return _kernels.footprints(
+        classes, views, facing, range_cells, view, table, by_distance, rays, factor, floor
+    )
 
 
 def combine(keys_a: Keys, misses_a: Misses, keys_b: Keys, misses_b: Misses) -> tuple[Keys, Misses]:

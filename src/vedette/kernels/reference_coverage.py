@@ -86,6 +86,7 @@ def footprints(
     view: float,
     table: NDArray[np.float32],
     by_distance: bool,
+    rays: int,
     factor: int,
     floor: float,
 ) -> tuple[NDArray[np.int64], NDArray[np.uint32], NDArray[np.float32]]:
@@ -94,8 +95,8 @@ def footprints(
     starts, cells, shares = [0], [], []
     for viewpoint, heading in zip(views, facing, strict=True):
         seen = np.zeros(classes.shape)
-        for turn in _turns(range_cells, view):
-            ray = _ray(classes, int(viewpoint), heading + turn, range_cells, table, by_distance)
+        for turn in _turns(rays, view):
+            ray = _ray(classes, int(viewpoint), heading + turn, range_cells, table, by_distance, floor)
             for cell, probability in ray:
                 seen.flat[cell] = max(seen.flat[cell], probability)
         share = _blocks(seen, factor) / np.maximum(unknown, 1)
@@ -110,9 +111,8 @@ def footprints(
     )
 
 
-def _turns(range_cells: float, view: float) -> list[float]:
-    """Rays one cell apart at full range, spread evenly about the heading."""
-    rays = max(16, math.ceil(math.tau * range_cells))
+def _turns(rays: int, view: float) -> list[float]:
+    """Rays spread evenly about the heading."""
     turns = [math.tau * ((ray + 0.5) / rays - 0.5) for ray in range(rays)]
     return [turn for turn in turns if abs(turn) <= 0.5 * view]
 
@@ -124,6 +124,7 @@ def _ray(
     range_cells: float,
     table: NDArray[np.float32],
     by_distance: bool,
+    floor: float,
 ) -> Iterator[tuple[int, float]]:
     row, col = divmod(viewpoint, classes.shape[1])
     entry, leave = crossings((classes.shape[0], classes.shape[1]), 1.0, col + 0.5, row + 0.5, angle)
@@ -136,7 +137,7 @@ def _ray(
         if classes.flat[cell] != FREE:
             depth = 0.5 * (start + end) if by_distance else length
             probability = float(table[min(int(depth), len(table) - 1)])
-            if probability <= 0.0:
+            if probability <= 0.0 or probability < floor:
                 return
             yield int(cell), probability
             length += end - start

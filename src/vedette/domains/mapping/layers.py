@@ -45,9 +45,12 @@ def discounted(tau: float) -> TimeLayers:
     return _layers(np.exp(-_edges() / tau))
 
 
-def rate() -> TimeLayers:
-    """Worth ``1 / t``: the paper's rate of uncertainty reduction, eq. (42), read as docs/theory.md (V23)."""
-    return _layers(1.0 / _edges())
+def rate(start: float = 0.0) -> TimeLayers:
+    """Worth ``1 / (start + t)``: the paper's rate of uncertainty reduction, eq. (42), read as docs/theory.md (V23).
+
+    A ``start`` [s] keeps a trifle close by from outweighing a room a little farther on.
+    """
+    return _layers(1.0 / (start + _edges()))
 
 
 def plain() -> TimeLayers:

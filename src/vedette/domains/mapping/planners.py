@@ -12,7 +12,7 @@ from vedette.domains.mapping.yardsticks import BurgardPlatform, NearestPlatform
 from vedette.errors import InputError, nearest_name
 from vedette.team import PlatformSpec
 
-HIDDEN_AREA = 2.0  # expected behind a frontier before the team has learned better [m^2]
+HIDDEN_AREA = 2.0  # expected behind a frontier [m^2]
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Planner:
 PLANNERS = {
     "tours": Planner(
         "tours of frontiers with arrival times, negotiated (default)",
-        layers.discounted(100.0),
+        layers.rate(start=5.0),
         HIDDEN_AREA,
         lambda spec: MappingPlatform(spec, max_stops=6, measured="unknown"),
     ),

@@ -15,7 +15,7 @@ from vedette.kernels import coverage
 from vedette.kernels.coverage import CERTAIN, LAYERS
 from vedette.team import PlatformSpec
 
-LEAST_AREA = 0.02  # a stop must promise this much [m^2]
+LEAST_AREA = 0.08  # a stop must promise this much [m^2]
 HYSTERESIS = 0.03  # a new strategy must gain this share more than the present one
 STICKINESS = 0.1  # one that turns away from the stop it drives to, this share more than the best that does not
 LEFT_ALONE = 0.5  # a frontier this near a place that is left alone is left alone too [m]

@@ -15,7 +15,7 @@ from vedette.kernels.coverage import Footprints
 from vedette.maps import UNKNOWN, GridFrame
 from vedette.team import PlatformSpec
 
-MOST_STOPS = 48  # nearest first; the rest waits for a later round
+MOST_STOPS = 40  # nearest first; the rest waits for a later round
 VIEW_REACH = 2.0  # how far from a frontier to look for a place to see it from [m]
 CLEARANCE = 0.05  # kept to everything that is not known free, beyond the radius [m]
 Disc = tuple[float, float, float]  # x, y, radius [m], team frame
@@ -120,9 +120,16 @@ def _footprints(
         float(np.radians(spec.view)),
         model.table,
         model.by_distance,
+        _rays(spec, belief.frame.resolution),
         belief.factor,
         MIN_SHARE,
     )
+
+
+def _rays(spec: PlatformSpec, resolution: float) -> int:
+    """As many rays in a full turn as the lidar has beams; more than one a cell at full range tell nothing."""
+    beams = spec.beams * 360.0 / spec.view
+    return int(min(np.ceil(2 * np.pi * spec.range / resolution), np.ceil(beams)))
 
 
 def _select(
