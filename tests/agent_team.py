@@ -72,6 +72,12 @@ class ToyMission:
     def publish(self, now: float) -> None:
         """Nothing is seen on this mission."""
 
+    def given_up(self) -> list[tuple[int, int, int]]:
+        return []
+
+    def hear_given_up(self, given_up: Sequence[tuple[int, int, int]]) -> None:
+        pass
+
     def freeze(self) -> Float:
         """The belief is always the same."""
         return self.belief

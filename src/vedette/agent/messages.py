@@ -9,6 +9,8 @@ from msgspec import Meta
 
 Count = Annotated[int, Meta(ge=0, le=2**53)]
 Place = Annotated[int, Meta(ge=-(2**31), le=2**31)]  # [cm]
+GivenUp = tuple[Place, Place, Count]  # x, y [cm], and how much was unknown there when it was given up
+Told = Annotated[tuple[GivenUp, ...], Meta(max_length=512)]
 Offset = Annotated[int, Meta(ge=-2000, le=2000)]  # from the robot [cm]; its path's next metres are few
 
 
@@ -51,6 +53,7 @@ class Flushed(msgspec.Struct, frozen=True, array_like=True, tag=4):
 
     epoch: Count
     sequence: Count
+    given_up: Told = ()  # places that visits by this part of the tree did not change
 
 
 class Freeze(msgspec.Struct, frozen=True, array_like=True, tag=5):
@@ -59,6 +62,7 @@ class Freeze(msgspec.Struct, frozen=True, array_like=True, tag=5):
     epoch: Count
     sequence: Count
     digest: int  # of the root's belief
+    given_up: Told = ()  # places that anybody's visit did not change
 
 
 class Negotiate(msgspec.Struct, frozen=True, array_like=True, tag=6):

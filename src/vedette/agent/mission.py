@@ -8,6 +8,7 @@ from typing import Any, Protocol
 from vedette.agent.effects import Route
 from vedette.agent.events import Pose, Scan
 from vedette.agent.mates import Mate
+from vedette.agent.messages import GivenUp
 from vedette.fusion import Fusion
 from vedette.problem import Codec
 
@@ -30,6 +31,12 @@ class Mission(Protocol):
 
     def publish(self, now: float) -> None:
         """Put the robot's own evidence where fusion sends it from."""
+
+    def given_up(self) -> Sequence[GivenUp]:
+        """Return the places that this robot's visits did not change, to be told to the team."""
+
+    def hear_given_up(self, given_up: Sequence[GivenUp]) -> None:
+        """Take in the places that anybody's visit did not change: all of them, anew in each round."""
 
     def freeze(self) -> Any:
         """Return the belief of a round: a snapshot of what the team knows."""

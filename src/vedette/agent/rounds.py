@@ -14,7 +14,7 @@ from typing import Any
 from vedette.agent.effects import Effect, Job, Send, Traffic
 from vedette.agent.events import Pose, TreeChanged
 from vedette.agent.mates import Mate
-from vedette.agent.messages import Begin, Call, Evidence, Flushed, Freeze, Negotiate, encode
+from vedette.agent.messages import Begin, Call, Evidence, Flushed, Freeze, GivenUp, Negotiate, encode
 from vedette.agent.mission import Mission
 from vedette.agent.participant import RoundParticipant
 from vedette.negotiation import JacobiNode, Negotiator, Outcome, TokenNode, messages
@@ -23,6 +23,7 @@ INTERVAL = 1.0  # least time between the ends and beginnings of rounds [s]
 PERIOD = 4.0  # a round at least so often while the mission lasts [s]
 CALL_AGAIN = 1.0  # a call not answered is repeated after so long [s]
 MAX_SWEEPS = 12
+MOST_TOLD = 512  # places given up, in one message
 
 
 def patience(size: int) -> float:
@@ -47,6 +48,7 @@ class _Round:
     sequence: int
     heard: float  # when it last went on [s]
     waiting: set[int]  # children that have not flushed yet
+    given_up: set[GivenUp] = field(default_factory=set)  # told by children
     belief: Any = None
     approximate: bool = False
     preparing: bool = False
@@ -145,6 +147,7 @@ class Rounds:
         if sender not in self._round.waiting:
             return []
         self._round.waiting.discard(sender)
+        self._round.given_up.update(message.given_up)
         self._round.heard = now
         return self._flush(now)
 
@@ -152,26 +155,30 @@ class Rounds:
         assert self._round
         if self._round.waiting or self._round.belief is not None:
             return []
+        told = tuple(sorted(self._round.given_up.union(self.mission.given_up())))[:MOST_TOLD]
         if self.tree.parent is None:
-            return self._freeze(self.mission.fusion.digest, now)
+            return self._freeze(self.mission.fusion.digest, told, now)
         news = self.news(self.tree.parent, now)
-        return [*news, self._say(self.tree.parent, Flushed(self.tree.epoch, self._round.sequence))]
+        return [*news, self._say(self.tree.parent, Flushed(self.tree.epoch, self._round.sequence, told))]
 
     def freeze(self, message: Freeze, now: float) -> list[Effect]:
         """Everything known has arrived: freeze it."""
         if not self._matches(message.epoch, message.sequence):
             return []
         assert self._round
-        return self._freeze(message.digest, now) if self._round.belief is None else []
+        if self._round.belief is not None:
+            return []
+        return self._freeze(message.digest, message.given_up, now)
 
-    def _freeze(self, digest: int, now: float) -> list[Effect]:
+    def _freeze(self, digest: int, given_up: tuple[GivenUp, ...], now: float) -> list[Effect]:
         assert self._round
         effects: list[Effect] = []
         self._round.heard = now
         for child in self._children:
             effects += self.news(child, now)
-            effects.append(self._say(child, Freeze(self.tree.epoch, self._round.sequence, digest)))
+            effects.append(self._say(child, Freeze(self.tree.epoch, self._round.sequence, digest, given_up)))
         self._round.approximate = self.mission.fusion.digest != digest
+        self.mission.hear_given_up(given_up)
         self._round.belief = self.mission.freeze()
         return effects
 

@@ -160,6 +160,18 @@ class Exploration:
 
     # -- planning -----------------------------------------------------------------------------------
 
+    def given_up(self) -> list[tuple[int, int, int]]:
+        """Return the frontiers that this robot's visits did not change: x, y [cm], unknown cells near it."""
+        return [
+            (round(spot.x * 100), round(spot.y * 100), spot.unknown)
+            for spot in self.platform.given_up
+            if spot.visited
+        ]
+
+    def hear_given_up(self, given_up: Sequence[tuple[int, int, int]]) -> None:
+        """Leave alone what team-mates' visits did not change, until the map there changes."""
+        self.platform.told = [GivenUp(x / 100, y / 100, unknown) for x, y, unknown in given_up]
+
     def freeze(self) -> MapBelief:
         """Snapshot the team map for a round."""
         return freeze(
@@ -254,7 +266,8 @@ class Exploration:
             if sum(near) < TRIES:
                 self.platform.avoided.append((x, y, now + AVOID_TIME))
             else:
-                self.platform.given_up.append(GivenUp(x, y, self._unknown_at(self.strategy.targets[0])))
+                unknown = self._unknown_at(self.strategy.targets[0])
+                self.platform.given_up.append(GivenUp(x, y, unknown, visited=False))
                 self._released = [spot for spot, same in zip(self._released, near, strict=True) if not same]
         self.strategy = STAY
 

@@ -51,6 +51,7 @@ class GivenUp:
     x: float
     y: float
     unknown: int  # cells unknown near it when it was given up
+    visited: bool = True  # otherwise it could not be reached
 
 
 @dataclass(eq=False)
@@ -69,7 +70,8 @@ class MappingPlatform:
     team: list[tuple[int, float, float]] = field(default_factory=list)  # id, x, y of all, itself included
     now: float = 0.0
     visited: list[tuple[float, float, int]] = field(default_factory=list)  # x, y, unknown near it before
-    given_up: list[GivenUp] = field(default_factory=list)
+    given_up: list[GivenUp] = field(default_factory=list)  # by this robot
+    told: list[GivenUp] = field(default_factory=list)  # by anybody, as of the last round
     avoided: list[tuple[float, float, float]] = field(default_factory=list)  # x, y, until [s]
     ground: Ground | None = None
     stops: Stops | None = None
@@ -109,6 +111,7 @@ class MappingPlatform:
             return before - unknown_near(belief.classes, belief.frame, x, y) <= max(2, before // 8)
 
         self.given_up = [spot for spot in self.given_up if unchanged(spot.x, spot.y, spot.unknown)]
+        self.told = [spot for spot in self.told if unchanged(spot.x, spot.y, spot.unknown)]
         for x, y, before in self.visited:
             now_unknown = unknown_near(belief.classes, belief.frame, x, y)
             if now_unknown and unchanged(x, y, before):
@@ -119,7 +122,8 @@ class MappingPlatform:
         """Make the stops at given-up or avoided places unreachable, which keeps the arrays aligned."""
         self.avoided = [spot for spot in self.avoided if spot[2] > self.now]
         first_leg, legs = stops.first_leg.copy(), stops.legs.copy()
-        for x, y in [(spot.x, spot.y) for spot in self.given_up] + [spot[:2] for spot in self.avoided]:
+        places = [(spot.x, spot.y) for spot in (*self.given_up, *self.told)]
+        for x, y in places + [spot[:2] for spot in self.avoided]:
             near = np.hypot(stops.targets[:, 0] - x, stops.targets[:, 1] - y) < LEFT_ALONE
             first_leg[near] = np.inf
             legs[:, near] = np.inf
