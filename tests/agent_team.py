@@ -130,7 +130,7 @@ class ToyMission:
         """Never."""
         return False
 
-    def reached(self, now: float) -> None:
+    def reached(self, pose: Pose, mates: Sequence[Mate], now: float) -> None:
         """On to nothing."""
         self.strategy = None
 

@@ -129,12 +129,16 @@ def reachable(mission: Exploration, target: list[float]) -> bool:
     return bool(np.isfinite(stops.first_leg[stops.targets.tolist().index(target)]))
 
 
+def at(place: NDArray[np.float64]) -> Pose:
+    return Pose(float(place[0]), float(place[1]), 0.0)
+
+
 def test_a_released_stop_is_left_alone_for_a_while_and_a_reached_one_is_followed_by_the_next() -> None:
     mission = explorer()
     look(mission, HERE)
     prepared(mission)
     first, second = mission.strategy.targets[:2].tolist()
-    mission.reached(1.0)
+    mission.reached(at(mission.strategy.views[0]), [], 1.0)
     assert mission.strategy.targets[0].tolist() == second
     mission.release(1.0)
     assert mission.goal() is None

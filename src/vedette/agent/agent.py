@@ -282,7 +282,7 @@ def _arrived(agent: Agent, now: float) -> list[Effect]:
         return [agent.driver.go(None)]
     if agent.state is not State.DRIVING:
         return []
-    agent.mission.reached(now)
+    agent.mission.reached(agent.pose, agent.mates.all(), now)
     agent.rounds.want()
     return _drive_on(agent, agent.pose, now)
 

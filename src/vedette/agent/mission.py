@@ -74,7 +74,7 @@ class Mission(Protocol):
     def served(self) -> bool:
         """Tell whether the present goal has lost its point."""
 
-    def reached(self, now: float) -> None:
+    def reached(self, pose: Pose, mates: Sequence[Mate], now: float) -> None:
         """Note that the robot is at its goal, and go on to the next one of the strategy."""
 
     def release(self, now: float) -> None:

@@ -36,6 +36,8 @@ SIGHTING_STRIDE = 4  # one beam in so many teaches the sighting model
 LEARNING_STEP = 2.0  # a robot learns from one scan in so many metres of its way [m]
 COUNTS_PERIOD = 10.0  # the model's counts are shared at most so often [s]
 MATE_MARGIN = 0.15  # a return this near a mate's rim is the mate [m]
+THERE = 0.35  # a robot this near a stop's viewpoint is at it [m]
+IN_THE_WAY = 1.0  # a mate this near a frontier may hide it [m]
 AVOID_TIME = 20.0  # a stop that could not be carried out is left alone for so long [s]
 TRIES = 3  # a stop that could not be carried out so often is given up
 SERVED_SHARE = 0.4  # a frontier with less than this of its unknown cells left has lost its point
@@ -180,6 +182,7 @@ class Exploration:
             reach=self.spec.range,
             extent=max(2.5, 0.35 * self.spec.range),
             hidden=self.planner.hidden,
+            return_price=self.planner.return_price,
             layers=self.planner.layers,
             counts=self.fusion.counts.reshape(4, BINS).copy(),
         )
@@ -250,26 +253,41 @@ class Exploration:
     def _unknown_at(self, target: NDArray[np.float64]) -> int:
         return unknown_near(self.fusion.classes, self.frame, *target)
 
-    def reached(self, now: float) -> None:
-        """Go on to the tour's next stop; the next round sees whether this one changed the map."""
-        if len(self.strategy):
-            x, y = self.strategy.targets[0].tolist()
+    def reached(self, pose: Pose, mates: Sequence[Mate], now: float) -> None:
+        """Go on to the tour's next stop; the next round sees whether this one changed the map.
+
+        A stop that a mate kept the robot from, or stands in front of, has not been visited.
+        """
+        if not len(self.strategy):
+            return
+        x, y = self.strategy.targets[0].tolist()
+        away = np.hypot(pose.x - self.strategy.views[0, 0], pose.y - self.strategy.views[0, 1])
+        in_the_way = any(
+            np.hypot(mate.x - x, mate.y - y) < IN_THE_WAY for mate in mates if not mate.silent(now)
+        )
+        if away > THERE or in_the_way:
+            self._put_off(now)
+        else:
             self.platform.visited.append((x, y, int(self.strategy.unknown[0])))
-            self.strategy = self.strategy.after_first()
+        self.strategy = self.strategy.after_first()
 
     def release(self, now: float) -> None:
         """Drop the tour; leave its first stop alone for a while, after some tries until the map changes."""
         if len(self.strategy):
-            x, y = self.strategy.targets[0].tolist()
-            self._released.append((x, y))
-            near = [np.hypot(x - u, y - v) < SAME_PLACE for u, v in self._released]
-            if sum(near) < TRIES:
-                self.platform.avoided.append((x, y, now + AVOID_TIME))
-            else:
-                unknown = self._unknown_at(self.strategy.targets[0])
-                self.platform.given_up.append(GivenUp(x, y, unknown, visited=False))
-                self._released = [spot for spot, same in zip(self._released, near, strict=True) if not same]
+            self._put_off(now)
         self.strategy = STAY
+
+    def _put_off(self, now: float) -> None:
+        """Leave the first stop alone for a while, after some tries until the map changes."""
+        x, y = self.strategy.targets[0].tolist()
+        self._released.append((x, y))
+        near = [np.hypot(x - u, y - v) < SAME_PLACE for u, v in self._released]
+        if sum(near) < TRIES:
+            self.platform.avoided.append((x, y, now + AVOID_TIME))
+        else:
+            unknown = self._unknown_at(self.strategy.targets[0])
+            self.platform.given_up.append(GivenUp(x, y, unknown, visited=False))
+            self._released = [spot for spot, same in zip(self._released, near, strict=True) if not same]
 
     def postponed(self, now: float) -> bool:
         """Tell whether a stop of the last round is left alone for a while only."""

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.domains.mapping.frontier_worth import frontier_areas, spread_behind
 from vedette.domains.mapping.layers import TimeLayers
 from vedette.kernels.frontier import find_frontiers
-from vedette.maps import FREE, UNKNOWN, GridFrame
+from vedette.maps import UNKNOWN, GridFrame
 
 PLANNING_CELL = 0.2  # [m]; coarser costs quality, finer only bytes (docs/theory.md, section 6)
 MIN_FRONTIER = 0.25  # shortest frontier worth a name [m]
@@ -50,13 +51,14 @@ def freeze(
     reach: float,
     extent: float,
     hidden: float,
+    return_price: float = 0.0,
     layers: TimeLayers,
     counts: NDArray[np.int64],
 ) -> MapBelief:
     """Snapshot a team map for a round.
 
     A planning cell is worth ln 2 for each unknown cell in it (paper, section 4.1, P = 0.5), and the unknown
-    cells that touch a frontier carry the hidden area expected behind it.  docs/theory.md (V24)
+    cells that touch a frontier carry the area that the frontier stands for.  docs/theory.md (V24)
 
     Args:
         classes: (R, C) team map; copied.
@@ -64,6 +66,7 @@ def freeze(
         reach: how far beyond what is known the sensors may see [m].
         extent: longest frontier before it is split [m].
         hidden: area expected behind a frontier [m^2].
+        return_price: more for a frontier that is far from others [m^2 a metre].
         layers: the time layers of the objective.
         counts: (4, BINS) the team's sightings.
     """
@@ -82,8 +85,9 @@ def freeze(
     cells, starts = find_frontiers(crop, smallest, max(2, round(extent / frame.resolution)))
     unknown = _block_sum(crop == UNKNOWN, factor)
     local = unknown.astype(np.float32) * LN2
-    if hidden > 0:
-        local += LN2 * hidden / frame.resolution**2 * _behind(crop, cells, starts, factor)
+    areas = frontier_areas(window, cells, starts, hidden, return_price)
+    if areas.any():
+        local += LN2 / frame.resolution**2 * spread_behind(crop, cells, starts, areas, factor)
     first = (rows.start // factor, cols.start // factor)
     # Outside the window nothing is known, and each robot's window is its own.
     weights = np.outer(_sizes(frame.rows, factor), _sizes(frame.cols, factor))
@@ -121,22 +125,3 @@ def _block_sum(mask: NDArray[np.bool_], factor: int) -> NDArray[np.uint16]:
         for col in range(factor):
             total += mask[row::factor, col::factor]
     return total
-
-
-def _behind(
-    classes: NDArray[np.uint8], cells: NDArray[np.int64], starts: NDArray[np.int64], factor: int
-) -> NDArray[np.float32]:
-    """Share one unit a frontier among the planning cells of the unknown cells that touch it."""
-    rows, cols = classes.shape
-    padded = np.pad(classes, 1, constant_values=FREE)
-    row, col = np.divmod(cells, cols)
-    cluster = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
-    around = np.array([(-1, 0), (1, 0), (0, -1), (0, 1)])
-    r = row[:, None] + around[:, 0]
-    c = col[:, None] + around[:, 1]
-    touches = padded[r + 1, c + 1] == UNKNOWN
-    owner = np.broadcast_to(cluster[:, None], touches.shape)[touches]
-    share = 1.0 / np.bincount(owner, minlength=len(starts) - 1)[owner]
-    shape = (-(-rows // factor), -(-cols // factor))
-    flat = r[touches] // factor * shape[1] + c[touches] // factor
-    return np.bincount(flat, share, minlength=shape[0] * shape[1]).reshape(shape).astype(np.float32)

@@ -46,7 +46,7 @@ def discounted(tau: float) -> TimeLayers:
 
 
 def rate(start: float = 0.0) -> TimeLayers:
-    """Worth ``1 / (start + t)``: the paper's rate of uncertainty reduction, eq. (42), read as docs/theory.md (V23).
+    """Worth ``1 / (start + t)``: the paper's rate of uncertainty reduction, eq. (42).  docs/theory.md (V23)
 
     A ``start`` [s] keeps a trifle close by from outweighing a room a little farther on.
     """

@@ -13,6 +13,7 @@ from vedette.errors import InputError, nearest_name
 from vedette.team import PlatformSpec
 
 HIDDEN_AREA = 2.0  # expected behind a frontier [m^2]
+RETURN_PRICE = 1.0  # about half of what a robot maps while it drives a metre [m^2 a metre]
 
 
 @dataclass(frozen=True)
@@ -22,6 +23,7 @@ class Planner:
     summary: str
     layers: TimeLayers
     hidden: float  # area expected behind a frontier [m^2]
+    return_price: float  # more for a frontier far from others [m^2 a metre]
     platform: Callable[[PlatformSpec], MappingPlatform]
 
 
@@ -30,11 +32,13 @@ PLANNERS = {
         "tours of frontiers with arrival times, negotiated (default)",
         layers.rate(start=5.0),
         HIDDEN_AREA,
+        RETURN_PRICE,
         lambda spec: MappingPlatform(spec, max_stops=6, measured="unknown"),
     ),
     "rate": Planner(
         "one frontier each by the rate of uncertainty reduction, negotiated (the paper, eq. 42)",
         layers.rate(),
+        0.0,
         0.0,
         lambda spec: MappingPlatform(spec, max_stops=1, measured="distance"),
     ),
@@ -42,11 +46,14 @@ PLANNERS = {
         "one frontier each by expected posterior entropy, negotiated (the paper, eq. 41)",
         layers.plain(),
         0.0,
+        0.0,
         lambda spec: MappingPlatform(spec, max_stops=1, measured="distance"),
     ),
-    "nearest": Planner("nearest frontier, uncoordinated (Yamauchi)", layers.plain(), 0.0, NearestPlatform),
+    "nearest": Planner(
+        "nearest frontier, uncoordinated (Yamauchi)", layers.plain(), 0.0, 0.0, NearestPlatform
+    ),
     "burgard": Planner(
-        "coordinated assignment of frontiers (Burgard et al.)", layers.plain(), 0.0, BurgardPlatform
+        "coordinated assignment of frontiers (Burgard et al.)", layers.plain(), 0.0, 0.0, BurgardPlatform
     ),
 }
 

@@ -1,0 +1,69 @@
+"""What a frontier is worth beyond the unknown cells that a scan from it may reveal."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.maps import FREE, UNKNOWN, GridFrame
+
+NEIGHBOURS = 5  # a frontier with so many others near by will be passed again
+FARTHEST = 15.0  # being farther from others than this makes no more difference [m]
+
+
+def frontier_areas(
+    frame: GridFrame, cells: NDArray[np.int64], starts: NDArray[np.int64], hidden: float, return_price: float
+) -> NDArray[np.float64]:
+    """``A_f = hidden + return_price * d_f``: area behind a frontier, and the price of coming back for it.
+
+    ``d_f`` is the distance to the fifth nearest other frontier, at most 15 m: a scrap left in a corner that
+    is otherwise finished costs a way back of about that length, one among many nothing.  docs/theory.md (V24)
+
+    Args:
+        frame: of the window.
+        cells, starts: frontiers as ``find_frontiers`` returns them.
+        hidden: area expected behind any frontier [m^2].
+        return_price: [m^2 a metre].
+
+    Returns:
+        (K,) area that each frontier stands for [m^2].
+    """
+    count = len(starts) - 1
+    if return_price == 0.0 or count == 0:
+        return np.full(count, hidden)
+    owner = np.repeat(np.arange(count), np.diff(starts))
+    points = frame.centres(cells)
+    sums = np.column_stack([np.bincount(owner, axis, minlength=count) for axis in points.T])
+    middles = sums / np.diff(starts)[:, None]
+    if count <= NEIGHBOURS:
+        return np.full(count, hidden + return_price * FARTHEST)
+    apart = np.hypot(*(middles[:, None] - middles).transpose(2, 0, 1))
+    fifth: NDArray[np.float64] = np.partition(apart, NEIGHBOURS, axis=1)[:, NEIGHBOURS]
+    return np.asarray(hidden + return_price * np.minimum(fifth, FARTHEST))
+
+
+def spread_behind(
+    classes: NDArray[np.uint8],
+    cells: NDArray[np.int64],
+    starts: NDArray[np.int64],
+    areas: NDArray[np.float64],
+    factor: int,
+) -> NDArray[np.float32]:
+    """Share each frontier's area among the planning cells of the unknown cells that touch it.
+
+    Returns:
+        (r, c) area carried by each planning cell of ``factor x factor`` cells, in the unit of ``areas``.
+    """
+    rows, cols = classes.shape
+    padded = np.pad(classes, 1, constant_values=FREE)
+    row, col = np.divmod(cells, cols)
+    cluster = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
+    around = np.array([(-1, 0), (1, 0), (0, -1), (0, 1)])
+    r = row[:, None] + around[:, 0]
+    c = col[:, None] + around[:, 1]
+    touches = padded[r + 1, c + 1] == UNKNOWN
+    owner = np.broadcast_to(cluster[:, None], touches.shape)[touches]
+    share = areas[owner] / np.bincount(owner, minlength=len(starts) - 1)[owner]
+    shape = (-(-rows // factor), -(-cols // factor))
+    flat = r[touches] // factor * shape[1] + c[touches] // factor
+    return np.bincount(flat, share, minlength=shape[0] * shape[1]).reshape(shape).astype(np.float32)
