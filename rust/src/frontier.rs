@@ -250,7 +250,6 @@ fn py_traversable<'py>(
 }
 
 #[pyfunction(name = "find_frontiers")]
-#[allow(clippy::type_complexity)]
 fn py_find_frontiers<'py>(
     py: Python<'py>,
     classes: PyReadonlyArray2<'py, u8>,

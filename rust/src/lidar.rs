@@ -177,7 +177,6 @@ fn scan_of<'a>(x: f64, y: f64, angles: &'a [f64], ranges: &'a [f64], hits: &'a [
 }
 
 #[pyfunction(name = "cast_rays")]
-#[allow(clippy::too_many_arguments)]
 fn py_cast_rays<'py>(
     py: Python<'py>,
     solid: PyReadonlyArray2<'py, u8>,
@@ -200,7 +199,6 @@ fn py_cast_rays<'py>(
 }
 
 #[pyfunction(name = "integrate_scan")]
-#[allow(clippy::too_many_arguments)]
 fn py_integrate_scan<'py>(
     py: Python<'py>,
     mut log_odds: PyReadwriteArray2<'py, i8>,
@@ -227,7 +225,6 @@ fn py_integrate_scan<'py>(
 }
 
 #[pyfunction(name = "count_sightings")]
-#[allow(clippy::too_many_arguments)]
 fn py_count_sightings<'py>(
     py: Python<'py>,
     log_odds: PyReadonlyArray2<'py, i8>,

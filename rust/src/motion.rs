@@ -320,7 +320,6 @@ fn py_clearance(solid: PyReadonlyArray2<bool>, resolution: f64, x: f64, y: f64, 
 }
 
 #[pyfunction(name = "steer")]
-#[allow(clippy::too_many_arguments)]
 fn py_steer(
     solid: PyReadonlyArray2<bool>,
     traversable: PyReadonlyArray2<bool>,

@@ -35,7 +35,8 @@ class World:
         solid = classes != FREE
         if solid.all():
             raise InputError(f"{path} has no free space; check negate and the thresholds, or draw some white")
-        return cls(frame, solid, Path(path).stem)
+        path = Path(path).resolve()
+        return cls(frame, solid, path.parent.name if path.stem == "map" else path.stem)
 
     def classes(self) -> NDArray[np.uint8]:
         """Return the true map: FREE or OCCUPIED for each cell."""

@@ -1,0 +1,255 @@
+//! Where to look at a frontier from, and what a scan from there would reveal.
+
+use super::{FREE, OCCUPIED};
+
+/// True when the open segment between two cell centres crosses only free cells.
+fn sees(classes: &[u8], cols: usize, from: usize, to: usize) -> bool {
+    let (mut row, mut col) = ((from / cols) as i64, (from % cols) as i64);
+    let (row_to, col_to) = ((to / cols) as i64, (to % cols) as i64);
+    let (rows_left, cols_left) = ((row_to - row).abs(), (col_to - col).abs());
+    let (row_step, col_step) = ((row_to - row).signum(), (col_to - col).signum());
+    let mut error = cols_left - rows_left;
+    for _ in 0..(rows_left + cols_left) {
+        if error > 0 {
+            col += col_step;
+            error -= 2 * rows_left;
+        } else {
+            row += row_step;
+            error += 2 * cols_left;
+        }
+        let cell = row as usize * cols + col as usize;
+        if cell == to {
+            return true;
+        }
+        if classes[cell] != FREE {
+            return false;
+        }
+    }
+    true
+}
+
+/// For each cluster: its representative (the member nearest the centroid) and the nearest reachable
+/// cell, at most `reach` cells away, that sees it; -1 where there is none.
+pub fn viewpoints(
+    field: &[f32],
+    classes: &[u8],
+    rows: usize,
+    cols: usize,
+    cells: &[i64],
+    starts: &[i64],
+    reach: i64,
+) -> (Vec<i64>, Vec<i64>) {
+    let mut representatives = Vec::with_capacity(starts.len());
+    let mut views = Vec::with_capacity(starts.len());
+    for bounds in starts.windows(2) {
+        let members = &cells[bounds[0] as usize..bounds[1] as usize];
+        let representative = nearest_to_centroid(members, cols as i64);
+        representatives.push(representative);
+        views.push(view_of(field, classes, rows, cols, representative, reach));
+    }
+    (representatives, views)
+}
+
+fn nearest_to_centroid(members: &[i64], cols: i64) -> i64 {
+    let n = members.len() as i64;
+    let (row_sum, col_sum) = members.iter().fold((0, 0), |(r, c), &m| (r + m / cols, c + m % cols));
+    *members
+        .iter()
+        .min_by_key(|&&m| {
+            let (dr, dc) = (n * (m / cols) - row_sum, n * (m % cols) - col_sum);
+            (dr * dr + dc * dc, m)
+        })
+        .expect("a cluster has members")
+}
+
+fn view_of(field: &[f32], classes: &[u8], rows: usize, cols: usize, target: i64, reach: i64) -> i64 {
+    let (row, col) = (target / cols as i64, target % cols as i64);
+    let mut best = (reach * reach + 1, -1_i64);
+    for ring in 0..=reach {
+        if ring * ring >= best.0 {
+            break;
+        }
+        for r in (row - ring).max(0)..=(row + ring).min(rows as i64 - 1) {
+            let on_edge = (r - row).abs() == ring;
+            let step = if on_edge { 1 } else { (2 * ring).max(1) };
+            let mut c = col - ring;
+            while c <= col + ring {
+                if c >= 0 && c < cols as i64 {
+                    let cell = r * cols as i64 + c;
+                    let distance = (r - row).pow(2) + (c - col).pow(2);
+                    if distance < best.0
+                        && field[cell as usize].is_finite()
+                        && sees(classes, cols, cell as usize, target as usize)
+                    {
+                        best = (distance, cell);
+                    }
+                }
+                c += step;
+            }
+        }
+    }
+    best.1
+}
+
+pub struct Sensor<'a> {
+    pub range_cells: f64,
+    pub view: f64,         // field of view [rad]
+    pub table: &'a [f32],  // probability of seeing an unknown cell, by cells of depth
+    pub by_distance: bool, // depth is the distance; otherwise the unknown length crossed before
+    pub rays: usize,       // in a full turn
+    pub floor: f32,        // a ray ends where a cell is seen less likely, and lower shares are left out
+}
+
+/// Footprints of viewpoints as CSR over planning cells of `factor x factor` cells: the expected share
+/// of a planning cell's unknown cells that a scan from the viewpoint reveals.
+pub fn footprints(
+    classes: &[u8],
+    rows: usize,
+    cols: usize,
+    views: &[i64],
+    facing: &[f64],
+    sensor: &Sensor,
+    factor: usize,
+) -> (Vec<i64>, Vec<u32>, Vec<f32>) {
+    let coarse_cols = cols.div_ceil(factor);
+    let coarse_rows = rows.div_ceil(factor);
+    let mut seen = vec![0.0_f32; rows * cols];
+    let mut touched: Vec<usize> = Vec::new();
+    let mut share = vec![0.0_f32; coarse_rows * coarse_cols];
+    let mut coarse_touched: Vec<usize> = Vec::new();
+    let (mut starts, mut cells, mut shares) = (vec![0_i64], Vec::new(), Vec::new());
+    let room = room(classes, rows, cols);
+    for (&view, &heading) in views.iter().zip(facing) {
+        for ray in 0..sensor.rays {
+            let turn = std::f64::consts::TAU * ((ray as f64 + 0.5) / sensor.rays as f64 - 0.5);
+            if turn.abs() <= 0.5 * sensor.view {
+                trace(classes, &room, rows, cols, view as usize, heading + turn, sensor, |cell, p| {
+                    if seen[cell] == 0.0 {
+                        touched.push(cell);
+                    }
+                    seen[cell] = seen[cell].max(p);
+                });
+            }
+        }
+        for cell in touched.drain(..) {
+            let coarse = (cell / cols / factor) * coarse_cols + cell % cols / factor;
+            if share[coarse] == 0.0 {
+                coarse_touched.push(coarse);
+            }
+            share[coarse] += seen[cell];
+            seen[cell] = 0.0;
+        }
+        coarse_touched.sort_unstable();
+        for coarse in coarse_touched.drain(..) {
+            let (r0, c0) = (coarse / coarse_cols * factor, coarse % coarse_cols * factor);
+            let mut unknown = 0;
+            for r in r0..(r0 + factor).min(rows) {
+                for c in c0..(c0 + factor).min(cols) {
+                    unknown += usize::from(classes[r * cols + c] == 0);
+                }
+            }
+            let p = share[coarse] / unknown as f32;
+            share[coarse] = 0.0;
+            if p >= sensor.floor {
+                cells.push(coarse as u32);
+                shares.push(p.min(1.0));
+            }
+        }
+        starts.push(cells.len() as i64);
+    }
+    (starts, cells, shares)
+}
+
+/// Chebyshev distance [cells] from each free cell to the nearest that is not, outside included; at most 255.
+fn room(classes: &[u8], rows: usize, cols: usize) -> Vec<u8> {
+    // One cell of padding all round stands for the outside.
+    let wide = cols + 2;
+    let mut padded = vec![0_u8; (rows + 2) * wide];
+    for row in 0..rows {
+        let start = (row + 1) * wide + 1;
+        for col in 0..cols {
+            if classes[row * cols + col] == FREE {
+                let at = start + col;
+                let above = padded[at - wide - 1].min(padded[at - wide]).min(padded[at - wide + 1]);
+                padded[at] = above.min(padded[at - 1]).saturating_add(1);
+            }
+        }
+    }
+    let mut room = vec![0_u8; rows * cols];
+    for row in (0..rows).rev() {
+        let start = (row + 1) * wide + 1;
+        for col in (0..cols).rev() {
+            let at = start + col;
+            let below = padded[at + wide - 1].min(padded[at + wide]).min(padded[at + wide + 1]);
+            padded[at] = padded[at].min(below.min(padded[at + 1]).saturating_add(1));
+            room[row * cols + col] = padded[at];
+        }
+    }
+    room
+}
+
+/// Walk one ray from a cell's centre, reporting each unknown cell with its probability of being seen.
+fn trace(
+    classes: &[u8],
+    room: &[u8],
+    rows: usize,
+    cols: usize,
+    from: usize,
+    angle: f64,
+    sensor: &Sensor,
+    mut report: impl FnMut(usize, f32),
+) {
+    let (dx, dy) = (angle.cos(), angle.sin());
+    let (mut row, mut col) = ((from / cols) as i64, (from % cols) as i64);
+    let (row_step, col_step) = (if dy > 0.0 { 1 } else { -1 }, if dx > 0.0 { 1 } else { -1 });
+    let (per_row, per_col) = (1.0 / dy.abs(), 1.0 / dx.abs());
+    let (mut next_row, mut next_col) = (0.5 * per_row, 0.5 * per_col);
+    let (mut travelled, mut unknown) = (0.0_f64, 0.0_f64);
+    loop {
+        let cell = row as usize * cols + col as usize;
+        if room[cell] > 2 {
+            // All cells this near are free: leap to the last crossing inside them.
+            let more = f64::from(room[cell] - 2);
+            let end = (next_row + more * per_row).min(next_col + more * per_col);
+            if end >= sensor.range_cells {
+                return;
+            }
+            let crossed_rows = ((end - next_row) / per_row + 1.0) as i64; // 0 if the first is beyond
+            let crossed_cols = ((end - next_col) / per_col + 1.0) as i64; // 0 if the first is beyond
+            row += row_step * crossed_rows;
+            col += col_step * crossed_cols;
+            next_row += crossed_rows as f64 * per_row;
+            next_col += crossed_cols as f64 * per_col;
+            travelled = end;
+            continue;
+        }
+        let leave = next_row.min(next_col).min(sensor.range_cells);
+        match classes[cell] {
+            OCCUPIED => return,
+            FREE => {}
+            _ => {
+                let depth = if sensor.by_distance { 0.5 * (travelled + leave) } else { unknown };
+                let p = sensor.table[(depth as usize).min(sensor.table.len() - 1)];
+                if p <= 0.0 || p < sensor.floor {
+                    return; // deeper cells are seen less still
+                }
+                report(cell, p);
+                unknown += leave - travelled;
+            }
+        }
+        if leave >= sensor.range_cells {
+            return;
+        }
+        travelled = leave;
+        if next_row < next_col {
+            row += row_step;
+            next_row += per_row;
+        } else {
+            col += col_step;
+            next_col += per_col;
+        }
+        if row < 0 || col < 0 || row >= rows as i64 || col >= cols as i64 {
+            return;
+        }
+    }
+}
