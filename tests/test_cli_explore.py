@@ -118,7 +118,7 @@ def test_a_run_leaves_every_file_and_says_where_the_pictures_are(vedette: Comman
     assert np.mean(classes[known] == true_classes[known]) > 0.97
     summary = json.loads((Path("out") / "summary.json").read_text())
     assert summary["completed"] is True
-    assert summary["world"] == "map"
+    assert summary["world"] == world.name
 
 
 def test_json_prints_the_summary_alone(vedette: Command, world: Path) -> None:
@@ -147,7 +147,7 @@ def test_a_team_that_dies_has_status_1_and_all_files(vedette: Command, world: Pa
 def test_without_out_each_run_gets_a_new_folder_under_runs(vedette: Command, world: Path) -> None:
     for _ in range(2):
         assert vedette("explore", world / "map.yaml", "--max-time", 1).status == 1
-    assert sorted(path.name for path in Path("runs").iterdir()) == ["map-001", "map-002"]
+    assert sorted(path.name for path in Path("runs").iterdir()) == [f"{world.name}-001", f"{world.name}-002"]
     for folder in Path("runs").iterdir():
         check_files(folder)
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.agent.agent import Agent
+from vedette.agent import Agent
 from vedette.agent.driving import remaining
 from vedette.agent.effects import Traffic as Kind
 from vedette.domains.mapping.belief import LN2, planning_factor
