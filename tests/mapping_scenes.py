@@ -63,7 +63,7 @@ def frozen(
         reach=reach,
         extent=2.5,
         hidden=hidden,
-        layers=worth or layers.discounted(100.0),
+        layers=worth or layers.rate(start=5.0),
         counts=empty_counts(),
     )
 

@@ -53,7 +53,7 @@ def random_problem(rng: np.random.Generator, most_stops: int) -> Problem:
     unreachable = rng.random(stops) < 0.1
     first_leg[unreachable] = np.inf
     legs[:, unreachable] = np.inf
-    worth = [layers.discounted(rng.uniform(5, 200)), layers.rate(), layers.plain()][rng.integers(3)]
+    worth = [layers.rate(start=rng.uniform(1, 200)), layers.rate(), layers.plain()][rng.integers(3)]
     return Problem(
         np.where(rng.random(CELLS) < 0.2, 0.0, rng.uniform(0, 3, CELLS)).astype(np.float32),
         worth.weights,

@@ -20,7 +20,7 @@ from vedette.kernels.coverage import CERTAIN, LAYERS
 from vedette.testing import check_objective
 
 seeds = st.integers(0, 2**32 - 1)
-worths = st.sampled_from([layers.discounted(100.0), layers.discounted(7.0), layers.rate(), layers.plain()])
+worths = st.sampled_from([layers.rate(start=5.0), layers.rate(start=60.0), layers.rate(), layers.plain()])
 OBJECTIVE = MappingObjective()
 
 
@@ -115,7 +115,7 @@ def test_when_all_arrive_in_one_layer_value_is_the_plain_one_times_the_worth_of_
 @pytest.mark.parametrize("tau", [3.0, 100.0, 1e6])
 def test_the_worth_of_an_arrival_is_its_discount_at_the_edge_that_it_is_rounded_up_to(tau: float) -> None:
     edges = layers.rate().edges
-    for worth, law in [(layers.discounted(tau), np.exp(edges / -tau)), (layers.rate(), 1.0 / edges)]:
+    for worth, law in [(layers.rate(start=tau), 1.0 / (tau + edges)), (layers.rate(), 1.0 / edges)]:
         for arrival in [0.0, 2.0, 2.0001, 17.3, 500.0]:
             layer = worth.layer(arrival)
             assert worth.edges[layer] >= arrival

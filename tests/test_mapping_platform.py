@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mapping_scenes import CORRIDOR, FRAME, SPEC, explored, frozen, placed
 from vedette.domains.mapping.impact import NOTHING, Impact
-from vedette.domains.mapping.layers import TimeLayers, discounted, plain, rate
+from vedette.domains.mapping.layers import TimeLayers, plain, rate
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.platform import STAY, STICKINESS, MappingPlatform, Tour
 from vedette.domains.mapping.stops import Stops
@@ -44,7 +44,7 @@ def random_tour(rng: np.random.Generator, platform: MappingPlatform) -> Tour:
     return platform.tour(rng.permutation(len(stops_of(platform)))[: rng.integers(1, 7)])
 
 
-@pytest.mark.parametrize("worth", [discounted(100.0), discounted(5.0), rate(), plain()])
+@pytest.mark.parametrize("worth", [rate(start=5.0), rate(start=40.0), rate(), plain()])
 def test_the_kernel_values_a_tour_as_the_objective_values_its_impact(worth: TimeLayers) -> None:
     belief = dataclasses.replace(frozen(), layers=worth)
     platform = ready()

@@ -25,7 +25,7 @@ class Outcome(StrEnum):
     TIME_LIMIT = "time_limit"  # --max-time passed
     INTERRUPTED = "interrupted"  # Ctrl-C
     TEAM_LOST = "team_lost"  # no robot is alive
-    NO_PROGRESS = "no_progress"  # living robots, work left, and nothing new for too long
+    NO_PROGRESS = "no_progress"  # living robots, work left, and no new route for anybody for too long
 
 
 @dataclass(frozen=True)

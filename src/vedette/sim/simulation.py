@@ -35,7 +35,7 @@ TICK = 0.1  # of bodies and poses [s]
 JOB_TIME = 0.03  # charged for preparing a round [s]
 STUCK_AFTER = 4.0  # without progress [s]
 NOTICED_AFTER = 1.0  # a dead robot is missed, and the tree made anew, after so long [s]
-NO_PROGRESS = 300.0  # nothing new learned, nothing moved on for so long: give up [s]
+NO_PROGRESS = 300.0  # no robot has got a new route for so long: give up [s]
 
 
 SCHEMES = ("token", "jacobi")

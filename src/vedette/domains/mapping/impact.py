@@ -62,9 +62,9 @@ class ImpactCodec:
 
     def encode(self, impact: Impact) -> bytes:
         """Return at most ``bound`` bytes for any impact over this many planning cells."""
-        order = np.argsort(impact.keys % LAYERS, kind="stable")
-        layer = (impact.keys[order] % LAYERS).astype(np.uint8)
-        cell = (impact.keys[order] // LAYERS).astype(np.int64)
+        layer = (impact.keys % LAYERS).astype(np.uint8)  # bytes: sorted by radix
+        order = np.argsort(layer, kind="stable")
+        cell = (impact.keys // LAYERS).astype(np.int64)[order]
         counts = np.bincount(layer, minlength=LAYERS).astype("<u4")
         gap = np.diff(cell, prepend=0)
         gap[np.cumsum(counts)[:-1][counts[1:] > 0]] = cell[np.cumsum(counts)[:-1][counts[1:] > 0]]

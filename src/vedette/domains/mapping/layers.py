@@ -40,11 +40,6 @@ def _layers(worth: NDArray[np.float64]) -> TimeLayers:
     return TimeLayers(_edges(), worth - np.append(worth[1:], 0.0))
 
 
-def discounted(tau: float) -> TimeLayers:
-    """Worth ``exp(-t / tau)``, with ``tau`` in seconds."""
-    return _layers(np.exp(-_edges() / tau))
-
-
 def rate(start: float = 0.0) -> TimeLayers:
     """Worth ``1 / (start + t)``: the paper's rate of uncertainty reduction, eq. (42).  docs/theory.md (V23)
 

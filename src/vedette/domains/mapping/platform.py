@@ -17,9 +17,7 @@ from vedette.team import PlatformSpec
 
 LEAST_AREA = 0.08  # a stop must promise this much [m^2]
 HYSTERESIS = 0.03  # a new strategy must gain this share more than the present one
-STICKINESS = (
-    0.1  # one that turns away from the stop it drives to, this share more than the best that does not
-)
+STICKINESS = 0.1  # to turn away from the stop under way must gain this share more
 LEFT_ALONE = 0.5  # a frontier this near a place that is left alone is left alone too [m]
 SAME_PLACE = 1.2  # a frontier this near a stop of the last round is the same one [m]
 
