@@ -16,8 +16,8 @@ from vedette.maps import UNKNOWN, GridFrame
 from vedette.team import PlatformSpec
 
 MOST_STOPS = 40  # nearest first; the rest waits for a later round
-VIEW_REACH = 2.0  # how far from a frontier to look for a place to see it from [m]
-CLEARANCE = 0.05  # kept to everything that is not known free, beyond the radius [m]
+VIEW_REACH = 0.8  # how far from a frontier to look for a place to see it from [sensor ranges]
+CLEARANCE = 0.01  # kept to everything that is not known free, beyond the radius [m]
 Disc = tuple[float, float, float]  # x, y, radius [m], team frame
 
 
@@ -77,7 +77,7 @@ def find_stops(
 ) -> Stops:
     """Turn the belief's frontiers into stops that reveal at least ``least_area`` [m^2] in expectation."""
     frame = belief.frame
-    reach = max(2, round(VIEW_REACH / frame.resolution))
+    reach = max(2, round(VIEW_REACH * spec.range / frame.resolution))
     targets, views = coverage.viewpoints(
         ground.field, belief.classes, belief.frontier_cells, belief.frontier_starts, reach
     )
