@@ -17,7 +17,7 @@ from vedette.team import PlatformSpec
 
 MOST_STOPS = 40  # nearest first; the rest waits for a later round
 VIEW_REACH = 0.8  # how far from a frontier to look for a place to see it from [sensor ranges]
-CLEARANCE = 0.01  # kept to everything that is not known free, beyond the radius [m]
+CLEARANCE = 0.05  # kept to everything that is not known free, beyond the radius [m]
 Disc = tuple[float, float, float]  # x, y, radius [m], team frame
 
 
