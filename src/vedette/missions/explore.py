@@ -24,7 +24,7 @@ from vedette.domains.mapping.platform import (
     Tour,
 )
 from vedette.domains.mapping.sightings import BIN, BINS, empty_counts
-from vedette.domains.mapping.stops import CLEARANCE, Disc, unknown_near
+from vedette.domains.mapping.stops import CLEARANCE, Disc, block, unknown_near
 from vedette.fusion import Fusion
 from vedette.kernels import distance, frontier, lidar
 from vedette.maps import GridFrame
@@ -304,8 +304,11 @@ class Exploration:
     ) -> Route | None:
         """Return the shortest way to a goal on the newest team map, straightened; None if there is none."""
         passable = self._passable_now()
-        for x, y, radius in self._discs(pose, mates, blocked, now):
-            passable = passable & ~self._disc(x, y, radius + self.spec.radius + CLEARANCE)
+        discs = self._discs(pose, mates, blocked, now)
+        if discs:
+            passable = passable.copy()
+        for disc in discs:
+            block(passable, self.frame, disc, self.spec.radius + CLEARANCE)
         source, target = self._cell(pose.x, pose.y), self._cell(*goal)
         span = distance.distance_field(passable, source, self.frame.resolution, np.array([target]))
         cells = distance.path_to(span, passable, target)
@@ -327,9 +330,3 @@ class Exploration:
             )
             self._passable = digest, free
         return self._passable[1]
-
-    def _disc(self, x: float, y: float, radius: float) -> NDArray[np.bool_]:
-        frame = self.frame
-        rows = frame.origin_y + (np.arange(frame.rows) + 0.5) * frame.resolution - y
-        cols = frame.origin_x + (np.arange(frame.cols) + 0.5) * frame.resolution - x
-        return rows[:, None] ** 2 + cols**2 < radius**2

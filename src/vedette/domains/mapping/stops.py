@@ -49,15 +49,14 @@ def survey(belief: MapBelief, spec: PlatformSpec, x: float, y: float, discs: lis
     frame = belief.frame
     passable = frontier.traversable(belief.classes, spec.radius + CLEARANCE, frame.resolution)
     for disc in discs:
-        block(passable, belief, disc, spec.radius + CLEARANCE)
+        block(passable, frame, disc, spec.radius + CLEARANCE)
     row, col = np.clip(frame.cell(x, y), 0, (frame.rows - 1, frame.cols - 1))
     source = int(row * frame.cols + col)
     return Ground(passable, distance.distance_field(passable, source, frame.resolution, None))
 
 
-def block(passable: NDArray[np.bool_], belief: MapBelief, disc: Disc, radius: float) -> None:
+def block(passable: NDArray[np.bool_], frame: GridFrame, disc: Disc, radius: float) -> None:
     """Make the cells impassable whose centres a robot of this radius cannot occupy beside the disc."""
-    frame = belief.frame
     x, y, size = disc
     rows = frame.origin_y + (np.arange(frame.rows) + 0.5) * frame.resolution - y
     cols = frame.origin_x + (np.arange(frame.cols) + 0.5) * frame.resolution - x
