@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 
 def drive(pose: ArrayLike, turn_rates: ArrayLike, speed: ArrayLike, step: float) -> NDArray[np.float64]:
-    """Poses after each step: ``x' = x + (V/u)(sin(psi + u dt) - sin psi)``, y likewise, ``psi' = psi + u dt``.
+    """Poses after each step: ``psi' = psi + u dt``, ``x' = x + (V/u)(sin psi' - sin psi)``.
 
     Exact, a straight line as u -> 0.  docs/theory.md (V30)
 
