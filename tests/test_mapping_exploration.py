@@ -10,10 +10,13 @@ from vedette.agent.events import Pose, Scan
 from vedette.agent.mates import Mate
 from vedette.domains.mapping.planners import planner
 from vedette.domains.mapping.sightings import BINS
+from vedette.domains.mapping.stops import CLEARANCES
 from vedette.fusion import ReplicatedEvidence
+from vedette.kernels.frontier import traversable
 from vedette.kernels.lidar import cast_rays
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
-from vedette.missions.explore import AVOID_TIME, Exploration
+from vedette.missions.explore import AVOID_TIME, TRIES, Exploration
+from vedette.team import PlatformSpec
 
 HERE = Pose(-0.53, 7.12, 0.0)
 THERE = Pose(3.04, 7.08, 0.0)
@@ -160,3 +163,63 @@ def test_a_goal_is_served_when_a_mate_has_seen_most_of_what_it_was_to_reveal() -
     mission.log_odds[row - 6 : row + 7, col - 6 : col + 7] = -4
     mission.fusion.publish(mission.log_odds, None, None)
     assert mission.served()
+
+
+def before_a_passage(width: int) -> NDArray[np.uint8]:
+    """Return the map of a room that has one way on, a passage of so many cells into the unknown."""
+    classes = np.full(FRAME.shape, OCCUPIED, np.uint8)
+    classes[30:70, 10:60] = FREE
+    classes[45 : 45 + width, 60:115] = FREE
+    classes[45 : 45 + width, 115:] = UNKNOWN
+    return classes
+
+
+def broad_explorer(classes: NDArray[np.uint8]) -> Exploration:
+    """Return the mission of a robot 0.48 m across that knows this map."""
+    fusion = ReplicatedEvidence(0, 1, FRAME.shape, 4 * BINS)
+    fusion.publish(np.array([0, -20, 20], np.int8)[classes], None, None)
+    spec = PlatformSpec(range=4.0, radius=0.24)
+    return Exploration(FRAME, spec, planner("tours"), fusion)
+
+
+def test_a_robot_takes_a_narrow_way_where_there_is_no_wider_one_and_none_that_its_body_does_not_fit() -> None:
+    for width, fits in ((3, False), (4, False), (5, True), (8, True)):
+        mission = broad_explorer(before_a_passage(width))
+        prepared(mission)
+        assert (mission.goal() is not None) == fits, width
+        deep = (FRAME.origin_x + 11.0, FRAME.origin_y + 4.5 + 0.05 * width)
+        assert (mission.route(HERE, deep, [], False, 0.0) is not None) == fits, width
+
+
+def test_a_robot_keeps_its_usual_clearance_wherever_that_leads_to_something() -> None:
+    classes = before_a_passage(8)
+    classes[60:65, 60:115] = FREE  # another way on, for the lesser clearance only
+    classes[60:65, 115:] = UNKNOWN
+    mission = broad_explorer(classes)
+    prepared(mission)
+    ground, goal = mission.platform.ground, mission.goal()
+    assert ground is not None
+    assert goal is not None
+    usual = traversable(classes, mission.spec.radius + CLEARANCES[0], RESOLUTION)
+    assert ground.passable.sum() == usual.sum()
+    route = mission.route(HERE, goal, [], False, 0.0)
+    assert route is not None
+    np.testing.assert_array_equal(route.passable, usual)
+
+
+def test_a_stop_that_cannot_be_carried_out_is_left_alone_longer_each_time_and_given_up_in_the_end() -> None:
+    mission = explorer()
+    look(mission, HERE)
+    prepared(mission)
+    now, waits = 0.0, []
+    tour = mission.strategy
+    for _ in range(TRIES - 1):
+        mission.strategy = tour
+        mission.release(now)
+        waits.append(mission.platform.avoided[-1][2] - now)
+        now += waits[-1] + 1.0
+    assert waits == sorted(set(waits))
+    assert not mission.platform.given_up
+    mission.strategy = tour
+    mission.release(now)
+    assert [(spot.x, spot.y) for spot in mission.platform.given_up] == [tuple(tour.targets[0])]

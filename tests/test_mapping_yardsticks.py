@@ -9,7 +9,7 @@ from mapping_scenes import CORRIDOR, FRAME, SPEC, explored, frozen, placed
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.impact import NOTHING
 from vedette.domains.mapping.platform import STAY, MappingPlatform
-from vedette.domains.mapping.stops import CLEARANCE
+from vedette.domains.mapping.stops import CLEARANCES
 from vedette.domains.mapping.yardsticks import STICK, BurgardPlatform, NearestPlatform
 from vedette.kernels.distance import distance_field
 from vedette.kernels.frontier import traversable
@@ -39,7 +39,7 @@ def test_nearest_keeps_its_goal_unless_another_is_nearer_by_a_metre() -> None:
 
 def burgard(belief: MapBelief, places: Places) -> dict[tuple[float, float], tuple[float, float]]:
     """The published greedy, told by coordinates: which frontier each robot gets."""
-    passable = traversable(belief.classes, SPEC.radius + CLEARANCE, 0.1)
+    passable = traversable(belief.classes, SPEC.radius + CLEARANCES[0], 0.1)
     scout = MappingPlatform(SPEC)
     placed(scout, belief, *places[0])
     assert scout.stops is not None

@@ -24,7 +24,7 @@ from vedette.domains.mapping.platform import (
     Tour,
 )
 from vedette.domains.mapping.sightings import BIN, BINS, empty_counts
-from vedette.domains.mapping.stops import CLEARANCE, Disc, block, unknown_near
+from vedette.domains.mapping.stops import CLEARANCES, Disc, block, unknown_near
 from vedette.fusion import Fusion
 from vedette.kernels import distance, frontier, lidar
 from vedette.maps import GridFrame
@@ -38,8 +38,8 @@ COUNTS_PERIOD = 10.0  # the model's counts are shared at most so often [s]
 MATE_MARGIN = 0.15  # a return this near a mate's rim is the mate [m]
 THERE = 0.35  # a robot this near a stop's viewpoint is at it [m]
 IN_THE_WAY = 1.0  # a mate this near a frontier may hide it [m]
-AVOID_TIME = 20.0  # a stop that could not be carried out is left alone for so long [s]
-TRIES = 3  # a stop that could not be carried out so often is given up
+AVOID_TIME = 20.0  # a stop that could not be carried out is left alone for so long, longer each time [s]
+TRIES = 4  # a stop that could not be carried out so often is given up
 SERVED_SHARE = 0.4  # a frontier with less than this of its unknown cells left has lost its point
 
 
@@ -61,7 +61,7 @@ class Exploration:
     _counts_due: float = 0.0
     _learned: tuple[float, float, NDArray[np.int8]] | None = None  # where it last learned; its evidence then
     _released: list[tuple[float, float]] = field(default_factory=list)  # stops that could not be carried out
-    _passable: tuple[int, NDArray[np.bool_]] | None = None  # by the map's digest
+    _passable: dict[float, tuple[int, NDArray[np.bool_]]] = field(default_factory=dict)  # by clearance
 
     def __post_init__(self) -> None:
         self.codec = ImpactCodec(self.frame.coarse(planning_factor(self.frame.resolution)).size)
@@ -278,12 +278,12 @@ class Exploration:
         self.strategy = STAY
 
     def _put_off(self, now: float) -> None:
-        """Leave the first stop alone for a while, after some tries until the map changes."""
+        """Leave the first stop alone, longer after each try; after the last one until the map changes."""
         x, y = self.strategy.targets[0].tolist()
         self._released.append((x, y))
         near = [np.hypot(x - u, y - v) < SAME_PLACE for u, v in self._released]
         if sum(near) < TRIES:
-            self.platform.avoided.append((x, y, now + AVOID_TIME))
+            self.platform.avoided.append((x, y, now + AVOID_TIME * sum(near)))
         else:
             unknown = self._unknown_at(self.strategy.targets[0])
             self.platform.given_up.append(GivenUp(x, y, unknown, visited=False))
@@ -302,31 +302,35 @@ class Exploration:
     def route(
         self, pose: Pose, goal: tuple[float, float], mates: Sequence[Mate], blocked: bool, now: float
     ) -> Route | None:
-        """Return the shortest way to a goal on the newest team map, straightened; None if there is none."""
-        passable = self._passable_now()
+        """Return the shortest way to a goal on the newest team map, straightened; None if there is none.
+
+        A narrow way is taken only where there is no wider one.
+        """
         discs = self._discs(pose, mates, blocked, now)
-        if discs:
-            passable = passable.copy()
-        for disc in discs:
-            block(passable, self.frame, disc, self.spec.radius + CLEARANCE)
         source, target = self._cell(pose.x, pose.y), self._cell(*goal)
-        span = distance.distance_field(passable, source, self.frame.resolution, np.array([target]))
-        cells = distance.path_to(span, passable, target)
-        if not len(cells):
-            return None
-        path = self.frame.centres(distance.shortcut(passable, cells))
-        path[0] = pose.x, pose.y
-        return Route(path, passable)
+        for clearance in CLEARANCES:
+            passable = self._passable_now(clearance)
+            if discs:
+                passable = passable.copy()
+            for disc in discs:
+                block(passable, self.frame, disc, self.spec.radius + clearance)
+            span = distance.distance_field(passable, source, self.frame.resolution, np.array([target]))
+            cells = distance.path_to(span, passable, target)
+            if len(cells):
+                path = self.frame.centres(distance.shortcut(passable, cells))
+                path[0] = pose.x, pose.y
+                return Route(path, passable)
+        return None
 
     def _cell(self, x: float, y: float) -> int:
         row, col = self.frame.cell(x, y)
         return min(max(row, 0), self.frame.rows - 1) * self.frame.cols + min(max(col, 0), self.frame.cols - 1)
 
-    def _passable_now(self) -> NDArray[np.bool_]:
+    def _passable_now(self, clearance: float) -> NDArray[np.bool_]:
         digest = self.fusion.digest
-        if self._passable is None or self._passable[0] != digest:
-            free = frontier.traversable(
-                self.fusion.classes, self.spec.radius + CLEARANCE, self.frame.resolution
-            )
-            self._passable = digest, free
-        return self._passable[1]
+        known = self._passable.get(clearance)
+        if known is None or known[0] != digest:
+            reach = self.spec.radius + clearance
+            known = digest, frontier.traversable(self.fusion.classes, reach, self.frame.resolution)
+            self._passable[clearance] = known
+        return known[1]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.impact import NOTHING, Impact
 from vedette.domains.mapping.sightings import SightingModel, beam_model, measured_model
-from vedette.domains.mapping.stops import Disc, Ground, Stops, find_stops, survey, unknown_near
+from vedette.domains.mapping.stops import CLEARANCES, Disc, Ground, Stops, find_stops, survey, unknown_near
 from vedette.kernels import coverage
 from vedette.kernels.coverage import CERTAIN, LAYERS
 from vedette.team import PlatformSpec
@@ -97,12 +97,18 @@ class MappingPlatform:
         )
 
     def prepare(self, belief: MapBelief) -> None:
-        """Survey the ground and find the stops; the slow part, before the round."""
-        self.ground = survey(belief, self.spec, self.x, self.y, self.obstacles)
-        least = max(LEAST_AREA, 0.5 * belief.frame.resolution**2)
-        stops = find_stops(belief, self.ground, self.spec, self.model(belief), least)
+        """Survey the ground and find the stops; the slow part, before the round.
+
+        A robot that can get to none with its usual clearance looks for narrower ways.
+        """
         self._update_given_up(belief)
-        self.stops = self._without_left_alone(stops)
+        least = max(LEAST_AREA, 0.5 * belief.frame.resolution**2)
+        for clearance in CLEARANCES:
+            self.ground = survey(belief, self.spec, self.x, self.y, self.obstacles, clearance)
+            stops = find_stops(belief, self.ground, self.spec, self.model(belief), least)
+            self.stops = self._without_left_alone(stops)
+            if np.isfinite(self.stops.first_leg).any():
+                break
 
     def _update_given_up(self, belief: MapBelief) -> None:
         """Give up frontiers that a visit did not change; take up again those whose surroundings changed."""

@@ -17,7 +17,7 @@ from vedette.team import PlatformSpec
 
 MOST_STOPS = 40  # nearest first; the rest waits for a later round
 VIEW_REACH = 0.8  # how far from a frontier to look for a place to see it from [sensor ranges]
-CLEARANCE = 0.05  # kept to everything that is not known free, beyond the radius [m]
+CLEARANCES = (0.05, 0.01)  # kept to all that is not known free [m]; the second where the first leads nowhere
 Disc = tuple[float, float, float]  # x, y, radius [m], team frame
 
 
@@ -44,12 +44,14 @@ class Stops:
         return len(self.targets)
 
 
-def survey(belief: MapBelief, spec: PlatformSpec, x: float, y: float, discs: list[Disc]) -> Ground:
+def survey(
+    belief: MapBelief, spec: PlatformSpec, x: float, y: float, discs: list[Disc], clearance: float
+) -> Ground:
     """Find where a robot at (x, y) can drive in the belief's window, around discs that stand still."""
     frame = belief.frame
-    passable = frontier.traversable(belief.classes, spec.radius + CLEARANCE, frame.resolution)
+    passable = frontier.traversable(belief.classes, spec.radius + clearance, frame.resolution)
     for disc in discs:
-        block(passable, frame, disc, spec.radius + CLEARANCE)
+        block(passable, frame, disc, spec.radius + clearance)
     row, col = np.clip(frame.cell(x, y), 0, (frame.rows - 1, frame.cols - 1))
     source = int(row * frame.cols + col)
     return Ground(passable, distance.distance_field(passable, source, frame.resolution, None))
