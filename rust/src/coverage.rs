@@ -11,7 +11,7 @@ use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use footprint::{footprints, viewpoints, Sensor};
-use impact::{combine, marginal};
+use impact::{combine, marginal, miss_table};
 use tours::{best_tour, most_any_tour_adds, Stops};
 
 pub const LAYERS: usize = 32;
@@ -93,13 +93,13 @@ fn py_marginals<'py>(
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let others = (others_keys.as_slice()?, others_misses.as_slice()?);
     let (keys, misses) = (keys.as_slice()?, misses.as_slice()?);
-    let (weights, layer_weights) = (weights.as_slice()?, layer_weights.as_slice()?);
+    let (weights, layer_weights, miss) = (weights.as_slice()?, layer_weights.as_slice()?, miss_table());
     let gains: Vec<f64> = starts
         .as_slice()?
         .windows(2)
         .map(|bounds| {
             let own = bounds[0] as usize..bounds[1] as usize;
-            marginal(weights, layer_weights, others, (&keys[own.clone()], &misses[own]))
+            marginal(weights, layer_weights, others, (&keys[own.clone()], &misses[own]), &miss)
         })
         .collect();
     Ok(gains.into_pyarray(py))

@@ -34,56 +34,56 @@ pub fn combine(a: (&[u32], &[u8]), b: (&[u32], &[u8])) -> Sparse {
     (keys, misses)
 }
 
-/// The value of one cell's log-misses, in units of its weight: `sum_b w_b (1 - prod_i m_i(b))`.
-fn cell_value(entries: &[(usize, u8)], layer_weights: &[f64], miss: &[f64; 256]) -> f64 {
-    let mut total = 0_u8;
-    let mut value = 0.0;
-    let mut next = 0;
-    for (layer, weight) in layer_weights.iter().enumerate() {
-        while next < entries.len() && entries[next].0 <= layer {
-            total = total.saturating_add(entries[next].1);
-            next += 1;
-        }
-        value += weight * (1.0 - miss[total as usize]);
+/// What a certain sighting is worth by layer, in units of its cell's weight: suffix sums of the layers' weights.
+fn worths(layer_weights: &[f64]) -> [f64; LAYERS] {
+    let mut worths = [0.0; LAYERS];
+    let mut sum = 0.0;
+    for layer in (0..LAYERS).rev() {
+        sum += layer_weights[layer];
+        worths[layer] = sum;
     }
-    value
-}
-
-fn entries_of(keys: &[u32], misses: &[u8], cell: u32, out: &mut Vec<(usize, u8)>) {
-    let first = keys.partition_point(|&key| key / (LAYERS as u32) < cell);
-    for (key, miss) in keys[first..].iter().zip(&misses[first..]) {
-        if key / LAYERS as u32 != cell {
-            break;
-        }
-        out.push(((key % LAYERS as u32) as usize, *miss));
-    }
+    worths
 }
 
 /// `value(others * own) - value(others)`, summed over the cells that `own` touches.
+///
+/// A cell's value is `sum_b w_b (1 - m(b))`, summed by parts: each entry adds the fall of the miss
+/// probability at its layer times what a sighting there is worth.
 pub fn marginal(
     weights: &[f32],
     layer_weights: &[f64],
     others: (&[u32], &[u8]),
     own: (&[u32], &[u8]),
+    miss: &[f64; 256],
 ) -> f64 {
-    let miss = miss_table();
-    let (mut before, mut after) = (Vec::new(), Vec::new());
+    let worths = worths(layer_weights);
+    let cell_of = |key: u32| key / LAYERS as u32;
     let mut gain = 0.0;
-    let mut at = 0;
-    while at < own.0.len() {
-        let cell = own.0[at] / LAYERS as u32;
-        before.clear();
-        entries_of(others.0, others.1, cell, &mut before);
-        after.clear();
-        after.extend_from_slice(&before);
-        while at < own.0.len() && own.0[at] / LAYERS as u32 == cell {
-            after.push(((own.0[at] % LAYERS as u32) as usize, own.1[at]));
-            at += 1;
-        }
-        after.sort_unstable();
+    let (mut i, mut j) = (0, 0);
+    while j < own.0.len() {
+        let cell = cell_of(own.0[j]);
+        i += others.0[i..].partition_point(|&key| cell_of(key) < cell);
         let weight = f64::from(weights[cell as usize]);
-        gain +=
-            weight * (cell_value(&after, layer_weights, &miss) - cell_value(&before, layer_weights, &miss));
+        let (mut alone, mut together) = (0_u8, 0_u8);
+        let mut value = 0.0;
+        loop {
+            let theirs = others.0.get(i).filter(|&&key| cell_of(key) == cell);
+            let mine = own.0.get(j).filter(|&&key| cell_of(key) == cell);
+            let Some(&key) = theirs.into_iter().chain(mine).min() else { break };
+            let before = miss[alone as usize] - miss[together as usize];
+            if theirs == Some(&key) {
+                alone = alone.saturating_add(others.1[i]);
+                together = together.saturating_add(others.1[i]);
+                i += 1;
+            }
+            if mine == Some(&key) {
+                together = together.saturating_add(own.1[j]);
+                j += 1;
+            }
+            let after = miss[alone as usize] - miss[together as usize];
+            value += (after - before) * worths[key as usize % LAYERS];
+        }
+        gain += weight * value;
     }
     gain
 }

@@ -1,9 +1,13 @@
 //! The best reply by tours: greedy insertion and 2-opt against the rest of the team.
 
+use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
+
 use super::impact::miss_table;
 use super::LAYERS;
 
 /// What one platform knows of its stops, fixed for a round.
+#[derive(Clone, Copy)]
 pub struct Stops<'a> {
     pub starts: &'a [i64],    // (K + 1) CSR bounds of each stop's footprint
     pub cells: &'a [u32],     // planning cells
@@ -53,14 +57,16 @@ struct Tours<'a> {
     weight: Vec<f32>,              // (local cell) its worth
     left: Vec<f32>,                // (local cell) scratch: its worth times own miss so far
     discount: Vec<u32>,            // (local cell) row of `discounts`; 0 where the others see nothing
-    discounts: Vec<[f32; LAYERS]>, // suffix sums of layer weights times others' miss
+    discounts: Vec<[f32; LAYERS]>, // suffix sums of layer weights times others' miss, each pattern once
+    sums: Vec<f32>,                // (row of `discounts`) scratch: zeros
+    rows: Vec<u32>,                // scratch: rows in use
     max_stops: usize,
     held: usize,   // stops at the head of a tour that a search leaves where they are
-    budget: usize, // footprint entries that a search may still visit to improve a tour
+    budget: usize, // shared footprint entries that a search may still visit to improve a tour
 }
 
 /// Bounds the time of a reply where footprints are vast; in an office it is never used up.
-const BUDGET: usize = 150_000;
+const BUDGET: usize = 75_000;
 
 impl<'a> Tours<'a> {
     fn new(
@@ -86,6 +92,7 @@ impl<'a> Tours<'a> {
         }
         let mut discount = vec![0_u32; weight.len()];
         let mut discounts = vec![suffix_sums(layer_weights, &[0; LAYERS], &miss)];
+        let mut rows: HashMap<[u8; LAYERS], u32, BuildHasherDefault<Mixer>> = HashMap::default();
         let mut at = others.0.partition_point(|&key| key / (LAYERS as u32) < first);
         while at < others.0.len() && others.0[at] / LAYERS as u32 <= last {
             let cell = others.0[at] / LAYERS as u32;
@@ -96,13 +103,15 @@ impl<'a> Tours<'a> {
             }
             let number = numbers[(cell - first) as usize];
             if number > 0 {
-                discount[number as usize - 1] = discounts.len() as u32;
-                discounts.push(suffix_sums(layer_weights, &added, &miss));
+                discount[number as usize - 1] = *rows.entry(added).or_insert_with(|| {
+                    discounts.push(suffix_sums(layer_weights, &added, &miss));
+                    discounts.len() as u32 - 1
+                });
             }
         }
         let seen = miss.map(|miss| (1.0 - miss) as f32);
-        let left = weight.clone();
-        Tours { stops, local, seen, weight, left, discount, discounts, max_stops, held: 0, budget: 0 }
+        let (left, sums, rows) = (weight.clone(), vec![0.0; discounts.len()], Vec::new());
+        Tours { stops, local, seen, weight, left, discount, discounts, sums, rows, max_stops, held: 0, budget: 0 }
     }
 
     fn entries(&self, stop: usize) -> std::ops::Range<usize> {
@@ -114,25 +123,30 @@ impl<'a> Tours<'a> {
     }
 
     /// What a stop adds in every layer, given the platform's own misses so far.
-    fn by_layer(&self, stop: usize) -> [f32; LAYERS] {
-        let mut sums = [0.0_f32; LAYERS];
-        let mut alone = 0.0;
-        for entry in self.entries(stop) {
+    fn by_layer(&mut self, stop: usize) -> [f32; LAYERS] {
+        self.sum_by_layer(self.entries(stop))
+    }
+
+    /// What some footprint entries add in every layer, given the platform's own misses so far.
+    fn sum_by_layer(&mut self, entries: impl Iterator<Item = usize>) -> [f32; LAYERS] {
+        self.rows.clear();
+        for entry in entries {
             let cell = self.local[entry] as usize;
-            let p = self.seen(entry) * self.left[cell];
-            match self.discount[cell] {
-                0 => alone += p,
-                row => {
-                    for (sum, discount) in sums.iter_mut().zip(&self.discounts[row as usize]) {
-                        *sum += p * discount;
-                    }
-                }
+            let row = self.discount[cell];
+            let sum = &mut self.sums[row as usize];
+            if *sum == 0.0 {
+                self.rows.push(row);
+            }
+            *sum += self.seen[self.stops.misses[entry] as usize] * self.left[cell];
+        }
+        let mut by_layer = [0.0_f32; LAYERS];
+        for &row in &self.rows {
+            let sum = std::mem::take(&mut self.sums[row as usize]);
+            for (total, discount) in by_layer.iter_mut().zip(&self.discounts[row as usize]) {
+                *total += sum * discount;
             }
         }
-        for (sum, discount) in sums.iter_mut().zip(&self.discounts[0]) {
-            *sum += alone * discount;
-        }
-        sums
+        by_layer
     }
 
     fn in_layer(&self, stop: usize, layer: usize) -> f32 {
@@ -193,14 +207,9 @@ impl<'a> Tours<'a> {
         (value, now)
     }
 
-    fn size(&self, tour: &[usize]) -> usize {
-        tour.iter().map(|&stop| self.entries(stop).len()).sum()
-    }
-
-    /// Value with ties inside a time layer broken towards the shorter tour.
     fn score(&mut self, tour: &[usize]) -> f64 {
         let (value, end) = self.value(tour);
-        value * (1.0 - 1e-4 * f64::from(end.min(1e3)) / 1e3)
+        score(value, end)
     }
 
     /// Complete and improve a tour, leaving its first `held` stops in place.
@@ -241,9 +250,10 @@ impl<'a> Tours<'a> {
             self.observe(stop);
             from = Some(stop);
         }
+        let (stops, held) = (self.stops, self.held);
         let place = |stop: usize, table: &[f32; LAYERS]| match tour.contains(&stop) {
             true => (0.0, 0),
-            false => best_place(&self.stops, stop, table, tour, self.held, &arrivals, &present),
+            false => best_place(&stops, stop, table, tour, held, &arrivals, &present),
         };
         let mut best: Vec<(f32, usize)> =
             tables.iter().enumerate().map(|(stop, table)| place(stop, table)).collect();
@@ -266,23 +276,25 @@ impl<'a> Tours<'a> {
     }
 
     /// Move a stop or reverse a stretch as long as that helps and the budget lasts.
-    fn improve(&mut self, tour: &mut Vec<usize>) {
-        let mut best = self.score(tour);
+    fn improve(&mut self, tour: &mut [usize]) {
+        let parts = self.parts(tour);
+        let mut order: Vec<usize> = (0..parts.len()).collect();
+        let mut best = self.score_of(&parts, &order, f64::NEG_INFINITY);
         for _ in 0..4 {
             let before = best;
-            for i in self.held..tour.len() {
-                for j in self.held..tour.len() {
+            for i in self.held..order.len() {
+                for j in self.held..order.len() {
                     if i == j {
                         continue;
                     }
-                    let mut moved = tour.clone();
+                    let mut moved = order.clone();
                     let stop = moved.remove(i);
                     moved.insert(j, stop);
-                    best = self.keep_better(tour, moved, best);
+                    best = self.keep_better(&parts, &mut order, moved, best);
                     if i + 1 < j {
-                        let mut turned = tour.clone();
+                        let mut turned = order.clone();
                         turned[i..=j].reverse();
-                        best = self.keep_better(tour, turned, best);
+                        best = self.keep_better(&parts, &mut order, turned, best);
                     }
                 }
             }
@@ -290,14 +302,67 @@ impl<'a> Tours<'a> {
                 break;
             }
         }
+        for (place, k) in order.into_iter().enumerate() {
+            tour[place] = parts[k].stop;
+        }
     }
 
-    fn keep_better(&mut self, tour: &mut Vec<usize>, other: Vec<usize>, best: f64) -> f64 {
-        let Some(budget) = self.budget.checked_sub(self.size(&other)) else { return best };
-        self.budget = budget;
-        let score = self.score(&other);
+    /// Take the stops of a tour apart: in any order, cells that only one stop sees add what they add.
+    fn parts(&mut self, tour: &[usize]) -> Vec<Part> {
+        let mut visits = vec![0_u8; self.weight.len()];
+        for entry in tour.iter().flat_map(|&stop| self.entries(stop)) {
+            visits[self.local[entry] as usize] += 1;
+        }
+        let part = |&stop: &usize| {
+            let (alone, shared): (Vec<usize>, Vec<usize>) =
+                self.entries(stop).partition(|&entry| visits[self.local[entry] as usize] == 1);
+            let shared = shared.into_iter().map(|entry| (self.local[entry], self.seen(entry))).collect();
+            let most = self.by_layer(stop);
+            Part { stop, most, alone: self.sum_by_layer(alone.into_iter()), shared }
+        };
+        tour.iter().map(part).collect()
+    }
+
+    /// The score of the parts in this order; any smaller number if that is not above `floor`.
+    fn score_of(&mut self, parts: &[Part], order: &[usize], floor: f64) -> f64 {
+        let (mut now, mut from) = (0.0_f32, None);
+        let mut layers = Vec::with_capacity(order.len());
+        for part in order.iter().map(|&k| &parts[k]) {
+            now += self.stops.leg(from, part.stop);
+            if !now.is_finite() {
+                return f64::NEG_INFINITY;
+            }
+            layers.push(self.stops.layer(now));
+            from = Some(part.stop);
+        }
+        let most = |place: usize| f64::from(parts[order[place]].most[layers[place]]);
+        let mut value: f64 = (0..order.len()).map(most).sum();
+        let mut done = 0;
+        while done < order.len() && score(value, now) > floor {
+            let (part, layer) = (&parts[order[done]], layers[done]);
+            let mut sum = part.alone[layer];
+            for &(cell, seen) in &part.shared {
+                let p = seen * self.left[cell as usize];
+                sum += p * self.discounts[self.discount[cell as usize] as usize][layer];
+                self.left[cell as usize] -= p;
+            }
+            self.budget = self.budget.saturating_sub(part.shared.len());
+            value += f64::from(sum) - most(done);
+            done += 1;
+        }
+        for &(cell, _) in order[..done].iter().flat_map(|&k| &parts[k].shared) {
+            self.left[cell as usize] = self.weight[cell as usize];
+        }
+        score(value, now)
+    }
+
+    fn keep_better(&mut self, parts: &[Part], order: &mut Vec<usize>, other: Vec<usize>, best: f64) -> f64 {
+        if self.budget == 0 {
+            return best;
+        }
+        let score = self.score_of(parts, &other, best * (1.0 + 1e-9));
         if score > best * (1.0 + 1e-9) {
-            *tour = other;
+            *order = other;
             return score;
         }
         best
@@ -308,6 +373,37 @@ impl<'a> Tours<'a> {
         let mut gains: Vec<f32> = self.ceilings().iter().map(|layers| layers[0]).collect();
         gains.sort_unstable_by(|a, b| b.total_cmp(a));
         gains.iter().take(self.max_stops).map(|&g| f64::from(g)).sum()
+    }
+}
+
+/// A stop of a tour that is being improved.
+struct Part {
+    stop: usize,
+    most: [f32; LAYERS],     // what it adds, by layer, before any other stop of the tour
+    alone: [f32; LAYERS],    // what it adds, by layer, over cells that no other stop of the tour sees
+    shared: Vec<(u32, f32)>, // the other cells of its footprint (local), and how surely it sees them
+}
+
+/// Value with ties inside a time layer broken towards the tour that ends [s] sooner.
+fn score(value: f64, end: f32) -> f64 {
+    value * (1.0 - 1e-4 * f64::from(end.min(1e3)) / 1e3)
+}
+
+/// Hashes a few bytes, fast; nobody chooses them to collide who could not do worse by lying.
+#[derive(Default)]
+struct Mixer(u64);
+
+impl Hasher for Mixer {
+    fn write(&mut self, bytes: &[u8]) {
+        for word in bytes.chunks(8) {
+            let mut part = [0; 8];
+            part[..word.len()].copy_from_slice(word);
+            self.0 = (self.0.rotate_left(5) ^ u64::from_le_bytes(part)).wrapping_mul(0x517c_c1b7_2722_0a95);
+        }
+    }
+
+    fn finish(&self) -> u64 {
+        self.0
     }
 }
 
