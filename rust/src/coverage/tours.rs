@@ -111,7 +111,20 @@ impl<'a> Tours<'a> {
         }
         let seen = miss.map(|miss| (1.0 - miss) as f32);
         let (left, sums, rows) = (weight.clone(), vec![0.0; discounts.len()], Vec::new());
-        Tours { stops, local, seen, weight, left, discount, discounts, sums, rows, max_stops, held: 0, budget: 0 }
+        Tours {
+            stops,
+            local,
+            seen,
+            weight,
+            left,
+            discount,
+            discounts,
+            sums,
+            rows,
+            max_stops,
+            held: 0,
+            budget: 0,
+        }
     }
 
     fn entries(&self, stop: usize) -> std::ops::Range<usize> {
