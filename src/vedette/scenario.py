@@ -1,0 +1,147 @@
+"""Scenario files: YAML, checked against the type that describes them, every mistake told in one line."""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+from reprlib import repr as repr_short
+from typing import Any, TypeVar
+
+import msgspec
+import yaml
+from msgspec import inspect
+
+from vedette.errors import InputError, nearest_name
+
+T = TypeVar("T")
+
+_MAX_FILE = 1_000_000  # [characters]
+_PLACE = re.compile(r"(?P<what>.*?)(?: - at `\$(?P<place>[^`]*)`)?")
+_STEP = re.compile(r"\.([^.\[\]]+)|\[(\d+)\]")
+_FLOAT = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)[eE][-+]?\d+")
+
+
+class _Loader(yaml.SafeLoader):
+    """Reads 5e-2 as the number that it is, which YAML 1.1 takes for text."""
+
+
+_Loader.add_implicit_resolver("tag:yaml.org,2002:float", _FLOAT, list("-+.0123456789"))
+
+
+def load_scenario(path: Path | str, kind: type[T]) -> T:
+    """Read a YAML file as a value of ``kind``, a ``msgspec.Struct`` that forbids unknown fields.
+
+    Raises:
+        InputError: unreadable, not YAML, a field that is unknown (with the nearest valid name), missing, of
+            the wrong type or out of its range, or a number that is not finite; the line names file and field.
+    """
+    path = Path(path)
+    try:
+        with path.open(encoding="utf-8") as file:
+            content = yaml.load(file.read(_MAX_FILE), _Loader)
+    except OSError as error:
+        raise InputError(f"cannot read scenario {path}: {error.strerror or error}") from error
+    except yaml.MarkedYAMLError as error:
+        line = f", line {error.problem_mark.line + 1}" if error.problem_mark else ""
+        raise InputError(f"{path}{line}: not valid YAML; a scenario is 'field: value' pairs") from error
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        raise InputError(f"{path}: not a YAML text; a scenario is 'field: value' pairs") from error
+    return as_scenario({} if content is None else content, kind, str(path))
+
+
+def as_scenario(content: Any, kind: type[T], where: str) -> T:
+    """Return plain data as a value of ``kind``; `InputError` as of `load_scenario`, beginning with ``where``."""
+    if not isinstance(content, dict):
+        raise InputError(f"{where}: a scenario is 'field: value' pairs; got {repr_short(content)}")
+    _refuse_infinite(content, where, "")
+    try:
+        return msgspec.convert(content, kind)
+    except msgspec.ValidationError as error:
+        raise InputError(f"{where}: {_in_words(str(error), content, kind)}") from None
+
+
+def _refuse_infinite(value: Any, where: str, place: str) -> None:
+    if isinstance(value, dict):
+        for key, item in value.items():
+            _refuse_infinite(item, where, f"{place}.{key}")
+    elif isinstance(value, list):
+        for number, item in enumerate(value):
+            _refuse_infinite(item, where, f"{place}[{number}]")
+    elif isinstance(value, float) and not math.isfinite(value):
+        raise InputError(f"{where}: {place.lstrip('.')}: must be a finite number; got {value}")
+
+
+def _in_words(error: str, content: Any, kind: type[Any]) -> str:
+    """Say what msgspec found, with the field, the value and the nearest valid name."""
+    found = _PLACE.fullmatch(error)
+    assert found is not None
+    what, place = found["what"], found["place"] or ""
+    schema: inspect.Type | None = inspect.type_info(kind)
+    value = content
+    for name, number in _STEP.findall(place):
+        schema = _inside(schema, name, value)
+        value = _item(value, name, number)
+    field = f"{place.lstrip('.')}: " if place else ""
+    if unknown := re.fullmatch(r"Object contains unknown field `(.*)`", what):
+        return f"{field}unknown field {unknown[1]!r}; {nearest_name(unknown[1], _fields(schema, value))}"
+    if re.match(r"Invalid (enum )?value", what):
+        return f"{field}unknown {_last(place)} {value!r}; {nearest_name(str(value), _words(schema))}"
+    what = what[0].lower() + what[1:]
+    return f"{field}{what}" + ("" if isinstance(value, dict) else f"; it is {repr_short(value)}")
+
+
+def _last(place: str) -> str:
+    return re.sub(r"\[\d+\]", "", place).split(".")[-1] or "value"
+
+
+def _item(value: Any, name: str, number: str) -> Any:
+    try:
+        return value[name] if name else value[int(number)]
+    except (KeyError, IndexError, TypeError):
+        return None
+
+
+def _structs(schema: inspect.Type | None) -> list[inspect.StructType]:
+    if isinstance(schema, inspect.UnionType):
+        return [kind for kind in schema.types if isinstance(kind, inspect.StructType)]
+    return [schema] if isinstance(schema, inspect.StructType) else []
+
+
+def _chosen(schema: inspect.Type | None, value: Any) -> list[inspect.StructType]:
+    """Return the structs that a value can be, by its tag if it has one."""
+    structs = _structs(schema)
+    tagged = [
+        s for s in structs if s.tag_field and isinstance(value, dict) and value.get(s.tag_field) == s.tag
+    ]
+    return tagged or structs
+
+
+def _inside(schema: inspect.Type | None, name: str, value: Any) -> inspect.Type | None:
+    """Return the type of a field, or of an item if ``name`` is empty."""
+    if not name:
+        if isinstance(schema, inspect.UnionType):
+            lists = [
+                kind for kind in schema.types if isinstance(kind, inspect.ListType | inspect.VarTupleType)
+            ]
+            schema = lists[0] if lists else None
+        return schema.item_type if isinstance(schema, inspect.ListType | inspect.VarTupleType) else None
+    for struct in _chosen(schema, value):
+        if name == struct.tag_field:
+            return inspect.LiteralType(tuple(str(s.tag) for s in _structs(schema)))
+        for field in struct.fields:
+            if field.encode_name == name:
+                return field.type
+    return None
+
+
+def _fields(schema: inspect.Type | None, value: Any) -> list[str]:
+    structs = _chosen(schema, value)
+    tags = [str(struct.tag_field) for struct in structs if struct.tag_field]
+    return list(dict.fromkeys([*tags, *(field.encode_name for struct in structs for field in struct.fields)]))
+
+
+def _words(schema: inspect.Type | None) -> list[str]:
+    if isinstance(schema, inspect.LiteralType):
+        return [str(word) for word in schema.values]
+    return []
