@@ -51,7 +51,7 @@ def load_scenario(path: Path | str, kind: type[T]) -> T:
 
 
 def as_scenario(content: Any, kind: type[T], where: str) -> T:
-    """Return plain data as a value of ``kind``; `InputError` as of `load_scenario`, beginning with ``where``."""
+    """Return plain data as a value of ``kind``; an `InputError` begins with ``where``."""
     if not isinstance(content, dict):
         raise InputError(f"{where}: a scenario is 'field: value' pairs; got {repr_short(content)}")
     _refuse_infinite(content, where, "")
