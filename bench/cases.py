@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from vedette.errors import InputError
+from vedette.sim.exploration import ExploreSetup
 from vedette.sim.explore import explore, prepare
-from vedette.sim.simulation import Setup
 from vedette.sim.world import World
 from vedette.sim.worlds import office
 from vedette.team import PlatformSpec
@@ -97,7 +97,7 @@ def run_case(case: Case, commit: str) -> Result:
     reach = COARSE_RANGE if coarse else PlatformSpec.range
     specs = [PlatformSpec(name=f"robot-{number}", range=reach) for number in range(1, case.robots + 1)]
     max_time = COARSE_MAX_TIME if coarse else MAX_TIME
-    setup = Setup(planner=case.planner, seed=case.seed, max_time=max_time)
+    setup = ExploreSetup(planner=case.planner, seed=case.seed, max_time=max_time)
     summary = explore(prepare(world, specs, setup)).summary
     return Result(
         *case.key,

@@ -9,8 +9,8 @@ import numpy as np
 
 from vedette.maps import UNKNOWN
 from vedette.record.summary import Spread, Summary
+from vedette.sim.exploration import ExploreSetup
 from vedette.sim.explore import explore, prepare
-from vedette.sim.simulation import Setup
 from vedette.sim.worlds import office
 from vedette.team import PlatformSpec
 
@@ -40,7 +40,7 @@ def run_mission(seed: int, width: float, height: float, robots: int, max_time: f
     """Run the default planner in a generated office of this size [m], all agents in this process."""
     world = office(np.random.default_rng(seed), width, height)
     specs = [PlatformSpec(name=f"robot-{number}") for number in range(1, robots + 1)]
-    simulation = prepare(world, specs, Setup(seed=seed, max_time=max_time))
+    simulation = prepare(world, specs, ExploreSetup(seed=seed, max_time=max_time))
     began = time.process_time()
     report = explore(simulation)
     cpu = time.process_time() - began

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette import Tree
-from vedette.agent import Agent, State, messages, step
+from vedette.agent import Agent, GroundBehaviour, State, messages, step
+from vedette.agent.driving import Driver
 from vedette.agent.effects import Drive, Job, Route, Send, Traffic
 from vedette.agent.events import Event, JobDone, Message, Pose, Scan, TreeChanged
 from vedette.agent.mates import Mate
@@ -59,6 +60,7 @@ class ToyMission:
     prepared: int = 0
     blocked: list[bool] = field(default_factory=list)
     observed: int = 0
+    frozen_at: list[float] = field(default_factory=list)
     put_off: bool = False
     no_way: bool = False
 
@@ -72,14 +74,16 @@ class ToyMission:
     def publish(self, now: float) -> None:
         """Nothing is seen on this mission."""
 
-    def given_up(self) -> list[tuple[int, int, int]]:
+    def notes(self) -> list[tuple[int, int, int]]:
+        """Nothing to tell."""
         return []
 
-    def hear_given_up(self, given_up: Sequence[tuple[int, int, int]]) -> None:
-        pass
+    def hear_notes(self, notes: Sequence[tuple[int, int, int]]) -> None:
+        """Nothing to hear."""
 
-    def freeze(self) -> Float:
+    def freeze(self, t0: float) -> Float:
         """The belief is always the same."""
+        self.frozen_at.append(t0)
         return self.belief
 
     def prepare(self, belief: Float, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float) -> None:
@@ -139,9 +143,16 @@ class ToyMission:
         self.released += 1
         self.strategy = None
 
-    def postponed(self, now: float) -> bool:
-        """As the test says."""
-        return self.put_off
+    def reach(self, now: float) -> None:
+        """Anywhere."""
+
+    def clip(self, belief: Any, impact: Any, reach: Any) -> Any:
+        """Leave nothing out."""
+        return impact
+
+    def nothing_left(self, value: float, now: float) -> bool:
+        """As the value and the test say."""
+        return value <= 0.0 and not self.put_off
 
     def route(
         self, pose: Pose, goal: tuple[float, float], mates: Sequence[Mate], blocked: bool, now: float
@@ -156,13 +167,20 @@ def toy_agent(robot: int, candidates: list[Float], belief: Float, scheme: str = 
     """An agent on a toy mission."""
     fusion = ReplicatedEvidence(robot, 1, FRAME.shape, 4)
     spec = PlatformSpec(name=f"robot-{robot + 1}")
-    return Agent(robot, 1, spec, FRAME, ToyMission(fusion, candidates, belief), scheme)
+    mission = ToyMission(fusion, candidates, belief)
+    return Agent(robot, 1, spec, GroundBehaviour(mission, Driver(robot, spec, FRAME)), scheme)
 
 
 def toy(agent: Agent) -> ToyMission:
     """An agent's mission as the toy it is."""
     assert isinstance(agent.mission, ToyMission)
     return agent.mission
+
+
+def ground(agent: Agent) -> GroundBehaviour:
+    """An agent's behaviour as the one on the ground that it is."""
+    assert isinstance(agent.behaviour, GroundBehaviour)
+    return agent.behaviour
 
 
 def state(agent: Agent) -> State:

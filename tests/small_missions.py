@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from vedette.maps import GridFrame
+from vedette.sim.exploration import ExploreSetup, ExploreSimulation
 from vedette.sim.explore import Report, explore, prepare
-from vedette.sim.simulation import Setup, Simulation
 from vedette.sim.world import World
 from vedette.sim.worlds import maze, office
 from vedette.team import PlatformSpec
@@ -42,9 +42,9 @@ def robots(n: int, **fields: Any) -> list[PlatformSpec]:
     return [PlatformSpec(name=f"robot-{i + 1}", **fields) for i in range(n)]
 
 
-def run(world: World, specs: Sequence[PlatformSpec], **setup: Any) -> tuple[Simulation, Report]:
+def run(world: World, specs: Sequence[PlatformSpec], **setup: Any) -> tuple[ExploreSimulation, Report]:
     """A whole mission, at most 900 s unless the setup says otherwise."""
-    simulation = prepare(world, specs, Setup(**{"max_time": 900.0, **setup}))
+    simulation = prepare(world, specs, ExploreSetup(**{"max_time": 900.0, **setup}))
     return simulation, explore(simulation)
 
 

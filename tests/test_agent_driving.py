@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from agent_team import FRAME, Team, state, toy, toy_agent, toy_team
+from agent_team import FRAME, Team, ground, state, toy, toy_agent, toy_team
 from vedette import Tree
 from vedette.agent import State
 from vedette.agent.driving import YIELD_LIMIT, Driver, remaining
@@ -93,8 +93,8 @@ def home_team() -> Team:
     """Two robots that drove off and are now told that the mission is over."""
     team, _, belief = toy_team(Tree.chain(2))
     for agent in team.agents:
-        agent.return_home = True
-        agent.home = (2.0, 2.0)
+        ground(agent).return_home = True
+        ground(agent).home = (2.0, 2.0)
     belief[:] = 0.0
     team.run(8.0)
     return team
@@ -105,7 +105,7 @@ def test_a_finished_robot_drives_home_and_is_done_there() -> None:
     agent = team.agents[0]
     assert state(agent) is State.RETURNING
     assert last_goal(team.driven[0][-1]) == (2.0, 2.0)
-    agent.home = (1.1, 1.1)  # as if it had driven: it is there now
+    ground(agent).home = (1.1, 1.1)  # as if it had driven: it is there now
     team.tell(0, Arrived())
     assert agent.done
 
@@ -135,11 +135,11 @@ def test_a_robot_that_is_done_stays_done_when_it_has_to_make_room_too_long() -> 
     belief[:] = 0.0
     team.run(8.0)
     agent = team.agents[0]
-    agent.driver.refuge = np.array([(1.0, 1.0)])
-    agent.driver.yielding_since = team.now
+    ground(agent).driver.refuge = np.array([(1.0, 1.0)])
+    ground(agent).driver.yielding_since = team.now
     team.tell(0, Stuck())
     assert agent.done
-    assert not agent.driver.yielding
+    assert not ground(agent).driver.yielding
 
 
 def corridor(width: int = 8) -> NDArray[np.bool_]:
@@ -182,9 +182,9 @@ def test_no_room_is_made_for_a_mate_that_has_been_silent() -> None:
 def test_a_robot_that_makes_room_too_long_looks_for_other_work() -> None:
     team = driving_team()
     agent = team.agents[0]
-    agent.state = State.YIELDING
-    agent.driver.refuge = np.array([(1.0, 1.0)])
-    agent.driver.yielding_since = team.now - YIELD_LIMIT - 1.0
+    ground(agent).state = State.YIELDING
+    ground(agent).driver.refuge = np.array([(1.0, 1.0)])
+    ground(agent).driver.yielding_since = team.now - YIELD_LIMIT - 1.0
     team.run(0.6)
     assert toy(agent).released == 1
 

@@ -12,7 +12,7 @@ from agent_team import Team, nested_kind, toy, toy_team
 from vedette import Tree
 from vedette.agent import messages
 from vedette.agent.effects import Traffic
-from vedette.agent.events import Message, Pose, Scan
+from vedette.agent.events import Message, Pose, Scan, Sensed
 from vedette.agent.messages import Beacon
 
 BEACON = Beacon(1, 1, 1, 1100, 100, 0, 0, 20, 50, (0, 0, 100, 0))
@@ -128,7 +128,7 @@ def test_a_robot_that_is_no_neighbour_is_ignored() -> None:
         BEACON,
         messages.Call(1),
         messages.Begin(1, 99),
-        messages.Freeze(1, 99, 0),
+        messages.Freeze(1, 99, 0, 0),
         messages.Evidence(b"x"),
     ):
         team.tell(0, Message(2, messages.encode(message)))
@@ -137,7 +137,7 @@ def test_a_robot_that_is_no_neighbour_is_ignored() -> None:
     assert [p for p in team.log[before[0] :] if p.traffic is not Traffic.BEACONS and p.sender == 0] == []
 
 
-@pytest.mark.parametrize("message", [messages.Begin(1, 99), messages.Freeze(1, 1, 0)])
+@pytest.mark.parametrize("message", [messages.Begin(1, 99), messages.Freeze(1, 1, 0, 0)])
 def test_only_the_parent_begins_and_freezes_a_round(message: messages.Wire) -> None:
     team, _, _ = toy_team(Tree.chain(3))
     team.run_round()
@@ -157,7 +157,7 @@ def test_a_repeated_freeze_does_not_change_the_belief_of_the_round() -> None:
     assert before is not None
     belief = before.belief
     toy(child).belief = belief + 1.0
-    team.tell(1, Message(0, messages.encode(messages.Freeze(*child.rounds.stamp, 12345))))
+    team.tell(1, Message(0, messages.encode(messages.Freeze(*child.rounds.stamp, 0, 12345))))
     assert child.rounds._round is before
     assert before.belief is belief
     assert toy(child).prepared == 1
@@ -216,3 +216,14 @@ def test_a_robot_maps_only_when_its_mates_have_been_heard_or_after_a_while() -> 
         deaf.tell(0, Pose(1.0, 1.0, 0.0), scan)
         deaf.run(0.1)
     assert 5 <= toy(deaf.agents[0]).observed <= 15
+
+
+def test_what_any_other_sensor_saw_reaches_the_mission_as_a_scan_does() -> None:
+    team, _, _ = toy_team(Tree.chain(1))
+    agent = team.agents[0]
+    team.tell(0, Sensed("too early, for no pose has come", 0.0))
+    assert toy(agent).observed == 0
+    team.run(0.2)
+    before = toy(agent).observed
+    team.tell(0, Sensed("something", team.now))
+    assert toy(agent).observed == before + 1

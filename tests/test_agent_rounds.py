@@ -43,6 +43,14 @@ def test_a_later_round_starts_from_the_strategies_in_hand_and_keeps_an_equilibri
     assert team.choices() == first
 
 
+def test_all_freeze_a_round_with_the_same_time_by_the_roots_clock() -> None:
+    team, _, _ = toy_team(Tree.chain(5))
+    team.run_round()
+    [t0] = {t0 for agent in team.agents for t0 in toy(agent).frozen_at}
+    [sent] = {post.time for post in team.log if nested_kind(post) == "Freeze" and post.sender == 0}
+    assert t0 == pytest.approx(sent, abs=5e-4)
+
+
 @pytest.mark.parametrize("kind", ["Begin", "Flushed", "Freeze", "Gather", "Token", "Stop"])
 @pytest.mark.parametrize("n", [2, 5])
 def test_a_round_that_loses_a_message_ends_by_time_out_and_a_later_one_succeeds(kind: str, n: int) -> None:

@@ -113,7 +113,7 @@ def test_two_robots_that_exchange_hold_the_same_map_and_freeze_the_same_belief()
     exchange(one, other)
     assert one.fusion.digest == other.fusion.digest
     np.testing.assert_array_equal(one.fusion.counts, (one.counts + other.counts).ravel())
-    a, b = one.freeze(), other.freeze()
+    a, b = one.freeze(0.0), other.freeze(0.0)
     for name in ("classes", "weights", "frontier_cells", "frontier_starts", "counts"):
         np.testing.assert_array_equal(getattr(a, name), getattr(b, name))
     known = np.count_nonzero(one.fusion.classes != UNKNOWN)
@@ -121,7 +121,7 @@ def test_two_robots_that_exchange_hold_the_same_map_and_freeze_the_same_belief()
 
 
 def prepared(mission: Exploration, now: float = 0.0) -> None:
-    belief = mission.freeze()
+    belief = mission.freeze(0.0)
     mission.prepare(belief, HERE, [], False, now)
     mission.strategy = mission.reply(belief, mission.nothing(belief), mission.strategy)
 

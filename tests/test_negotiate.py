@@ -61,7 +61,7 @@ def test_a_message_survives_its_bytes() -> None:
     tally, outcome = Tally(3, 2, 1.5, float("inf"), 9, 4.0), Outcome(1.0, None, 2, True, 0)
     mu = np.array([0.5, 0.0])
     sent: list[Message[Float]] = [
-        Gather(mu, 4, 2.0),
+        Gather(mu, 4, 2.0, 1.5),
         Token(mu, tally),
         Token(None, tally),
         Up(mu, 1.0, float("inf"), (0, 2)),
@@ -80,14 +80,14 @@ def test_a_message_without_its_impact_takes_at_most_sixty_bytes() -> None:
     most = 2**16
     tally = Tally(most, most, 1e300, 1e300, most, 1e300)
     assert len(encode(Token(None, tally), Plain())) <= 60
-    assert len(encode(Gather(None, most, 1e300), Plain())) <= 60
+    assert len(encode(Gather(None, most, 1e300, 1e300), Plain())) <= 60
     assert len(encode(Stop(Outcome(1e300, 1e300, most, False, most), most), Plain())) <= 60
 
 
 def test_malformed_bytes_are_refused() -> None:
     rng = np.random.default_rng(1)
-    good = encode(Gather(np.ones(3), 4, 2.0), Plain())
-    negative = encode(Gather(np.ones(3), -4, 2.0), Plain())
+    good = encode(Gather(np.ones(3), 4, 2.0, 1.5), Plain())
+    negative = encode(Gather(np.ones(3), -4, 2.0, 1.5), Plain())
     junk = [good[:-3], good + b"\0", negative, b"", *(rng.bytes(int(k)) for k in rng.integers(40, size=300))]
     for data in junk:
         with pytest.raises(InputError, match="malformed"):

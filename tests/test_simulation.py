@@ -9,10 +9,11 @@ from small_missions import check_complete, drawn, robots, run, small_maze, small
 from vedette.agent.effects import Send, Traffic
 from vedette.domains.mapping.planners import PLANNERS
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
+from vedette.negotiation import SCHEMES
+from vedette.sim.exploration import FUSIONS, ExploreSetup
 from vedette.sim.explore import Observer, explore, prepare
 from vedette.sim.links import Links
 from vedette.sim.score import Reference
-from vedette.sim.simulation import FUSIONS, SCHEMES, Setup
 from vedette.sim.world import World
 from vedette.team import PlatformSpec
 
@@ -74,7 +75,7 @@ def test_when_one_robot_dies_the_others_complete_the_mission(victim: int) -> Non
 
 
 def test_what_a_dead_robot_has_told_still_counts() -> None:
-    simulation = prepare(small_maze(), robots(2), Setup(kills=((1, 15.0),), max_time=15.5))
+    simulation = prepare(small_maze(), robots(2), ExploreSetup(kills=((1, 15.0),), max_time=15.5))
     report = explore(simulation)
     assert report.summary.coverage > 0.0
     before = simulation.missions[0].fusion.classes != UNKNOWN
@@ -153,7 +154,7 @@ def test_given_starts_are_kept() -> None:
         PlatformSpec(name="b", start=(8.0, 2.0)),
         PlatformSpec(name="c"),
     ]
-    simulation = prepare(drawn(ROOM), specs, Setup())
+    simulation = prepare(drawn(ROOM), specs, ExploreSetup())
     np.testing.assert_allclose(simulation.starts[:2], [(2.0, 1.0, np.pi / 2), (8.0, 2.0, 0.0)])
     assert simulation.pose(0) == pytest.approx((2.0, 1.0, np.pi / 2))
 
@@ -165,7 +166,7 @@ def test_a_dead_robot_in_a_door_is_planned_round() -> None:
     ]
     simulation, report = run(drawn(TWO_DOORS), specs, kills=((0, 1.0),))
     check_complete(report)
-    assert simulation.bodies.travelled[1] > 5.0
+    assert simulation.robots.bodies.travelled[1] > 5.0
 
 
 def test_a_frame_whose_origin_lies_elsewhere_makes_no_difference() -> None:
@@ -189,7 +190,7 @@ def test_the_same_seed_gives_the_same_mission_and_another_seed_another() -> None
 
 
 def test_stopping_a_mission_ends_it_as_interrupted_with_all_its_figures() -> None:
-    simulation = prepare(small_office(), robots(2), Setup())
+    simulation = prepare(small_office(), robots(2), ExploreSetup())
     observer = Observer(
         simulation, Reference(simulation.world, simulation.specs, simulation.starts), sinks=()
     )

@@ -179,8 +179,8 @@ def test_messages_out_of_turn_are_refused_and_late_ones_ignored() -> None:
     tally = Tally(turns=0, quiet=0, value=0.0, slack=0.0, size=3, ceiling=1.0)
     mu = np.ones(2)
     cases: list[tuple[int, Message[Float], str]] = [
-        (7, Gather(mu, 1, 0.0), "7, who is not a neighbour"),
-        (1, Gather(None, 1, 0.0), "never sent"),
+        (7, Gather(mu, 1, 0.0, 0.0), "7, who is not a neighbour"),
+        (1, Gather(None, 1, 0.0, 0.0), "never sent"),
         (1, Token(mu, tally), "Token from 1 is out of turn"),
         (1, Down(mu), "Down from 1 is out of turn"),
     ]
@@ -188,9 +188,9 @@ def test_messages_out_of_turn_are_refused_and_late_ones_ignored() -> None:
         with pytest.raises(InputError, match=words):
             node().receive(sender, message)
     root = node()
-    root.receive(1, Gather(mu, 1, 0.0))
+    root.receive(1, Gather(mu, 1, 0.0, 0.0))
     with pytest.raises(InputError, match="Gather from 1 is out of turn"):
-        root.receive(1, Gather(mu, 1, 0.0))
+        root.receive(1, Gather(mu, 1, 0.0, 0.0))
     over = deliver(
         nodes := token_nodes([Chooser(Coverage(), np.ones(2), [mu]) for _ in range(2)], Tree.chain(2)),
         np.random.default_rng(0),

@@ -3,6 +3,7 @@
 from vedette.errors import InputError
 from vedette.negotiation import Negotiation, Tree, negotiate
 from vedette.problem import (
+    Clippable,
     Codec,
     CountedCoverage,
     Coverage,
@@ -17,6 +18,7 @@ from vedette.problem import (
 )
 
 __all__ = [
+    "Clippable",
     "Codec",
     "CountedCoverage",
     "Coverage",

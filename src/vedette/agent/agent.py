@@ -12,17 +12,14 @@ from math import ceil
 
 import numpy as np
 
-from vedette.agent import behaviour, messages
+from vedette.agent import messages
 from vedette.agent.effects import Effect, Send, Traffic
-from vedette.agent.events import Arrived, Event, JobDone, Message, Pose, Scan, Stuck, TreeChanged
+from vedette.agent.events import Arrived, Event, JobDone, Message, Pose, Scan, Sensed, Stuck, TreeChanged
 from vedette.agent.messages import Beacon
-from vedette.agent.state import Agent, State
+from vedette.agent.state import Agent
 
 BEACON_PERIOD = 0.25  # [s]
-LOOK_OUT_PERIOD = 0.5  # [s]
-CHECK_PERIOD = 1.0  # of the present goal's point [s]
 SHARE_PERIOD = 2.0  # evidence travels at least so often, rounds or not [s]
-LISTEN = 3.0  # a robot waits at most so long for its mates' first beacons before it maps [s]
 
 
 def step(agent: Agent, events: Iterable[Event], now: float) -> list[Effect]:
@@ -40,16 +37,11 @@ def _take(agent: Agent, event: Event, now: float) -> list[Effect]:
         case Message(sender, payload):
             return _guarded(agent, lambda: _hear(agent, sender, messages.decode(payload), now))
         case Pose():
-            agent.pose = event
-            agent.home = agent.home or (event.x, event.y)
-        case Scan() if agent.listening:
-            agent.held = event
-        case Scan() if agent.pose is not None:
-            agent.mission.observe(event, agent.pose, agent.mates.all(), now)
-        case Arrived():
-            return behaviour.arrived(agent, now)
-        case Stuck():
-            return behaviour.stuck(agent, now)
+            agent.pose, agent.posed = event, now
+        case Scan() | Sensed():
+            agent.behaviour.sense(agent, event, now)
+        case Arrived() | Stuck():
+            return agent.behaviour.moved(agent, event, now)
         case JobDone(key):
             return _prepared(agent, key, now)
         case TreeChanged():
@@ -101,27 +93,17 @@ def _hear(agent: Agent, sender: int, message: messages.Wire, now: float) -> list
 
 def _go_on(agent: Agent, pose: Pose, now: float) -> list[Effect]:
     """Do what time and the latest decisions ask for."""
-    if agent.listening:
-        _listen(agent, pose, now)
-    wakeful = not agent.listening and not agent.finished
-    effects = agent.rounds.tick(now) if wakeful or agent.rounds.busy else []
-    if agent.redirect:
-        agent.redirect = False
-        effects += behaviour.follow_decision(agent, pose, now)
-    if agent.rounds.frozen:
-        effects.append(agent.rounds.preparation(pose, agent.mates.all(), now))
-    if (
-        agent.state is State.RETURNING
-        and agent.driver.standing
-        and agent.is_due("home", behaviour.HOME_AGAIN, now)
-    ):
-        effects += behaviour.go_home(agent, pose, now, blocked=False)
+    awake = agent.behaviour.wake(agent, pose, now) and not agent.finished
+    effects = agent.rounds.tick(now) if awake or agent.rounds.busy else []
+    news, agent.news = agent.news, False
+    effects += agent.behaviour.follow(agent, pose, now, news)
+    belief = agent.rounds.frozen
+    if belief is not None:
+        start = agent.behaviour.departure(agent, pose, belief)
+        effects.append(agent.rounds.preparation(start, agent.mates.all(), now))
     if agent.is_due("beacon", BEACON_PERIOD, now):
         effects += _beacon(agent, pose)
-    if agent.is_due("look out", LOOK_OUT_PERIOD, now):
-        effects += behaviour.look_out(agent, pose, now)
-    if agent.is_due("check", CHECK_PERIOD, now) and agent.state is State.DRIVING and agent.mission.served():
-        agent.rounds.want()
+    effects += agent.behaviour.look_out(agent, pose, now)
     if agent.is_due("share", SHARE_PERIOD, now) and not agent.rounds.busy:
         agent.mission.publish(now)
         for neighbour in agent.rounds.tree.neighbours:
@@ -129,19 +111,8 @@ def _go_on(agent: Agent, pose: Pose, now: float) -> list[Effect]:
     return effects
 
 
-def _listen(agent: Agent, pose: Pose, now: float) -> None:
-    """Begin to map once the mates' places are known, so that they are not taken for obstacles."""
-    until = agent.due.setdefault("listen", now + LISTEN)
-    if len(agent.mates.all()) < agent.rounds.tree.size - 1 and now < until:
-        return
-    agent.listening = False
-    if agent.held is not None:
-        agent.mission.observe(agent.held, pose, agent.mates.all(), now)
-        agent.held = None
-
-
 def _beacon(agent: Agent, pose: Pose) -> list[Effect]:
-    path = agent.driver.beaconed(pose)
+    path = agent.behaviour.ahead(pose)
     offsets = np.rint((path - (pose.x, pose.y)) * 100.0).astype(int)
     agent.beacons += 1
     beacon = Beacon(
@@ -152,8 +123,8 @@ def _beacon(agent: Agent, pose: Pose) -> list[Effect]:
         round(pose.y * 100),
         round(pose.heading * 1000),
         round(pose.slowed * 10),
-        ceil(agent.spec.radius * 100),
-        ceil(agent.spec.speed * 100),
+        ceil(agent.body.radius * 100),
+        max(ceil(agent.body.speed * 100), 1),
         tuple(offsets.ravel().tolist()),
     )
     return _beacon_to(agent, beacon, agent.rounds.tree.neighbours)

@@ -10,6 +10,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.agent.flight import FlightPlan
+
 
 class Traffic(Enum):
     """What a message is for; traffic is counted by kind."""
@@ -44,6 +46,16 @@ class Drive:
 
 
 @dataclass(frozen=True, eq=False)
+class Fly:
+    """Fly a plan from its start on, and until then what was planned before; circle when it is over.
+
+    The circle is a turn at the vehicle's greatest rate, counter-clockwise (``flight.Flight``).
+    """
+
+    plan: FlightPlan
+
+
+@dataclass(frozen=True, eq=False)
 class Job:
     """Heavy computing, to run outside ``step``; ``JobDone(key)`` comes back when it has."""
 
@@ -51,4 +63,5 @@ class Job:
     run: Callable[[], None]
 
 
-Effect: TypeAlias = Send | Drive | Job
+Motion: TypeAlias = Drive | Fly
+Effect: TypeAlias = Send | Motion | Job

@@ -35,6 +35,14 @@ class Scan:
     ranges: NDArray[np.float64]  # (B,) [m]; inf where nothing came back
 
 
+@dataclass(frozen=True, eq=False)
+class Sensed:
+    """What any other sensor saw, in the terms of the mission."""
+
+    data: object
+    time: float  # [s]
+
+
 @dataclass(frozen=True)
 class Arrived:
     """The robot is at the end of the path it was given."""
@@ -62,4 +70,4 @@ class TreeChanged:
     size: int  # robots on the tree
 
 
-Event: TypeAlias = Message | Pose | Scan | Arrived | Stuck | JobDone | TreeChanged
+Event: TypeAlias = Message | Pose | Scan | Sensed | Arrived | Stuck | JobDone | TreeChanged

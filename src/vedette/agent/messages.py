@@ -9,8 +9,11 @@ from msgspec import Meta
 
 Count = Annotated[int, Meta(ge=0, le=2**53)]
 Place = Annotated[int, Meta(ge=-(2**31), le=2**31)]  # [cm]
-GivenUp = tuple[Place, Place, Count]  # x, y [cm], and how much was unknown there when it was given up
-Told = Annotated[tuple[GivenUp, ...], Meta(max_length=512)]
+Note = tuple[Place, Place, Count]  # x, y [cm], and a number to it: what they mean is the mission's
+Notes = Annotated[tuple[Note, ...], Meta(max_length=512)]
+Metre = Annotated[int, Meta(ge=-(2**31), le=2**31)]
+Area = tuple[Metre, Metre, Metre, Metre]  # lowest x, lowest y, highest x, highest y
+Areas = Annotated[tuple[Area, ...], Meta(max_length=8)]
 Offset = Annotated[int, Meta(ge=-2000, le=2000)]  # from the robot [cm]; its path's next metres are few
 
 
@@ -25,12 +28,12 @@ class Beacon(msgspec.Struct, frozen=True, array_like=True, tag=0):
     heading: Place
     slowed: Count  # time without progress [0.1 s]
     radius: Annotated[int, Meta(ge=1, le=1000)]
-    speed: Annotated[int, Meta(ge=1, le=10000)]  # at most [cm/s]
+    speed: Annotated[int, Meta(ge=1, le=100_000)]  # at most [cm/s]
     path: Annotated[tuple[Offset, ...], Meta(max_length=1000)]  # x, y, x, y, ...: its next few metres
 
 
 class Evidence(msgspec.Struct, frozen=True, array_like=True, tag=1):
-    """A neighbour's news for the team map."""
+    """A neighbour's news of what the team has seen."""
 
     data: bytes
 
@@ -53,7 +56,8 @@ class Flushed(msgspec.Struct, frozen=True, array_like=True, tag=4):
 
     epoch: Count
     sequence: Count
-    given_up: Told = ()  # places that visits by this part of the tree did not change
+    notes: Notes = ()  # of this part of the tree
+    reach: Areas | None = None  # of this part of the tree; None: anywhere
 
 
 class Freeze(msgspec.Struct, frozen=True, array_like=True, tag=5):
@@ -61,8 +65,10 @@ class Freeze(msgspec.Struct, frozen=True, array_like=True, tag=5):
 
     epoch: Count
     sequence: Count
-    digest: int  # of the root's belief
-    given_up: Told = ()  # places that anybody's visit did not change
+    t0: Count  # the root's clock [ms]
+    digest: int  # of the root's evidence
+    notes: Notes = ()  # of the whole team
+    reach: Areas | None = None  # of all but the receiver's part of the tree; None: anywhere
 
 
 class Negotiate(msgspec.Struct, frozen=True, array_like=True, tag=6):

@@ -1,4 +1,4 @@
-"""What a domain gives the agent: a belief to keep, a platform to plan for, goals to drive to."""
+"""What a domain gives the agent: a belief to keep, a platform to plan for, strategies to carry out."""
 
 from __future__ import annotations
 
@@ -6,18 +6,38 @@ from collections.abc import Hashable, Sequence
 from typing import Any, Protocol
 
 from vedette.agent.effects import Route
-from vedette.agent.events import Pose, Scan
+from vedette.agent.events import Pose
+from vedette.agent.flight import FlightPlan
 from vedette.agent.mates import Mate
-from vedette.agent.messages import GivenUp
-from vedette.fusion import Fusion
-from vedette.problem import Codec
+from vedette.agent.messages import Note
+from vedette.problem import Codec, Reach
+
+
+class Exchange(Protocol):
+    """How a robot shares evidence with its neighbours on the tree; payloads may be lost or repeated."""
+
+    @property
+    def digest(self) -> int:
+        """Equal for two robots iff they hold the same evidence."""
+
+    def set_neighbours(self, neighbours: Sequence[int]) -> None:
+        """Exchange with exactly these robots from now on."""
+
+    def outgoing(self, neighbour: int, now: float) -> bytes | None:
+        """Return the next payload for a neighbour, or None if there is no news."""
+
+    def receive(self, neighbour: int, payload: bytes, now: float) -> object:
+        """Take in a payload (ValueError if malformed)."""
 
 
 class Mission(Protocol):
-    """One robot's share of a mission. Beliefs, strategies and impacts are the domain's own (Any)."""
+    """One robot's share of a mission, as rounds need it.
+
+    Beliefs, strategies, impacts and what is observed are the domain's own (Any).
+    """
 
     @property
-    def fusion(self) -> Fusion:
+    def fusion(self) -> Exchange:
         """How this robot shares evidence."""
 
     @property
@@ -26,25 +46,30 @@ class Mission(Protocol):
 
     strategy: Any  # what the robot is doing; kept between rounds
 
-    def observe(self, scan: Scan, pose: Pose, mates: Sequence[Mate], now: float) -> None:
-        """Take a scan into the robot's own evidence."""
+    def observe(self, seen: Any, pose: Pose, mates: Sequence[Mate], now: float) -> None:
+        """Take a ``Scan`` or what was ``Sensed`` into the robot's own evidence."""
 
     def publish(self, now: float) -> None:
-        """Put the robot's own evidence where fusion sends it from."""
+        """Put the robot's own evidence where fusion sends it from; the only call that may do so."""
 
-    def given_up(self) -> Sequence[GivenUp]:
-        """Return the places that this robot's visits did not change, to be told to the team."""
+    def notes(self) -> Sequence[Note]:
+        """Return what this robot has to tell the whole team within a round, beside its evidence."""
 
-    def hear_given_up(self, given_up: Sequence[GivenUp]) -> None:
-        """Take in the places that anybody's visit did not change: all of them, anew in each round."""
+    def hear_notes(self, notes: Sequence[Note]) -> None:
+        """Take in what anybody had to tell: all of it, anew in each round."""
 
-    def freeze(self) -> Any:
-        """Return the belief of a round: a snapshot of what the team knows."""
+    def freeze(self, t0: float) -> Any:
+        """Return the belief of a round: a snapshot of what the team knows.
+
+        ``t0``: when the round froze [s], by the root's clock and the same for the whole team; from it
+        (``flight.start_step``) everybody gets the same steps to plan for.
+        """
 
     def prepare(self, belief: Any, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float) -> None:
         """Do the slow part of planning, the present strategy restated for the round included.
 
-        ``blocked``: the robot cannot go on as it would, so that its mates count as obstacles.
+        ``pose``: where the robot will be when its strategy starts. ``blocked``: the robot cannot go on as it
+        would, so that its mates count as obstacles.
         """
 
     def key(self, strategy: Any) -> Hashable:
@@ -68,6 +93,22 @@ class Mission(Protocol):
     def slack(self, belief: Any, base: Any) -> float:
         """Return the most that a strategy of this robot adds to ``base``."""
 
+    def reach(self, now: float) -> Reach | None:
+        """Return where this robot can make a difference in a round that begins now; None: anywhere."""
+
+    def clip(self, belief: Any, impact: Any, reach: Reach) -> Any:
+        """Return what of an impact can matter to robots that make a difference only within ``reach``."""
+
+    def nothing_left(self, value: float, now: float) -> bool:
+        """Tell whether a decision worth ``value``, all knowing the same and unhindered, leaves nothing to do.
+
+        Two such rounds in a row end the mission.
+        """
+
+
+class GroundMission(Mission, Protocol):
+    """A mission whose strategies are places to drive to, one after another."""
+
     def goal(self) -> tuple[float, float] | None:
         """Return where the present strategy wants the robot next [m], team frame; None: nowhere."""
 
@@ -80,10 +121,17 @@ class Mission(Protocol):
     def release(self, now: float) -> None:
         """Give up the present strategy: the robot cannot carry it out."""
 
-    def postponed(self, now: float) -> bool:
-        """Tell whether something worth doing was put off for a while: the mission is not over then."""
-
     def route(
         self, pose: Pose, goal: tuple[float, float], mates: Sequence[Mate], blocked: bool, now: float
     ) -> Route | None:
         """Return a way to a goal on the newest map, or None."""
+
+
+class FlightMission(Mission, Protocol):
+    """A mission whose strategies are turn rates, held for a step each from a common time on."""
+
+    def start(self, belief: Any) -> float:
+        """Return when strategies planned on a belief start [s]."""
+
+    def plan(self) -> FlightPlan | None:
+        """Return the present strategy as turn rates; None: circle."""

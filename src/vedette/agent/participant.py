@@ -6,6 +6,7 @@ from collections.abc import Hashable
 from typing import Any
 
 from vedette.agent.mission import Mission
+from vedette.problem import Reach
 
 
 class RoundParticipant:
@@ -65,3 +66,7 @@ class RoundParticipant:
     def slack(self, base: Any) -> float:
         """Most that any strategy of this robot would add to ``base``."""
         return self._mission.slack(self._belief, base)
+
+    def clip(self, impact: Any, reach: Reach) -> Any:
+        """Return what of an impact can matter within ``reach``."""
+        return self._mission.clip(self._belief, impact, reach)

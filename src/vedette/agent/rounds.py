@@ -11,19 +11,22 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+from msgspec import structs
+
 from vedette.agent.effects import Effect, Job, Send, Traffic
 from vedette.agent.events import Pose, TreeChanged
 from vedette.agent.mates import Mate
-from vedette.agent.messages import Begin, Call, Evidence, Flushed, Freeze, GivenUp, Negotiate, encode
+from vedette.agent.messages import Areas, Begin, Call, Evidence, Flushed, Freeze, Negotiate, Note, encode
 from vedette.agent.mission import Mission
+from vedette.agent.pace import Pace
 from vedette.agent.participant import RoundParticipant
+from vedette.agent.reaches import reaches_to_tell
 from vedette.negotiation import JacobiNode, Negotiator, Outcome, TokenNode, messages
+from vedette.problem import Reach
 
-INTERVAL = 1.0  # least time between the ends and beginnings of rounds [s]
-PERIOD = 4.0  # a round at least so often while the mission lasts [s]
 CALL_AGAIN = 1.0  # a call not answered is repeated after so long [s]
 MAX_SWEEPS = 12
-MOST_TOLD = 512  # places given up, in one message
+MOST_NOTES = 512  # in one message
 
 
 def patience(size: int) -> float:
@@ -48,7 +51,8 @@ class _Round:
     sequence: int
     heard: float  # when it last went on [s]
     waiting: set[int]  # children that have not flushed yet
-    given_up: set[GivenUp] = field(default_factory=set)  # told by children
+    notes: set[Note] = field(default_factory=set)  # told by children
+    reaches: dict[int, Reach | None] = field(default_factory=dict)  # beyond each neighbour, as it told
     belief: Any = None
     approximate: bool = False
     preparing: bool = False
@@ -65,6 +69,7 @@ class Rounds:
     mission: Mission
     scheme: str  # "token" or "jacobi"
     decided: Callable[[Decision], None]
+    pace: Pace = field(default_factory=Pace)
     tree: TreeChanged = field(default_factory=lambda: TreeChanged(0, None, (), 1))
     decisions: int = 0
     sweeps: int = 0
@@ -75,6 +80,7 @@ class Rounds:
     _sequence: int = 0
     _wanted: bool = False
     _called: float = -1e9
+    _began: float = -1e9
     _ended: float = -1e9
 
     @property
@@ -105,12 +111,13 @@ class Rounds:
         if self._round and now > self._round.heard + late * patience(self.tree.size):
             self._end(now)
             self._wanted = True
-        if self._round or now < self._ended + INTERVAL:
+        if self._round or now < self._ended + self.pace.interval:
             return []
         if self.tree.parent is None:
-            return self._begin(now) if self._wanted or now >= self._ended + PERIOD else []
+            wanted = self._wanted or now >= self._ended + self.pace.period
+            return self._begin(now) if wanted and self.pace.on_beat(self._began, now) else []
         # A root that takes the mission for finished begins no round: who does not, calls for one.
-        wanted = self._wanted or now >= self._ended + 2.0 * PERIOD
+        wanted = self._wanted or now >= self._ended + self.pace.overdue
         if wanted and now >= self._called + CALL_AGAIN:
             self._called = now
             return [self._say(self.tree.parent, Call(self.tree.epoch))]
@@ -133,6 +140,7 @@ class Rounds:
         if message.epoch != self.tree.epoch or message.sequence == self._sequence or old:
             return []
         self._sequence = message.sequence
+        self._began = now
         self._wanted = False
         self._round = _Round(message.sequence, now, set(self._children))
         self.mission.publish(now)
@@ -147,7 +155,8 @@ class Rounds:
         if sender not in self._round.waiting:
             return []
         self._round.waiting.discard(sender)
-        self._round.given_up.update(message.given_up)
+        self._round.notes.update(message.notes)
+        self._round.reaches[sender] = message.reach
         self._round.heard = now
         return self._flush(now)
 
@@ -155,11 +164,15 @@ class Rounds:
         assert self._round
         if self._round.waiting or self._round.belief is not None:
             return []
-        told = tuple(sorted(self._round.given_up.union(self.mission.given_up())))[:MOST_TOLD]
+        notes = tuple(sorted(self._round.notes.union(self.mission.notes())))[:MOST_NOTES]
         if self.tree.parent is None:
-            return self._freeze(self.mission.fusion.digest, told, now)
+            t0 = round(1000.0 * now)
+            digest = self.mission.fusion.digest
+            return self._freeze(Freeze(self.tree.epoch, self._round.sequence, t0, digest, notes), now)
         news = self.news(self.tree.parent, now)
-        return [*news, self._say(self.tree.parent, Flushed(self.tree.epoch, self._round.sequence, told))]
+        reach = self._reaches(now)[self.tree.parent]
+        flushed = Flushed(self.tree.epoch, self._round.sequence, notes, reach)
+        return [*news, self._say(self.tree.parent, flushed)]
 
     def freeze(self, message: Freeze, now: float) -> list[Effect]:
         """Everything known has arrived: freeze it."""
@@ -168,27 +181,34 @@ class Rounds:
         assert self._round
         if self._round.belief is not None:
             return []
-        return self._freeze(message.digest, message.given_up, now)
+        return self._freeze(message, now)
 
-    def _freeze(self, digest: int, given_up: tuple[GivenUp, ...], now: float) -> list[Effect]:
+    def _freeze(self, message: Freeze, now: float) -> list[Effect]:
         assert self._round
         effects: list[Effect] = []
         self._round.heard = now
+        if self.tree.parent is not None:
+            self._round.reaches[self.tree.parent] = message.reach
+        told = self._reaches(now)
         for child in self._children:
             effects += self.news(child, now)
-            effects.append(self._say(child, Freeze(self.tree.epoch, self._round.sequence, digest, given_up)))
-        self._round.approximate = self.mission.fusion.digest != digest
-        self.mission.hear_given_up(given_up)
-        self._round.belief = self.mission.freeze()
+            effects.append(self._say(child, structs.replace(message, reach=told[child])))
+        self._round.approximate = self.mission.fusion.digest != message.digest
+        self.mission.hear_notes(message.notes)
+        self._round.belief = self.mission.freeze(message.t0 / 1000.0)
         return effects
 
+    def _reaches(self, now: float) -> dict[int, Areas | None]:
+        assert self._round
+        return reaches_to_tell(self.mission.reach(now), self._round.reaches, self.tree.neighbours)
+
     @property
-    def frozen(self) -> bool:
-        """Tell whether a belief is frozen and nothing has been done with it yet."""
-        return self._round is not None and self._round.belief is not None and not self._round.preparing
+    def frozen(self) -> Any | None:
+        """The round's belief, if it is frozen and nothing has been done with it yet."""
+        return None if self._round is None or self._round.preparing else self._round.belief
 
     def preparation(self, pose: Pose, mates: list[Mate], now: float) -> Job:
-        """Return the job to do between freezing and negotiating."""
+        """Return the job to do between freezing and negotiating; ``pose``: where the strategy will start."""
         round_ = self._round
         assert round_
         round_.preparing, round_.blocked = True, self.blocked
@@ -206,9 +226,12 @@ class Rounds:
         assert round_
         round_.heard = now
         round_.participant = RoundParticipant(self.mission, round_.belief)
-        node = TokenNode if self.scheme == "token" else JacobiNode
-        round_.negotiator = node(
-            self.tree.neighbours, self.tree.parent, round_.participant, max_sweeps=MAX_SWEEPS
+        links, parent, own = self.tree.neighbours, self.tree.parent, round_.participant
+        bounded = {k: reach for k, reach in round_.reaches.items() if reach is not None}
+        round_.negotiator = (
+            TokenNode(links, parent, own, max_sweeps=MAX_SWEEPS, reaches=bounded)
+            if self.scheme == "token"
+            else JacobiNode(links, parent, own, max_sweeps=MAX_SWEEPS)
         )
         return self._send(round_.negotiator.start(), now)
 

@@ -1,17 +1,20 @@
-"""A robot's whole state, as its agent keeps it."""
+"""A robot's whole state, as its agent keeps it, and what a behaviour does with it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import Protocol
 
-from vedette.agent.driving import Driver
-from vedette.agent.events import Pose, Scan
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.agent.effects import Effect
+from vedette.agent.events import Arrived, Pose, Scan, Sensed, Stuck
 from vedette.agent.mates import Mates
 from vedette.agent.mission import Mission
+from vedette.agent.pace import Pace
 from vedette.agent.rounds import Decision, Rounds
-from vedette.maps import GridFrame
-from vedette.team import PlatformSpec
 
 QUIET_ROUNDS = 2  # so many rounds in a row with nothing to gain for anybody end the mission
 
@@ -25,7 +28,54 @@ class State(Enum):
     STUCK = "stuck"
     IDLE = "idle"  # nothing it can do is worth doing
     RETURNING = "returning"
+    FLYING = "flying"
+    CIRCLING = "circling"  # its plan has run out
     DONE = "done"
+
+
+class Body(Protocol):
+    """What team-mates are told of a robot's body."""
+
+    @property
+    def radius(self) -> float:
+        """Of the disc that it fills [m]."""
+
+    @property
+    def speed(self) -> float:
+        """At most [m/s]."""
+
+
+class Behaviour(Protocol):
+    """What one kind of robot does with its strategy: the part of an agent between decisions and motion."""
+
+    @property
+    def mission(self) -> Mission:
+        """The robot's share of the mission."""
+
+    @property
+    def state(self) -> State:
+        """What the robot is doing."""
+
+    def wake(self, agent: Agent, pose: Pose, now: float) -> bool:
+        """Tell whether the robot takes part in rounds yet; called first, whenever time has gone on."""
+
+    def sense(self, agent: Agent, seen: Scan | Sensed, now: float) -> None:
+        """Take in what the robot's sensor saw."""
+
+    def moved(self, agent: Agent, event: Arrived | Stuck, now: float) -> list[Effect]:
+        """Take up what has become of the robot's way."""
+
+    def follow(self, agent: Agent, pose: Pose, now: float, news: bool) -> list[Effect]:
+        """Carry out the strategy; ``news``: a round has just ended with a decision."""
+
+    def look_out(self, agent: Agent, pose: Pose, now: float) -> list[Effect]:
+        """Mind the mates, and whether the strategy still has a point."""
+
+    def ahead(self, pose: Pose) -> NDArray[np.float64]:
+        """Return the next few metres of the robot's path, ``(L, 2)`` [m], team frame, for its beacon."""
+
+    def departure(self, agent: Agent, pose: Pose, belief: object) -> Pose:
+        """Return where the robot will be when a strategy planned on this belief starts."""
 
 
 @dataclass
@@ -34,29 +84,32 @@ class Agent:
 
     robot: int
     boot: int
-    spec: PlatformSpec
-    frame: GridFrame
-    mission: Mission
+    body: Body
+    behaviour: Behaviour
     scheme: str = "token"
-    return_home: bool = False
-    state: State = State.WAITING
+    pace: Pace = field(default_factory=Pace)  # of rounds
     pose: Pose | None = None
-    home: tuple[float, float] | None = None
+    posed: float = 0.0  # when that came [s]
     dropped: int = 0  # messages that did not make sense
     mates: Mates = field(default_factory=Mates)
     rounds: Rounds = field(init=False)
-    driver: Driver = field(init=False)
     quiet: int = 0  # rounds in a row with nothing to gain for anybody
-    home_tries: int = 0  # ways home that were blocked
     beacons: int = 0  # sent
-    listening: bool = True  # until all mates have been heard, or for a while: they are not to be mapped
-    held: Scan | None = None  # the latest scan while listening
     due: dict[str, float] = field(default_factory=dict)  # when what is to be done next [s]
-    redirect: bool = False  # a new decision waits to be driven
+    news: bool = False  # a new decision waits to be carried out
 
     def __post_init__(self) -> None:
-        self.rounds = Rounds(self.mission, self.scheme, self._decided)
-        self.driver = Driver(self.robot, self.spec, self.frame)
+        self.rounds = Rounds(self.mission, self.scheme, self._decided, self.pace)
+
+    @property
+    def mission(self) -> Mission:
+        """The robot's share of the mission."""
+        return self.behaviour.mission
+
+    @property
+    def state(self) -> State:
+        """What the robot is doing."""
+        return self.behaviour.state
 
     @property
     def finished(self) -> bool:
@@ -69,11 +122,10 @@ class Agent:
         return self.state is State.DONE
 
     def _decided(self, decision: Decision) -> None:
-        everything = not decision.approximate and not decision.blocked
-        everything &= not self.mission.postponed(decision.time)
-        nothing_to_gain = decision.outcome.value <= 0.0 and everything
-        self.quiet = self.quiet + 1 if nothing_to_gain else 0
-        self.redirect = True
+        exact = not decision.approximate and not decision.blocked
+        quiet = exact and self.mission.nothing_left(decision.outcome.value, decision.time)
+        self.quiet = self.quiet + 1 if quiet else 0
+        self.news = True
 
     def is_due(self, what: str, period: float, now: float) -> bool:
         """Tell whether something periodic [s] is to be done now, and note when it will be again."""

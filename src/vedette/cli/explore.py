@@ -17,6 +17,7 @@ import numpy as np
 from vedette.domains.mapping.planners import PLANNERS
 from vedette.errors import InputError, nearest_name
 from vedette.maps import write_map
+from vedette.negotiation import SCHEMES
 from vedette.record.animate import animate_gif
 from vedette.record.curves import curves_png
 from vedette.record.files import new_directory, output_directory
@@ -24,9 +25,10 @@ from vedette.record.live import LiveView
 from vedette.record.mcap import McapWriter
 from vedette.record.progress import progress_png
 from vedette.record.summary import Outcome, Summary
+from vedette.sim.exploration import FUSIONS, ExploreSetup, ExploreSimulation
 from vedette.sim.explore import Report, planning_frame, prepare
 from vedette.sim.explore import explore as run_mission
-from vedette.sim.simulation import FUSIONS, SCHEMES, Setup, Simulation
+from vedette.sim.simulation import Simulation
 from vedette.sim.starts import parse_starts
 from vedette.sim.world import World
 from vedette.sim.worlds import office
@@ -188,7 +190,7 @@ def explore(
     """
     world = _world(map_path, resolution, seed)
     specs = _team(team, robots, starts)
-    setup = Setup(
+    setup = ExploreSetup(
         planner=planner,
         scheme=scheme,
         fusion=fusion,
@@ -209,7 +211,7 @@ def explore(
     raise SystemExit(STATUS.get(report.summary.outcome, 1))
 
 
-def _run(prepared: Simulation, folder: Path, quiet: bool) -> Report:
+def _run(prepared: ExploreSimulation, folder: Path, quiet: bool) -> Report:
     """Run the mission, shown live unless ``quiet`` and recorded in the folder."""
     world, planning = prepared.world, planning_frame(prepared.world)
     with ExitStack() as sinks:

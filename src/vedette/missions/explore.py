@@ -28,6 +28,7 @@ from vedette.domains.mapping.stops import CLEARANCES, Disc, block, unknown_near
 from vedette.fusion import Fusion
 from vedette.kernels import distance, frontier, lidar
 from vedette.maps import GridFrame
+from vedette.problem import Reach
 from vedette.team import PlatformSpec
 
 GAIN_HIT, GAIN_MISS, CLAMP = 4, 2, 20  # log-odds of one observation and of all [0.2 nats]
@@ -45,7 +46,7 @@ SERVED_SHARE = 0.4  # a frontier with less than this of its unknown cells left h
 
 @dataclass(eq=False)
 class Exploration:
-    """One robot's share of exploring; ``vedette.agent.mission.Mission``."""
+    """One robot's share of exploring; ``vedette.agent.mission.GroundMission``."""
 
     frame: GridFrame
     spec: PlatformSpec
@@ -162,7 +163,7 @@ class Exploration:
 
     # -- planning -----------------------------------------------------------------------------------
 
-    def given_up(self) -> list[tuple[int, int, int]]:
+    def notes(self) -> list[tuple[int, int, int]]:
         """Return the frontiers that this robot's visits did not change: x, y [cm], unknown cells near it."""
         return [
             (round(spot.x * 100), round(spot.y * 100), spot.unknown)
@@ -170,12 +171,12 @@ class Exploration:
             if spot.visited
         ]
 
-    def hear_given_up(self, given_up: Sequence[tuple[int, int, int]]) -> None:
+    def hear_notes(self, notes: Sequence[tuple[int, int, int]]) -> None:
         """Leave alone what team-mates' visits did not change, until the map there changes."""
-        self.platform.told = [GivenUp(x / 100, y / 100, unknown) for x, y, unknown in given_up]
+        self.platform.told = [GivenUp(x / 100, y / 100, unknown) for x, y, unknown in notes]
 
-    def freeze(self) -> MapBelief:
-        """Snapshot the team map for a round."""
+    def freeze(self, t0: float) -> MapBelief:
+        """Snapshot the team map for a round; tours count time from when it is frozen."""
         return freeze(
             self.fusion.classes,
             self.frame,
@@ -234,6 +235,13 @@ class Exploration:
         """Return the most that a tour of this robot adds to ``base`` [nats]."""
         return self.platform.slack(belief, base)
 
+    def reach(self, now: float) -> None:
+        """Tours lead anywhere."""
+
+    def clip(self, belief: MapBelief, impact: Impact, reach: Reach) -> Impact:
+        """Leave nothing out."""
+        return impact
+
     # -- driving ------------------------------------------------------------------------------------
 
     def goal(self) -> tuple[float, float] | None:
@@ -289,7 +297,11 @@ class Exploration:
             self.platform.given_up.append(GivenUp(x, y, unknown, visited=False))
             self._released = [spot for spot, same in zip(self._released, near, strict=True) if not same]
 
-    def postponed(self, now: float) -> bool:
+    def nothing_left(self, value: float, now: float) -> bool:
+        """Tell whether nothing reachable is worth seeing, now or in a while."""
+        return value <= 0.0 and not self._postponed(now)
+
+    def _postponed(self, now: float) -> bool:
         """Tell whether a stop of the last round is left alone for a while only."""
         stops = self.platform.stops
         if stops is None:

@@ -10,6 +10,7 @@ import numpy as np
 from vedette.problem.bound import slack
 from vedette.problem.checked import value_of, values_of
 from vedette.problem.objective import BeliefT, ImpactT, Objective
+from vedette.problem.reach import Clippable, Reach
 
 
 class Chooser(Generic[BeliefT, ImpactT]):
@@ -76,3 +77,10 @@ class Chooser(Generic[BeliefT, ImpactT]):
     def slack(self, base: ImpactT) -> float:
         """Most that any candidate would add to ``base``; infinite unless monotone and submodular."""
         return slack(self._objective, self._belief, base, self._candidates)
+
+    def clip(self, impact: ImpactT, reach: Reach) -> ImpactT:
+        """Return what of an impact can matter within ``reach``; all of it if the objective cannot tell."""
+        if not isinstance(self._objective, Clippable):
+            return impact
+        clipped: ImpactT = self._objective.clip(self._belief, impact, reach)
+        return clipped

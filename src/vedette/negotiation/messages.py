@@ -45,6 +45,7 @@ class Gather(msgspec.Struct, Generic[ImpactT], frozen=True, array_like=True, tag
     mu: ImpactT | None
     size: Count  # platforms combined in mu
     ceiling: float  # their sum
+    value: float  # of those platforms' choice
 
 
 class Token(msgspec.Struct, Generic[ImpactT], frozen=True, array_like=True, tag=1, eq=False):

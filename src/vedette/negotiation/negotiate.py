@@ -8,6 +8,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import reduce
 
+import msgspec
+
 from vedette.errors import InputError, nearest_name
 from vedette.negotiation import messages
 from vedette.negotiation.chooser import Chooser
@@ -17,6 +19,7 @@ from vedette.negotiation.token import TokenNode
 from vedette.negotiation.tree import Tree
 from vedette.problem.checked import check_candidates, value_of
 from vedette.problem.objective import BeliefT, Codec, ImpactT, Invertible, Objective
+from vedette.problem.reach import Clippable, Reach, behind, join
 
 SCHEMES = ("token", "jacobi")
 
@@ -57,6 +60,7 @@ def negotiate(
     max_sweeps: int = 50,
     inverse: bool = False,
     codec: Codec[ImpactT] | None = None,
+    reach: Sequence[Reach] | None = None,
 ) -> Negotiation:
     """Let every platform choose one of its candidates by messages on a tree, towards ``max psi``.
 
@@ -76,11 +80,15 @@ def negotiate(
         inverse: with ``jacobi`` on a chain, send the team's total down it and let everybody remove its
             own impact by ``objective.remove`` (paper, Fig. 1).
         codec: how impacts travel; without it they are handed over and their plain size is counted.
+        reach: where each platform can make a difference, as boxes (lowest x, lowest y, highest x, highest y).
+            With it, and an objective that has ``clip``, messages leave out what the platforms that they
+            are for cannot reach: no choice changes. The token's messages only; telling the reaches counts.
 
     Raises:
         InputError: bad arguments, or an objective whose value is not a finite number.
     """
     _check(candidates, tree, scheme, start, epsilon, max_sweeps)
+    _check_reach(objective, tree, scheme, reach)
     remove = _remover(objective, tree, scheme) if inverse else None
     seats = [
         Chooser(objective, belief, own, start=None if start is None else start[i], epsilon=epsilon)
@@ -89,11 +97,12 @@ def negotiate(
     root = next(i for i in range(tree.n) if len(tree.neighbours(i)) <= 1) if inverse else 0  # a chain's end
     parents = tree.parents(root)
     before = reduce(objective.combine, (seat.impact for seat in seats))
+    reaches, told, told_size = _tell_reaches(tree, parents, reach)
     nodes: list[TokenNode[ImpactT] | JacobiNode[ImpactT]] = []
     for i, seat in enumerate(seats):
         links, parent = tree.neighbours(i), parents[i]
         nodes.append(
-            TokenNode(links, parent, seat, epsilon=epsilon, max_sweeps=max_sweeps)
+            TokenNode(links, parent, seat, epsilon=epsilon, max_sweeps=max_sweeps, reaches=reaches[i])
             if scheme == "token"
             else JacobiNode(links, parent, seat, epsilon=epsilon, max_sweeps=max_sweeps, remove=remove)
         )
@@ -105,8 +114,8 @@ def negotiate(
         value=outcome.value,
         bound=outcome.bound,
         sweeps=outcome.sweeps,
-        messages=sent,
-        bytes=size,
+        messages=told + sent,
+        bytes=told_size + size,
         history=(Step(0, None, value_of(objective, belief, before)), *_steps(nodes)),
         converged=outcome.converged,
         cycle=outcome.cycle,
@@ -131,6 +140,36 @@ def _deliver(nodes: Sequence[Negotiator[ImpactT]], codec: Codec[ImpactT] | None)
             message = messages.decode(data, codec)
         post.extend((send.to, reply) for reply in nodes[send.to].receive(sender, message))
     return sent, size
+
+
+def _tell_reaches(
+    tree: Tree, parents: Sequence[int | None], reach: Sequence[Reach] | None
+) -> tuple[list[dict[int, Reach]], int, int]:
+    """Return what each platform hears from each neighbour of the reach beyond it, and how much was said."""
+    heard: list[dict[int, Reach]] = [{} for _ in range(tree.n)]
+    if reach is None:
+        return heard, 0, 0
+    order = _outwards(tree, parents)
+    said: list[Reach] = []
+    for i in reversed(order):
+        parent = parents[i]
+        if parent is not None:
+            said.append(join(reach[i], *heard[i].values()))
+            heard[parent][i] = said[-1]
+    for i in order:
+        for k, there in behind(reach[i], heard[i]).items():
+            if k != parents[i]:
+                said.append(there)
+                heard[k][i] = there
+    return heard, len(said), sum(len(msgspec.msgpack.encode(there)) for there in said)
+
+
+def _outwards(tree: Tree, parents: Sequence[int | None]) -> list[int]:
+    """Return all platforms, each after its parent."""
+    order = [i for i in range(tree.n) if parents[i] is None]
+    for i in order:  # grows as it is walked
+        order.extend(k for k in tree.neighbours(i) if k != parents[i])
+    return order
 
 
 def _steps(nodes: Sequence[TokenNode[ImpactT] | JacobiNode[ImpactT]]) -> list[Step]:
@@ -159,6 +198,24 @@ def _remover(
             f"inverse=True needs {type(objective).__name__}.remove(total, own); leave inverse out"
         )
     return objective.remove
+
+
+def _check_reach(
+    objective: Objective[BeliefT, ImpactT], tree: Tree, scheme: str, reach: Sequence[Reach] | None
+) -> None:
+    """Raise ``InputError`` if messages cannot be clipped."""
+    if reach is None:
+        return
+    if scheme != "token":
+        raise InputError(f"reach belongs to scheme 'token'; got {scheme!r}; leave reach out")
+    if not isinstance(objective, Clippable):
+        raise InputError(f"reach needs {type(objective).__name__}.clip(belief, impact, reach); leave it out")
+    if len(reach) != tree.n:
+        raise InputError(f"reach has {len(reach)} entries for {tree.n} platforms; give one each")
+    for i, boxes in enumerate(reach):
+        for box in boxes:
+            if len(box) != 4 or not (box[0] <= box[2] and box[1] <= box[3]):
+                raise InputError(f"reach[{i}] has {box}; a box is lowest x, lowest y, highest x, highest y")
 
 
 def _check(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
 from typing import Generic, Protocol
@@ -10,6 +10,7 @@ from typing import Generic, Protocol
 from vedette.errors import InputError
 from vedette.negotiation.messages import Message, Outcome
 from vedette.problem.objective import ImpactT
+from vedette.problem.reach import Reach
 
 
 class Participant(Protocol[ImpactT]):
@@ -41,6 +42,9 @@ class Participant(Protocol[ImpactT]):
     def slack(self, base: ImpactT) -> float:
         """Most that any strategy of this platform would add to ``base``; infinite where not known."""
 
+    def clip(self, impact: ImpactT, reach: Reach) -> ImpactT:
+        """Return what of an impact can matter to platforms that make a difference only within ``reach``."""
+
 
 @dataclass(frozen=True, eq=False)
 class Send(Generic[ImpactT]):
@@ -67,12 +71,20 @@ class Negotiator(Protocol[ImpactT]):
 class Links(Generic[ImpactT]):
     """``mu_{i->j} = Y_i * (* of mu_{k->i}, k in N(i) without j)``: one platform's end of its links.
 
-    A mu is sent in full only if something that it is made of has changed since it was last sent.
-    Source: docs/theory.md (V5), (V6).
+    A mu is sent only if something that it is made of has changed since it was last sent, and only what of it
+    can matter beyond that link, if the reach of the platforms there is known.
+    Source: docs/theory.md (V5), (V6), (V14).
     """
 
-    def __init__(self, own: Participant[ImpactT], neighbours: Sequence[int]) -> None:
+    def __init__(
+        self,
+        own: Participant[ImpactT],
+        neighbours: Sequence[int],
+        reaches: Mapping[int, Reach] | None = None,
+    ) -> None:
+        """Hold nothing yet; ``reaches`` gives the joint reach of the platforms behind each neighbour."""
         self.neighbours = tuple(neighbours)
+        self._reaches = reaches or {}
         self._own = own
         self._held: dict[int, ImpactT] = {}  # the last mu from each neighbour
         self._stale = set(neighbours)  # those that have yet to hear of a change
@@ -90,6 +102,10 @@ class Links(Generic[ImpactT]):
         elif sender not in self._held:
             raise InputError(f"negotiation message from {sender} refers to an impact never sent; drop it")
 
+    def held(self, sender: int) -> ImpactT:
+        """Return the last mu from a neighbour that has sent one."""
+        return self._held[sender]
+
     def changed(self) -> None:
         """Note that the own impact has changed."""
         self._stale.update(self.neighbours)
@@ -100,7 +116,9 @@ class Links(Generic[ImpactT]):
             return None
         self._stale.remove(receiver)
         parts = (mu for k, mu in self._held.items() if k != receiver)
-        return self._combined(self._own.impact, parts)
+        mu = self._combined(self._own.impact, parts)
+        reach = self._reaches.get(receiver)
+        return mu if reach is None else self._own.clip(mu, reach)
 
     def others(self) -> ImpactT:
         """Return the rest of the team, ``* of mu_{k->i}`` over all neighbours: exact if all are fresh."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Generic
 
 import msgspec
@@ -13,6 +13,7 @@ from vedette.negotiation.messages import Gather, Message, Outcome, Stop, Tally, 
 from vedette.negotiation.node import Links, Participant, Send
 from vedette.problem.bound import tightest
 from vedette.problem.objective import ImpactT
+from vedette.problem.reach import Reach
 
 
 class TokenNode(Generic[ImpactT]):
@@ -33,6 +34,7 @@ class TokenNode(Generic[ImpactT]):
         *,
         epsilon: float = 1e-9,
         max_sweeps: int = 50,
+        reaches: Mapping[int, Reach] | None = None,
     ) -> None:
         """Join a round.
 
@@ -42,11 +44,13 @@ class TokenNode(Generic[ImpactT]):
             own: the platform.
             epsilon: how near the ceiling is near enough, relative to the value where that exceeds 1.
             max_sweeps: the round ends after so many.
+            reaches: where the platforms behind each neighbour make a difference; without it messages hold
+                everything.
         """
         self.finished: Outcome | None = None
         self.turns: list[tuple[int, float]] = []  # own: (number in the round, team value after it)
         self._own = own
-        self._links = Links(own, neighbours)
+        self._links = Links(own, neighbours, reaches)
         self._parent = parent
         self._children = tuple(k for k in neighbours if k != parent)
         self._epsilon = epsilon
@@ -85,24 +89,39 @@ class TokenNode(Generic[ImpactT]):
         reports = self._gathered.values()
         size = 1 + sum(report.size for report in reports)
         ceiling = self._own.slack(self._own.nothing()) + sum(report.ceiling for report in reports)
+        value = sum(report.value for report in reports) + self._interplay()
         if self._parent is not None:
             self._expected = self._parent
-            return [Send(self._parent, Gather(self._links.outgoing(self._parent), size, ceiling))]
-        return self._turn(Tally(turns=0, quiet=0, value=0.0, slack=0.0, size=size, ceiling=ceiling))
+            return [Send(self._parent, Gather(self._links.outgoing(self._parent), size, ceiling, value))]
+        return self._turn(Tally(turns=0, quiet=0, value=value, slack=0.0, size=size, ceiling=ceiling))
+
+    def _interplay(self) -> float:
+        """What own impact and children's parts of the tree are worth together, less what each part is alone.
+
+        So values add up over the tree although messages leave out what does not interact.
+        docs/theory.md (V15)
+        """
+        if self._own.strategy is None and len(self._children) < 2:
+            return 0.0
+        parts = [self._links.held(child) for child in self._children]
+        together = self._own.value(self._own.combine(self._links.others(), self._own.impact))
+        return together - sum(self._own.value(part) for part in parts)
 
     def _turn(self, tally: Tally) -> list[Send[ImpactT]]:
         """Reply to the rest of the team (paper, eq. (30)); then stop or hand the token on."""
-        others = self._links.others()
+        others, before = self._links.others(), self._own.impact
         changed = self._own.reply(others)
+        team = self._own.combine(others, self._own.impact)
+        gain = 0.0
         if changed:
             self._links.changed()
-        team = self._own.combine(others, self._own.impact)
+            gain = self._own.value(team) - self._own.value(self._own.combine(others, before))
         slack = self._own.slack(team)
         tally = msgspec.structs.replace(
             tally,
             turns=tally.turns + 1,
             quiet=1 if changed else tally.quiet + 1,
-            value=self._own.value(team),
+            value=tally.value + gain,
             slack=slack if changed else tally.slack + slack,
         )
         self.turns.append((tally.turns, tally.value))

@@ -5,8 +5,11 @@ from vedette.problem.coverage import CountedCoverage, Coverage, counted
 from vedette.problem.exhaustive import Exhaustive, exhaustive
 from vedette.problem.logdet import LogDet
 from vedette.problem.objective import Codec, Invertible, Objective, Platform
+from vedette.problem.reach import Box, Clippable, Reach
 
 __all__ = [
+    "Box",
+    "Clippable",
     "Codec",
     "CountedCoverage",
     "Coverage",
@@ -15,6 +18,7 @@ __all__ = [
     "LogDet",
     "Objective",
     "Platform",
+    "Reach",
     "bound",
     "counted",
     "exhaustive",

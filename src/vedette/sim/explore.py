@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from vedette.agent import Agent
 from vedette.agent.driving import remaining
-from vedette.agent.effects import Traffic as Kind
 from vedette.domains.mapping.belief import LN2, planning_factor
 from vedette.domains.mapping.impact import final_miss
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
 from vedette.record.log import RobotSample, RunLog, Sink, Snapshot
-from vedette.record.summary import Outcome, Spread, Summary, Timing, Traffic
+from vedette.record.summary import Outcome, Summary, Timing
+from vedette.sim.exploration import ExploreSetup, ExploreSimulation
+from vedette.sim.figures import negotiated, timing, traffic
 from vedette.sim.score import Progress, Reference, coverage, map_errors, overlap
-from vedette.sim.simulation import Setup, Simulation
 from vedette.sim.starts import choose_starts
 from vedette.sim.world import World
 from vedette.team import PlatformSpec
@@ -38,17 +38,17 @@ def planning_frame(world: World) -> GridFrame:
     return world.frame.coarse(planning_factor(world.frame.resolution))
 
 
-def prepare(world: World, specs: Sequence[PlatformSpec], setup: Setup) -> Simulation:
+def prepare(world: World, specs: Sequence[PlatformSpec], setup: ExploreSetup) -> ExploreSimulation:
     """Put a team at its starts, those that are not given chosen by the seed.
 
     Raises:
         InputError: a start is not possible, the team does not fit, or the planner is unknown.
     """
     starts = choose_starts(world, specs, np.random.default_rng([setup.seed, 1]))
-    return Simulation(world, specs, starts, setup)
+    return ExploreSimulation(world, specs, starts, setup)
 
 
-def explore(simulation: Simulation, sinks: Sequence[Sink] = ()) -> Report:
+def explore(simulation: ExploreSimulation, sinks: Sequence[Sink] = ()) -> Report:
     """Run a mission to its end; ``sinks`` follow it, and Ctrl-C ends it in good order."""
     reference = Reference(simulation.world, simulation.specs, simulation.starts)
     observer = Observer(simulation, reference, sinks)
@@ -61,7 +61,7 @@ def explore(simulation: Simulation, sinks: Sequence[Sink] = ()) -> Report:
 class Observer:
     """Looks at a simulation from outside: it knows the truth, the agents do not."""
 
-    def __init__(self, simulation: Simulation, reference: Reference, sinks: Sequence[Sink]) -> None:
+    def __init__(self, simulation: ExploreSimulation, reference: Reference, sinks: Sequence[Sink]) -> None:
         self._simulation = simulation
         self._reference = reference
         self._progress = Progress()
@@ -122,8 +122,8 @@ class Observer:
 
     def _robot(self, i: int, agent: Agent) -> RobotSample:
         x, y, heading = self._simulation.pose(i)
-        alive = bool(self._simulation.bodies.alive[i])
-        wanted = agent.driver.wanted if alive else None
+        alive = bool(self._simulation.robots.alive[i])
+        wanted = self._simulation.drivers[i].wanted if alive else None
         path = np.empty((0, 2)) if wanted is None else remaining(wanted.path, x, y, np.inf)
         goal = (float(path[-1, 0]), float(path[-1, 1])) if len(path) else None
         state = agent.state.value if alive else "dead"
@@ -149,9 +149,7 @@ class Observer:
         simulation, progress = self._simulation, self._progress
         names = [spec.name for spec in simulation.specs]
         wrong, known = map_errors(simulation.world, self.delivered_map())
-        rounds = [agent.rounds for agent in simulation.agents]
-        ratios = [ratio for each in rounds for ratio in each.bound_ratios]
-        leader = max(rounds, key=lambda each: each.decisions)
+        rounds = negotiated(simulation)
         return Summary(
             completed=outcome is Outcome.COMPLETE,
             outcome=outcome,
@@ -170,32 +168,13 @@ class Observer:
             coverage=progress.coverages[-1],
             map_errors=wrong,
             map_error_share=wrong / known if known else 0.0,
-            path_m=dict(zip(names, simulation.bodies.travelled.tolist(), strict=True)),
+            path_m=dict(zip(names, simulation.robots.bodies.travelled.tolist(), strict=True)),
             overlap=overlap([simulation.missions[i].log_odds != 0 for i in range(len(names))]),
-            collisions=simulation.bodies.collisions,
-            min_clearance_m=simulation.bodies.min_clearance,
-            rounds=leader.decisions,
-            sweeps=leader.sweeps,
-            bound_ratio=float(np.mean(ratios)) if ratios else None,
-            messages=_traffic(names, simulation.links.messages_sent),
-            bytes=_traffic(names, simulation.links.bytes_sent),
+            collisions=simulation.robots.bodies.collisions,
+            min_clearance_m=simulation.robots.bodies.min_clearance,
+            rounds=rounds.rounds,
+            sweeps=rounds.sweeps,
+            bound_ratio=rounds.bound_ratio,
+            messages=traffic(names, simulation.links.messages_sent),
+            bytes=traffic(names, simulation.links.bytes_sent),
         )
-
-
-def _traffic(names: Sequence[str], sent: dict[Kind, list[int]]) -> dict[str, Traffic]:
-    return {
-        name: Traffic(sent[Kind.NEGOTIATION][i], sent[Kind.FUSION][i], sent[Kind.BEACONS][i])
-        for i, name in enumerate(names)
-    }
-
-
-def timing(simulation: Simulation) -> Timing:
-    """Return the wall-clock figures of a mission."""
-    clock = simulation.clock
-    wall = clock.elapsed()
-    return Timing(
-        planning_ms=Spread.of([1e3 * took for took in clock.planning.values()]),
-        answer_ms=Spread.of([1e3 * took for took in clock.answers]),
-        real_time_factor=simulation.now / wall if wall > 0 else 0.0,
-        wall_s=wall,
-    )

@@ -1,0 +1,192 @@
+"""What a robot on the ground does with its strategy: drives, arrives, gets stuck, makes room, goes home."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import hypot
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.agent.driving import YIELD_LIMIT, Driver
+from vedette.agent.effects import Drive, Effect
+from vedette.agent.events import Arrived, Pose, Scan, Sensed, Stuck
+from vedette.agent.mission import GroundMission
+from vedette.agent.state import Agent, State
+
+HOME = 0.3  # from its start a robot is at home [m]
+HOME_AGAIN = 3.0  # a robot whose way home is blocked tries again after so long [s]
+HOME_TRIES = 10  # then it stays where it is
+LISTEN = 3.0  # a robot waits at most so long for its mates' first beacons before it maps [s]
+LOOK_OUT_PERIOD = 0.5  # [s]
+CHECK_PERIOD = 1.0  # of the present goal's point [s]
+
+
+@dataclass
+class GroundBehaviour:
+    """Drives from goal to goal of the latest decision; ``vedette.agent.state.Behaviour``."""
+
+    mission: GroundMission
+    driver: Driver
+    return_home: bool = False
+    state: State = State.WAITING
+    home: tuple[float, float] | None = None
+    home_tries: int = 0  # ways home that were blocked
+    listening: bool = True  # until all mates have been heard, or for a while: they are not to be mapped
+    held: Scan | Sensed | None = None  # the latest while listening
+
+    def wake(self, agent: Agent, pose: Pose, now: float) -> bool:
+        """Begin to map once the mates' places are known, so that they are not taken for obstacles."""
+        self.home = self.home or (pose.x, pose.y)
+        if not self.listening:
+            return True
+        until = agent.due.setdefault("listen", now + LISTEN)
+        if len(agent.mates.all()) < agent.rounds.tree.size - 1 and now < until:
+            return False
+        self.listening = False
+        if self.held is not None:
+            self.mission.observe(self.held, pose, agent.mates.all(), now)
+            self.held = None
+        return True
+
+    def sense(self, agent: Agent, seen: Scan | Sensed, now: float) -> None:
+        """Map what the robot sees."""
+        if self.listening:
+            self.held = seen
+        elif agent.pose is not None:
+            self.mission.observe(seen, agent.pose, agent.mates.all(), now)
+
+    def departure(self, agent: Agent, pose: Pose, belief: object) -> Pose:
+        """Return the pose itself: tours begin where the robot is."""
+        return pose
+
+    def ahead(self, pose: Pose) -> NDArray[np.float64]:
+        """Return the next few metres that the robot will really drive, ``(L, 2)`` [m], team frame."""
+        return self.driver.beaconed(pose)
+
+    # -- driving ------------------------------------------------------------------------------------
+
+    def follow(self, agent: Agent, pose: Pose, now: float, news: bool) -> list[Effect]:
+        """Drive where the latest decision wants the robot; after the last one, home or nowhere."""
+        effects = self._follow_decision(agent, pose, now) if news else []
+        waiting = self.state is State.RETURNING and self.driver.standing
+        if waiting and agent.is_due("home", HOME_AGAIN, now):
+            effects += self._go_home(agent, pose, now, blocked=False)
+        return effects
+
+    def _follow_decision(self, agent: Agent, pose: Pose, now: float) -> list[Effect]:
+        if not agent.finished:
+            return self._drive_on(agent, pose, now)
+        if self.state in (State.DONE, State.RETURNING):
+            return []
+        if not self.return_home or self.home is None:
+            self.state = State.DONE
+            return [self.driver.go(None)]
+        return self._go_home(agent, pose, now, blocked=False)
+
+    def _drive_on(self, agent: Agent, pose: Pose, now: float) -> list[Effect]:
+        """Drive to the strategy's next goal; with none, stand by."""
+        goal = self.mission.goal()
+        if goal is None:
+            self.state = State.IDLE
+            return [self.driver.go(None)]
+        if self.driver.yielding:
+            return []
+        route = self.mission.route(pose, goal, agent.mates.all(), self.state is State.STUCK, now)
+        if route is None:
+            self.mission.release(now)
+            agent.rounds.want()
+            self.state = State.IDLE
+        else:
+            self.state = State.DRIVING
+        return [self.driver.go(route)]
+
+    def moved(self, agent: Agent, event: Arrived | Stuck, now: float) -> list[Effect]:
+        """Take up what has become of the robot's way."""
+        if agent.pose is None:
+            return []
+        arrived = isinstance(event, Arrived)
+        return self._arrived(agent, agent.pose, now) if arrived else self._stuck(agent, agent.pose, now)
+
+    def _arrived(self, agent: Agent, pose: Pose, now: float) -> list[Effect]:
+        """Go on to the next stop; at home, be done."""
+        if self.driver.yielding or self.driver.wanted is None:
+            return []
+        if self.state is State.RETURNING:
+            if not self._at_home(pose):
+                return self._wait_for_home(agent, now)
+            self.state = State.DONE
+            return [self.driver.go(None)]
+        if self.state is not State.DRIVING:
+            return []
+        self.mission.reached(pose, agent.mates.all(), now)
+        agent.rounds.want()
+        return self._drive_on(agent, pose, now)
+
+    def _stuck(self, agent: Agent, pose: Pose, now: float) -> list[Effect]:
+        """Release the work at once, so that others can take it, and plan round what is in the way."""
+        if self.state is State.RETURNING:
+            return self._go_home(agent, pose, now, blocked=True)
+        if self.state is State.DONE:
+            return [self.driver.go(None)]
+        if self.state is not State.DRIVING and not self.driver.yielding:
+            return []
+        self.mission.release(now)
+        self.state = State.STUCK
+        agent.rounds.blocked = True
+        agent.rounds.want()
+        return [self.driver.go(None)]
+
+    # -- mates and time -----------------------------------------------------------------------------
+
+    def look_out(self, agent: Agent, pose: Pose, now: float) -> list[Effect]:
+        """Make room for mates, and ask for a round when the present goal has lost its point."""
+        effects = self._make_room(agent, pose, now) if agent.is_due("look out", LOOK_OUT_PERIOD, now) else []
+        checks = agent.is_due("check", CHECK_PERIOD, now)
+        if checks and self.state is State.DRIVING and self.mission.served():
+            agent.rounds.want()
+        return effects
+
+    def _make_room(self, agent: Agent, pose: Pose, now: float) -> list[Effect]:
+        """Make room for a mate that has the right of way, and go on when it has passed."""
+        mates = agent.mates.all()
+        if not mates:
+            return []
+        if self.driver.yielding and now > self.driver.yielding_since + YIELD_LIMIT:
+            return self._stuck(agent, pose, now)
+        standing = self.driver.wanted or self.mission.route(pose, (pose.x, pose.y), mates, False, now)
+        if standing is None:
+            return []
+        drive: Drive | None = self.driver.look_out(pose, mates, standing, now)
+        if self.driver.yielding and self.state is State.DRIVING:
+            self.state = State.YIELDING
+        elif not self.driver.yielding and self.state is State.YIELDING:
+            return self._drive_on(agent, pose, now)
+        elif self.state is State.DONE and self.driver.standing and self._strayed(pose):
+            return self._go_home(agent, pose, now, blocked=False)
+        return [] if drive is None else [drive]
+
+    # -- the way home -------------------------------------------------------------------------------
+
+    def _go_home(self, agent: Agent, pose: Pose, now: float, *, blocked: bool) -> list[Effect]:
+        """Drive to where the robot started."""
+        assert self.home
+        route = self.mission.route(pose, self.home, agent.mates.all(), blocked, now)
+        if route is None:
+            return self._wait_for_home(agent, now)
+        self.state = State.RETURNING
+        return [self.driver.go(route)]
+
+    def _wait_for_home(self, agent: Agent, now: float) -> list[Effect]:
+        """Stand for a while where the way home, or home itself, is taken; in the end stay here."""
+        self.home_tries += 1
+        agent.due["home"] = now + HOME_AGAIN
+        self.state = State.RETURNING if self.home_tries <= HOME_TRIES else State.DONE
+        return [self.driver.go(None)]
+
+    def _at_home(self, pose: Pose) -> bool:
+        return self.home is None or hypot(pose.x - self.home[0], pose.y - self.home[1]) <= HOME
+
+    def _strayed(self, pose: Pose) -> bool:
+        """Tell whether the robot, done, had to make room and could go home again."""
+        return self.return_home and self.home_tries <= HOME_TRIES and not self._at_home(pose)

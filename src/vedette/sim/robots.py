@@ -1,0 +1,108 @@
+"""Simulated robots on the ground: bodies that drive, and lidars that scan a building and each other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.agent.effects import Drive, Motion
+from vedette.agent.events import Arrived, Event, Pose, Scan, Stuck
+from vedette.kernels.lidar import cast_rays
+from vedette.record.summary import Outcome
+from vedette.sim.body import Bodies
+from vedette.sim.world import World
+from vedette.team import PlatformSpec
+
+STUCK_AFTER = 4.0  # without progress [s]
+NO_PROGRESS = 300.0  # no robot has got a new route for so long: give up [s]
+
+
+class Robots:
+    """Disc robots with lidars in a world; ``vedette.sim.field.Field``."""
+
+    def __init__(
+        self,
+        world: World,
+        specs: Sequence[PlatformSpec],
+        starts: NDArray[np.float64],
+        noise: Sequence[np.random.Generator],
+    ) -> None:
+        """Put the team at its starts, (n, 3) x, y, heading [m, m, rad], and give each lidar its noise."""
+        n = len(specs)
+        self._world, self._specs, self._noise = world, specs, noise
+        self._corner = np.array((world.frame.origin_x, world.frame.origin_y))
+        local = starts.copy()
+        local[:, :2] -= self._corner
+        self.bodies = Bodies(world.solid, world.frame.resolution, specs, local)
+        self._radii = np.array([spec.radius for spec in specs])
+        self._beams = [
+            np.radians(spec.view) * ((np.arange(spec.beams) + 0.5) / spec.beams - 0.5) for spec in specs
+        ]
+        self._next_scan = [0.0] * n
+        self._stuck_told = [0.0] * n
+        self._told_arrival = [True] * n
+        self._last_change = 0.0
+
+    @property
+    def alive(self) -> NDArray[np.bool_]:
+        """``(n,)``."""
+        return self.bodies.alive
+
+    def pose(self, i: int) -> tuple[float, float, float]:
+        """Return x, y [m] and heading [rad] of a robot, team frame."""
+        x, y, heading = self.bodies.poses[i].tolist()
+        return x + self._corner[0], y + self._corner[1], heading
+
+    def sense(self, i: int, now: float) -> list[Event]:
+        """Return pose, scan, and whether the robot has arrived or is stuck."""
+        x, y, heading = self.pose(i)
+        slowed = self.bodies.stuck_for(i)
+        events: list[Event] = [Pose(x, y, heading, slowed)]
+        if now >= self._next_scan[i] - 1e-9:
+            self._next_scan[i] += 1.0 / self._specs[i].rate
+            events.append(self._scan(i, heading))
+        if not self._told_arrival[i] and self.bodies.arrived(i):
+            self._told_arrival[i] = True
+            events.append(Arrived())
+        elif slowed < STUCK_AFTER:
+            self._stuck_told[i] = 0.0
+        elif slowed - self._stuck_told[i] >= STUCK_AFTER:
+            self._stuck_told[i] = slowed
+            events.append(Stuck())
+        return events
+
+    def _scan(self, i: int, heading: float) -> Scan:
+        spec = self._specs[i]
+        angles = heading + self._beams[i]
+        discs = np.column_stack((self.bodies.poses[:, :2], self._radii))[np.arange(len(self._specs)) != i]
+        local = self.bodies.poses[i]
+        ranges = cast_rays(
+            self._world.solid, self._world.frame.resolution, local[0], local[1], angles, spec.range, discs
+        )
+        noise = self._noise[i].normal(0.0, spec.range_noise, spec.beams)
+        return Scan(angles, np.maximum(ranges + noise, 0.0))
+
+    def carry_out(self, i: int, motion: Motion, now: float) -> None:
+        """Let a robot follow a route, or stand."""
+        assert isinstance(motion, Drive), "robots on the ground do not fly"
+        route = motion.route
+        self._told_arrival[i] = route is None
+        if route is None:
+            self.bodies.command(i, None)
+        else:
+            self.bodies.command(i, route.path - self._corner, route.passable)
+            self._last_change = now
+
+    def advance(self, now: float, dt: float) -> None:
+        """Move everybody for a tick."""
+        self.bodies.step(dt)
+
+    def kill(self, i: int) -> None:
+        """Stop a robot for ever; its body stays as an obstacle."""
+        self.bodies.kill(i)
+
+    def over(self, now: float) -> Outcome | None:
+        """Give up when no robot has got a new route for long."""
+        return Outcome.NO_PROGRESS if now > self._last_change + NO_PROGRESS else None
