@@ -7,6 +7,8 @@ pub mod distance;
 pub mod frontier;
 pub mod lidar;
 pub mod motion;
+pub mod search;
+pub mod tracking;
 pub mod visibility;
 
 #[pymodule]
@@ -16,6 +18,8 @@ fn _kernels(m: &Bound<'_, PyModule>) -> PyResult<()> {
     frontier::register(m)?;
     lidar::register(m)?;
     motion::register(m)?;
+    search::register(m)?;
+    tracking::register(m)?;
     visibility::register(m)?;
     Ok(())
 }

@@ -141,3 +141,58 @@ def most_any_tour_adds(
     legs: NDArray[np.float32],
     max_stops: int,
 ) -> float: ...
+
+# tracking
+def track_values(
+    tracks: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
+    measure: str,
+    others: tuple[NDArray[np.int64], NDArray[np.float64]],
+    starts: NDArray[np.int64],
+    own: tuple[NDArray[np.int64], NDArray[np.float64]],
+) -> NDArray[np.float64]: ...
+def track_gradient(
+    tracks: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
+    measure: str,
+    team: tuple[NDArray[np.int64], NDArray[np.float64]],
+) -> NDArray[np.float64]: ...
+
+# search
+def propagate(
+    mass: NDArray[np.float64],
+    first: tuple[int, int],
+    row_taps: NDArray[np.float64],
+    col_taps: NDArray[np.float64],
+) -> NDArray[np.float64]: ...
+def look_footprints(
+    shape: tuple[int, int],
+    resolution: float,
+    poses: NDArray[np.float64],
+    table: NDArray[np.float64],
+    range: float,
+    view: float,
+    samples: int,
+) -> tuple[NDArray[np.int64], NDArray[np.uint32], NDArray[np.float64]]: ...
+def detected_mass(
+    mass: NDArray[np.float64],
+    first: tuple[int, int],
+    row_taps: NDArray[np.float64],
+    col_taps: NDArray[np.float64],
+    steps: int,
+    layers: int,
+    keys: NDArray[np.uint32],
+    misses: NDArray[np.uint8],
+) -> NDArray[np.float64]: ...
+def path_gains(
+    mass: NDArray[np.float64],
+    first: tuple[int, int],
+    row_taps: NDArray[np.float64],
+    col_taps: NDArray[np.float64],
+    steps: int,
+    weights: NDArray[np.float64],
+    others_keys: NDArray[np.uint32],
+    others_misses: NDArray[np.uint8],
+    parents: NDArray[np.int64],
+    starts: NDArray[np.int64],
+    cells: NDArray[np.uint32],
+    misses: NDArray[np.uint8],
+) -> NDArray[np.float64]: ...

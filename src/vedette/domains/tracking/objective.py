@@ -1,0 +1,101 @@
+"""What a team of trackers gains: information about the targets' trajectories, or about where they end."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.domains.tracking import impact as impacts
+from vedette.domains.tracking.belief import Tracks
+from vedette.domains.tracking.impact import Impact
+from vedette.errors import InputError, nearest_name
+from vedette.kernels.tracking import Measure, chain_gradient, chain_values
+from vedette.problem import Objective, Reach
+
+
+class TrackingObjective(Objective[Tracks, Impact]):
+    """``psi(I) = sum_t sum_k 1/2 ln det(1 + P_{k|k-1} I_k)`` [nat], with ``*`` the sum of information.
+
+    By the chain rule it is the entropy that the horizon's measurements take off the targets' whole
+    trajectories, ``1/2 ln det(L + blkdiag(I_k)) - 1/2 ln det L`` with L the trajectories' prior information,
+    but it takes a singular Q. As the mutual information of conditionally independent measurements it is
+    monotone and submodular. With a horizon of one step it is the paper's eq. (28), as a logarithm.
+    """
+
+    monotone = True
+    submodular = True
+    measure: Measure = "trajectory"
+
+    def nothing(self, belief: Tracks) -> Impact:
+        """Return the impact of a team that observes nothing."""
+        return impacts.nothing(belief.horizon)
+
+    def combine(self, a: Impact, b: Impact) -> Impact:
+        """``a * b``: sums of information; paper, eq. (27)."""
+        return impacts.combine(a, b)
+
+    def remove(self, total: Impact, own: Impact) -> Impact:
+        """``total * own^-1``; paper, eq. (31)."""
+        return impacts.remove(total, own)
+
+    def clip(self, belief: Tracks, impact: Impact, reach: Reach) -> Impact:
+        """Return what can matter to platforms that see within ``reach`` only; docs/theory.md (V14)."""
+        return impacts.clip(impact, belief.predicted_means, reach)
+
+    def value(self, belief: Tracks, impact: Impact) -> float:
+        """Return the gain over no measurements."""
+        return float(self.values(belief, impact, [self.nothing(belief)])[0])
+
+    def values(self, belief: Tracks, others: Impact, own: Sequence[Impact]) -> NDArray[np.float64]:
+        """``value(others * own_k)`` for every k, by one kernel call that redoes only what own_k sees."""
+        rows = impacts.stack(own, belief.horizon)
+        return chain_values(
+            belief.motion, self.measure, others.sparse, rows.starts, (rows.targets, rows.blocks)
+        )
+
+    def gradient(self, belief: Tracks, team: Impact) -> NDArray[np.float64]:
+        """Derivative of ``value`` by each number in ``team.blocks``, (M, K, 3)."""
+        return chain_gradient(belief.motion, self.measure, team.sparse)
+
+
+class FinalEntropy(TrackingObjective):
+    """``1/2 ln det P_K`` without measurements less that with them [nat]: only the last step's state counts.
+
+    Monotone, but where targets are disturbed returns need not diminish: of two precise lines of sight that
+    cross, the later disturbance blurs what either fixes, but not that they cross. So there is no bound.
+    """
+
+    submodular = False
+    measure: Measure = "final-logdet"
+
+
+class FinalVariance(TrackingObjective):
+    """``tr P_K`` of the positions without measurements less that with them [m^2].
+
+    Monotone, as information never enlarges a covariance; but returns need not diminish, not even in one step:
+    along the short axis of a long, oblique ellipse a look removes little, and more once another has made the
+    ellipse rounder. So there is no bound.
+    """
+
+    submodular = False
+    measure: Measure = "final-trace"
+
+
+OBJECTIVES: dict[str, type[TrackingObjective]] = {
+    "trajectory": TrackingObjective,
+    "final-entropy": FinalEntropy,
+    "final-variance": FinalVariance,
+}
+
+
+def objective(name: str) -> TrackingObjective:
+    """Return the objective of this name.
+
+    Raises:
+        InputError: there is none.
+    """
+    if name not in OBJECTIVES:
+        raise InputError(f"unknown objective {name!r}; {nearest_name(name, OBJECTIVES)}")
+    return OBJECTIVES[name]()

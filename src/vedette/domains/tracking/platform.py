@@ -1,0 +1,170 @@
+"""One tracker: a vehicle with a sensor, the courses it can take, and its best reply to the team."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.domains.tracking import impact as impacts
+from vedette.domains.tracking.ascent import ascend, turn_rate_gradient
+from vedette.domains.tracking.belief import Tracks
+from vedette.domains.tracking.courses import Course, sequences
+from vedette.domains.tracking.impact import Impact, Impacts
+from vedette.domains.tracking.objective import TrackingObjective
+from vedette.domains.tracking.sensing import Sensor
+from vedette.domains.tracking.transit import nearest_worth, times_to_see
+from vedette.errors import InputError
+from vedette.problem import Reach
+from vedette.vehicle import drive
+
+EPSILON = 1e-9  # a new course must gain this share more than the present one
+
+
+@dataclass(eq=False)
+class TrackingPlatform:
+    """A vehicle at constant speed, or a sensor that only turns; it looks at the end of every step.
+
+    ``place`` says where it is at the belief's step before ``prepare``; a round then works on what that found.
+
+    Raises:
+        InputError: a speed or turn rate that is negative or not finite.
+    """
+
+    speed: float  # [m/s]; 0: a sensor on a pivot
+    turn_rate: float  # most it can turn [rad/s]
+    sensor: Sensor
+    objective: TrackingObjective = field(default_factory=TrackingObjective)
+    continuous: bool = False  # improve the best sequence of right, straight and left by its gradient
+    pose: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))  # [m, m, rad], team frame
+    present: Course | None = None
+    courses: list[Course] = field(default_factory=list)  # that are compared; set by prepare
+    candidates: Impacts | None = None  # what each would observe
+    _near: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
+    _known: dict[Course, Impact] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for name, value, unit in (("speed", self.speed, "m/s"), ("turn_rate", self.turn_rate, "rad/s")):
+            if not (math.isfinite(value) and value >= 0.0):
+                raise InputError(f"tracker: {name} must be >= 0 {unit}; got {value}")
+
+    def place(self, x: float, y: float, heading: float, present: Course | None = None) -> None:
+        """Say where it will be at the belief's step [m, m, rad], team frame, and which course it is on."""
+        self.pose, self.present = np.array([x, y, heading]), present
+
+    def prepare(self, belief: Tracks) -> None:
+        """List the courses, the present one among them, and what each would observe: the slow part."""
+        rates = sequences(self.turn_rate, belief.horizon)
+        carried = np.clip(self.carry_over(belief, self.present).rates, -self.turn_rate, self.turn_rate)
+        if not (rates == carried).all(axis=1).any():
+            rates = np.vstack([rates, carried])
+        self.courses = [Course(belief.k0, tuple(row)) for row in rates.tolist()]
+        self._near = self._within_reach(belief)
+        self._known.clear()
+        self.candidates = self._impacts(belief, rates)
+
+    def carry_over(self, belief: Tracks, strategy: Course | None) -> Course:
+        """Restate a course from the belief's step on, straight ahead where it has ended."""
+        return (strategy or Course(belief.k0, ())).from_step(belief.k0, belief.horizon)
+
+    def impact(self, belief: Tracks, strategy: Course) -> Impact:
+        """Information about each target along the course, step by step; paper, eq. (25)."""
+        if strategy not in self._known:
+            self._known[strategy] = self._impacts(belief, np.array([strategy.rates]))[0]
+        return self._known[strategy]
+
+    def reply(self, belief: Tracks, others: Impact, current: Course) -> Course:
+        """Best course against the rest of the team, ``current`` if none is better; paper, eq. (30).
+
+        While nothing can be gained within the horizon, the course that soonest gets where something can.
+        """
+        assert self.candidates is not None
+        values = self.objective.values(belief, others, self.candidates)
+        base, present = self.objective.values(
+            belief, others, [self.objective.nothing(belief), self.impact(belief, current)]
+        )
+        best, value = self.courses[int(np.argmax(values))], float(values.max())
+        least = EPSILON * max(1.0, abs(base))
+        if max(value, present) - base <= least:
+            return self._transit(belief, others, current)
+        if self.continuous:
+            start = best if value > present else current
+            best, value = self._climb(belief, others, start)
+        return best if value - present > EPSILON * max(1.0, present - base) else current
+
+    def slack(self, belief: Tracks, team: Impact) -> float:
+        """No course adds more than this to the team's impact; infinite where the objective has no bound.
+
+        With continuous turn rates: what the best look from anywhere within reach would add, at every step.
+        """
+        assert self.candidates is not None
+        if not (self.objective.monotone and self.objective.submodular):
+            return math.inf
+        own = [self._ceiling(belief)] if self.continuous else self.candidates
+        return max(
+            0.0, float(self.objective.values(belief, team, own).max()) - self.objective.value(belief, team)
+        )
+
+    def reach(self, belief: Tracks) -> Reach:
+        """Return the box within which it may see targets during the horizon [m], team frame."""
+        most = self.speed * belief.dt * belief.horizon + self.sensor.range
+        x, y, _ = self.pose.tolist()
+        return ((x - most, y - most, x + most, y + most),)
+
+    # -- what a course observes ----------------------------------------------------------------------
+
+    def _within_reach(self, belief: Tracks) -> NDArray[np.int64]:
+        """Targets that it might see at some step."""
+        gone = self.speed * belief.dt * np.arange(1, belief.horizon + 1)
+        away = np.hypot(*np.moveaxis(belief.predicted_means[..., :2] - self.pose[:2], -1, 0))
+        return np.flatnonzero((away <= self.sensor.range + gone[:, None]).any(axis=0))
+
+    def _impacts(self, belief: Tracks, rates: NDArray[np.float64]) -> Impacts:
+        poses = drive(self.pose, rates, self.speed, belief.dt)
+        points = belief.predicted_means[:, self._near, :2].swapaxes(0, 1)
+        return impacts.stack_dense(self.sensor.information(poses[:, None], points), self._near)
+
+    def _ceiling(self, belief: Tracks) -> Impact:
+        """The best information in any direction, from the nearest that it can come to each target."""
+        gone = self.speed * belief.dt * np.arange(1, belief.horizon + 1)
+        points = belief.predicted_means[:, self._near, :2].swapaxes(0, 1)
+        r = np.maximum(np.hypot(*np.moveaxis(points - self.pose[:2], -1, 0)) - gone, self.sensor.min_range)
+        a, b, _, _ = self.sensor.weights(r)
+        most = np.where(r <= self.sensor.range, self.sensor.detection * np.maximum(a, b), 0.0)
+        return impacts.impact_of(most[..., None] * np.array([1.0, 0.0, 1.0]), self._near)
+
+    # -- how a course is chosen ----------------------------------------------------------------------
+
+    def _climb(self, belief: Tracks, others: Impact, start: Course) -> tuple[Course, float]:
+        """Improve a course by the gradient of the value as it is computed, but for the edges of the view."""
+        near, dt = self._near, belief.dt
+        points = belief.predicted_means[:, near, :2].swapaxes(0, 1)
+        theirs = np.zeros((len(belief), belief.horizon, 3))
+        theirs[others.targets] = others.blocks
+
+        def values(rates: NDArray[np.float64]) -> NDArray[np.float64]:
+            return self.objective.values(belief, others, self._impacts(belief, rates))
+
+        def gradient(rates: NDArray[np.float64]) -> NDArray[np.float64]:
+            poses = drive(self.pose, rates, self.speed, dt)
+            team = Impact(near, theirs[near] + self.sensor.information(poses, points))
+            slopes = self.sensor.slope(poses, points, self.objective.gradient(belief, team))
+            return turn_rate_gradient(self.pose, rates, self.speed, dt, slopes.sum(axis=0))
+
+        rates, value = ascend(values, gradient, np.array(start.rates), self.turn_rate)
+        return Course(belief.k0, tuple(rates.tolist())), value
+
+    def _transit(self, belief: Tracks, others: Impact, current: Course) -> Course:
+        """Head for the target that is worth most for the time to see it, by the course that ends nearest."""
+        points = belief.predicted_means[-1, :, :2]
+        times = times_to_see(self.sensor, self.speed, self.turn_rate, self.pose, points)
+        target = nearest_worth(self.objective, belief, others, self.sensor, times)
+        if target is None:
+            return current
+        rates = np.array([current.rates, *(course.rates for course in self.courses)])
+        ends = drive(self.pose, rates, self.speed, belief.dt)[:, -1]
+        left = times_to_see(self.sensor, self.speed, self.turn_rate, ends, points[target])
+        best = int(np.argmin(left))
+        return self.courses[best - 1] if left[best] < left[0] - EPSILON else current

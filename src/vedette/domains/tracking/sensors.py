@@ -1,0 +1,221 @@
+"""The kinds of sensors, and how a scenario names them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from reprlib import repr as repr_short
+from typing import Any, ClassVar, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.domains.tracking.sensing import Sensor, geometry, plain, sensor_fields, wrapped
+from vedette.errors import InputError, nearest_name
+
+Floats: TypeAlias = NDArray[np.float64]
+
+_RANGE_NOISE = {"range_noise": (1e-3, 1e5, "m")}
+_BEARING_NOISE = {"bearing_noise": (0.01, 90.0, "deg")}
+_POSITION_NOISE = {"noise": (1e-3, 1e5, "m")}
+
+
+@dataclass(frozen=True, kw_only=True)
+class RangeBearing(Sensor):
+    """Distance [m], and direction from the heading [rad] in (-pi, pi]."""
+
+    limits: ClassVar = {**_RANGE_NOISE, **_BEARING_NOISE}
+
+    range_noise: float = 0.5  # standard deviation [m]
+    bearing_noise: float = 2.0  # standard deviation [deg]
+
+    def weights(self, r: Floats) -> tuple[Floats, ...]:
+        """``1 / sigma_r^2`` along the line of sight, ``1 / (r sigma_b)^2`` across it."""
+        along = np.full_like(r, self.range_noise**-2)
+        across = (r * math.radians(self.bearing_noise)) ** -2
+        return along, across, np.zeros_like(r), -2.0 * across / r
+
+    def predicted(self, pose: Floats, point: Floats) -> Floats:
+        """Range and bearing of the point."""
+        return np.array([math.dist(point, pose[:2]), _bearing(pose, point)])
+
+    def jacobian(self, pose: Floats, point: Floats) -> Floats:
+        """``e_r'`` and ``e_t' / r``."""
+        r, radial, across = geometry(pose, point)
+        return np.stack([radial, across / max(float(r), self.min_range)])
+
+    def curvature(self, pose: Floats, point: Floats, covariance: Floats) -> tuple[Floats, Floats]:
+        """Those of range and bearing."""
+        r, pr, pt, prt = _spread(pose, point, covariance, self.min_range)
+        return (
+            np.array([pt / (2.0 * r), -prt / r**2]),
+            np.array([(pt / r) ** 2 / 2.0, (pr * pt + prt**2) / r**4]),
+        )
+
+    @property
+    def deviations(self) -> Floats:
+        """Of the range [m] and the bearing [rad]."""
+        return np.array([self.range_noise, math.radians(self.bearing_noise)])
+
+    def innovation(self, measured: Floats, expected: Floats) -> Floats:
+        """Differences, that of the bearings in (-pi, pi]."""
+        difference = measured - expected
+        difference[1] = wrapped(difference[1])
+        return difference
+
+
+@dataclass(frozen=True, kw_only=True)
+class BearingOnly(Sensor):
+    """Direction from the heading [rad] in (-pi, pi]."""
+
+    limits: ClassVar = _BEARING_NOISE
+
+    bearing_noise: float = 2.0  # standard deviation [deg]
+
+    def weights(self, r: Floats) -> tuple[Floats, ...]:
+        """Nothing along the line of sight, ``1 / (r sigma_b)^2`` across it."""
+        across = (r * math.radians(self.bearing_noise)) ** -2
+        return np.zeros_like(r), across, np.zeros_like(r), -2.0 * across / r
+
+    def predicted(self, pose: Floats, point: Floats) -> Floats:
+        """Bearing of the point."""
+        return np.array([_bearing(pose, point)])
+
+    def jacobian(self, pose: Floats, point: Floats) -> Floats:
+        """``e_t' / r``."""
+        r, _, across = geometry(pose, point)
+        return across[None] / max(float(r), self.min_range)
+
+    def curvature(self, pose: Floats, point: Floats, covariance: Floats) -> tuple[Floats, Floats]:
+        """``-P_rt / r^2`` and ``(P_rr P_tt + P_rt^2) / r^4``."""
+        r, pr, pt, prt = _spread(pose, point, covariance, self.min_range)
+        return np.array([-prt / r**2]), np.array([(pr * pt + prt**2) / r**4])
+
+    @property
+    def deviations(self) -> Floats:
+        """Of the bearing [rad]."""
+        return np.array([math.radians(self.bearing_noise)])
+
+    def innovation(self, measured: Floats, expected: Floats) -> Floats:
+        """Difference in (-pi, pi]."""
+        return wrapped(measured - expected)
+
+
+@dataclass(frozen=True, kw_only=True)
+class RangeOnly(Sensor):
+    """Distance [m]."""
+
+    limits: ClassVar = _RANGE_NOISE
+
+    range_noise: float = 0.5  # standard deviation [m]
+
+    def weights(self, r: Floats) -> tuple[Floats, ...]:
+        """``1 / sigma_r^2`` along the line of sight, nothing across it."""
+        zero = np.zeros_like(r)
+        return np.full_like(r, self.range_noise**-2), zero, zero, zero
+
+    def predicted(self, pose: Floats, point: Floats) -> Floats:
+        """Range of the point."""
+        return np.array([math.dist(point, pose[:2])])
+
+    def jacobian(self, pose: Floats, point: Floats) -> Floats:
+        """``e_r'``."""
+        return geometry(pose, point)[1][None]
+
+    def curvature(self, pose: Floats, point: Floats, covariance: Floats) -> tuple[Floats, Floats]:
+        """``P_tt / 2r`` and ``(P_tt / r)^2 / 2``."""
+        r, _, pt, _ = _spread(pose, point, covariance, self.min_range)
+        return np.array([pt / (2.0 * r)]), np.array([(pt / r) ** 2 / 2.0])
+
+    @property
+    def deviations(self) -> Floats:
+        """Of the range [m]."""
+        return np.array([self.range_noise])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Position(Sensor):
+    """Position x, y in the team frame [m], equally good in all directions."""
+
+    limits: ClassVar = _POSITION_NOISE
+
+    noise: float = 1.0  # standard deviation of each coordinate [m]
+
+    def weights(self, r: Floats) -> tuple[Floats, ...]:
+        """``1 / sigma^2`` both ways."""
+        both, zero = np.full_like(r, self.noise**-2), np.zeros_like(r)
+        return both, both, zero, zero
+
+    def predicted(self, pose: Floats, point: Floats) -> Floats:
+        """The point."""
+        return point
+
+    def jacobian(self, pose: Floats, point: Floats) -> Floats:
+        """The identity."""
+        return np.eye(2)
+
+    def curvature(self, pose: Floats, point: Floats, covariance: Floats) -> tuple[Floats, Floats]:
+        """None."""
+        return np.zeros(2), np.zeros(2)
+
+    @property
+    def deviations(self) -> Floats:
+        """Of x and y [m]."""
+        return np.array([self.noise, self.noise])
+
+
+SENSORS: dict[str, type[Sensor]] = {
+    "range-bearing": RangeBearing,
+    "bearing": BearingOnly,
+    "range": RangeOnly,
+    "position": Position,
+}
+
+
+def sensor_of(entry: object, where: str) -> Sensor:
+    """Return the sensor that a scenario describes: ``{type: bearing, range: 60, bearing_noise: 2}``.
+
+    Every field but ``type`` has a default; lengths are in metres, angles in degrees.
+
+    Raises:
+        InputError: not such a mapping, an unknown type or field (with the nearest valid name), a value of the
+            wrong type or out of range; the line starts with ``where``.
+    """
+    if not isinstance(entry, Mapping):
+        raise InputError(f"{where}: must be 'field: value' pairs with a type; got {repr_short(entry)}")
+    name = entry.get("type")
+    if not isinstance(name, str) or name not in SENSORS:
+        raise InputError(
+            f"{where}: unknown sensor type {repr_short(name)}; {nearest_name(str(name), SENSORS)}"
+        )
+    kind = SENSORS[name]
+    values: dict[str, Any] = {}
+    for key, value in entry.items():
+        if key == "type":
+            continue
+        known = sensor_fields(kind)
+        if key not in known:
+            raise InputError(
+                f"{where}: a {name} sensor has no field {repr_short(key)}; {nearest_name(str(key), known)}"
+            )
+        values[key] = plain(value)
+    try:
+        return kind(**values)
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from error
+
+
+def _bearing(pose: Floats, point: Floats) -> float:
+    """Direction of a point from the heading [rad] in (-pi, pi]."""
+    return float(wrapped(math.atan2(point[1] - pose[1], point[0] - pose[0]) - pose[2]))
+
+
+def _spread(
+    pose: Floats, point: Floats, covariance: Floats, min_range: float
+) -> tuple[float, float, float, float]:
+    """Range [m], and the position's variances along and across the line of sight and between [m^2]."""
+    r, radial, across = geometry(pose, point)
+    axes = np.stack([radial, across])
+    (rr, rt), (_, tt) = axes @ covariance @ axes.T
+    return max(float(r), min_range), float(rr), float(tt), float(rt)
