@@ -1,0 +1,208 @@
+"""The classic channel filter on a tree, for static and moving targets, in a loss-proof form."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from vedette.fusion.gaussian.edge import Edge
+from vedette.fusion.gaussian.information import Information, Motion
+from vedette.fusion.gaussian.intersection import intersect
+from vedette.fusion.gaussian.node import Node
+from vedette.fusion.gaussian.wire import TrackMessage, decode, encode
+from vedette.fusion.link import Boots, check_boot
+
+RESEND_AFTER = 2.5  # [s]
+GENERATION_BITS = 24
+_GENERATIONS = (1 << GENERATION_BITS) - 1
+
+
+class GaussianChannel:
+    """``Y_i <- Y_i + (Y_j - Y_ij)``, ``Y_ij <- Y_j`` on hearing j: what j says beyond what both know is new.
+
+    Node and channels are predicted with the same F and Q at the same steps. What crosses an edge are whole
+    tracks with a number, and each side keeps ``Y_ij`` for every number that the other may have taken in; so
+    loss, repetition and reordering neither lose information nor count any twice. Memory is O(neighbours).
+
+    Exact for static targets (F = I, Q = 0) whatever the delay, and for moving ones if all information of a
+    step has crossed the tree before the next prediction. What crosses later has passed through the same
+    process noise as what it meets, which subtraction ignores: tracks are then a little overconfident.
+
+    The neighbours must form a tree: on a cycle information comes back as if it were new. When the tree
+    changes or a robot restarts, nobody knows any more what two neighbours have in common. So a new
+    **generation** begins: word of it spreads over the tree, all robots' tracks are merged once by covariance
+    intersection, from the leaves inwards, and the result goes outwards; from there on channels are exact
+    again. What all robots knew is kept whole; of what only some knew, a part. Nothing is counted twice.
+    """
+
+    def __init__(
+        self,
+        robot: int,
+        boot: int,
+        prior: Information,
+        motion: Motion,
+        start: int,
+        *,
+        resend_after: float = RESEND_AFTER,
+    ) -> None:
+        """``prior`` are the tracks at step ``start``, ahead of its evidence; the same for every robot.
+
+        ``boot < 2**38`` must differ from those of the robot's earlier starts.
+        """
+        check_boot(boot)
+        self._robot, self._boot, self._generation = robot, boot, 0
+        self._node = Node(prior, motion, start)
+        self._origin: Information | None = prior  # the prior, predicted; None once there is a new generation
+        self._settled = True  # the merging at the generation's start has come to this robot
+        self._untouched = True  # has neither told nor taken in any tracks
+        self._edges: dict[int, Edge] = {}
+        self._boots = Boots()
+        self._resend_after = resend_after
+
+    @property
+    def digest(self) -> int:
+        """64 bits that agree if step and tracks do, up to rounding."""
+        return self._node.digest
+
+    @property
+    def _nonce(self) -> int:
+        return (self._boot << GENERATION_BITS) + self._generation
+
+    def observe(self, step: int, likelihood: Information) -> None:
+        """Take in this robot's likelihood of the present step (or a later one: advance to it).
+
+        Raises InputError for an earlier step, and for a likelihood of the wrong shape.
+        """
+        self.advance(step)
+        self._node.observe(step, likelihood)
+        self._spread(None)
+
+    def advance(self, step: int) -> None:
+        """Predict node and channels up to a step; earlier ones change nothing."""
+        while self._node.step < step:
+            self._node.predict()
+            if self._origin is not None:
+                self._origin = self._node.forward(self._origin)
+            for edge in self._edges.values():
+                edge.common = {n: self._node.forward(track) for n, track in edge.common.items()}
+            for neighbour, edge in self._edges.items():
+                if edge.early is not None and edge.early.step <= self._node.step:
+                    message, edge.early = edge.early, None
+                    self._take(neighbour, edge, message)
+
+    def estimate(self) -> tuple[int, Information]:
+        """Return the step and the tracks, its evidence included."""
+        return self._node.step, self._node.track
+
+    def set_neighbours(self, neighbours: Sequence[int]) -> None:
+        """Take these as the neighbours on the tree; begin a new generation if tracks have been exchanged."""
+        if set(neighbours) == self._edges.keys():
+            return
+        self._edges = {neighbour: Edge() for neighbour in neighbours}
+        self._renew(self._generation if self._untouched else self._generation + 1)
+
+    def outgoing(self, neighbour: int, now: float) -> bytes | None:
+        """Return tracks that are news to the neighbour or got lost, or a bare acknowledgement; else None."""
+        edge = self._edges[neighbour]
+        overdue = edge.outstanding and now - edge.sent_at >= self._resend_after
+        greets = edge.peer < 0 and now - edge.greeted_at >= self._resend_after
+        tells = edge.news and edge.has_room and self._may_tell(edge)
+        if not (tells or overdue or greets or edge.owed):
+            return None
+        if tells:
+            edge.tell(self._node, now)
+            self._untouched = False
+        elif overdue:
+            edge.sent_at = now
+        edge.owed = False
+        edge.greeted_at = now
+        included, step, data = edge.latest
+        data = data if tells or overdue else b""
+        return encode(TrackMessage(self._nonce, edge.peer, edge.sent, edge.heard, included, step, data))
+
+    def receive(self, neighbour: int, payload: bytes, now: float) -> None:
+        """Take in what a neighbour tells (ValueError if malformed, and nothing changes).
+
+        A payload from a robot that is no neighbour, or from its past, is ignored.
+        """
+        message = decode(payload)
+        boot, generation = divmod(message.nonce, 1 << GENERATION_BITS)
+        if message.data:
+            self._node.decoded(message)
+        if generation == _GENERATIONS:
+            raise ValueError("track payload: the generation is out of range")
+        if neighbour not in self._edges or self._boots.is_stale(neighbour, boot):
+            return
+        if generation < self._generation:
+            self._edges[neighbour].owed = True  # so that it learns of the new one
+            return
+        if generation > self._generation:
+            self._renew(generation)
+        elif self._edges[neighbour].peer not in (-1, message.nonce):
+            self._renew(self._generation + 1)  # it has restarted, and may have passed on what others know
+        if generation == self._generation:
+            self._hear(neighbour, self._edges[neighbour], message)
+
+    def _hear(self, neighbour: int, edge: Edge, message: TrackMessage) -> None:
+        edge.peer = message.nonce
+        is_answer = message.echo == self._nonce
+        if is_answer:
+            edge.acknowledged = max(edge.acknowledged, min(message.heard, edge.sent))
+        if message.data and (is_answer or message.echo < 0):
+            edge.owed = True
+            self._take(neighbour, edge, message)
+        if is_answer:
+            edge.release(message)
+
+    def _take(self, neighbour: int, edge: Edge, message: TrackMessage) -> None:
+        """Take in a neighbour's tracks: their news if we know what is common, all of an offer if we may."""
+        if message.sent <= edge.heard:
+            return
+        if message.step > self._node.step:
+            edge.early = message
+            return
+        included = message.included if message.echo >= 0 else 0
+        theirs = self._node.decoded(message)
+        if included in edge.common:
+            merged = self._node.track + theirs - edge.common[included]
+            if not merged.is_proper:
+                return  # no honest neighbour forgets what both know
+            edge.learn(theirs, included)
+            self._node.track = merged
+            edge.news |= not self._settled and included < edge.sent  # offers after the one that was merged
+            self._settled = True
+        elif included == 0 and self._may_take(neighbour, edge):
+            self._node.track = intersect(self._node.track, theirs)
+            edge.take()
+            edge.news = True
+            self._settled = all(other.taken for other in self._edges.values())
+        else:
+            return
+        edge.heard = message.sent
+        self._untouched = False
+        self._spread(edge)
+
+    def _spread(self, source: Edge | None) -> None:
+        for edge in self._edges.values():
+            edge.news |= edge is not source
+
+    # -- a generation's start: offers go inwards, the merged tracks outwards ------------------------------
+
+    def _renew(self, generation: int) -> None:
+        """Begin a generation with nothing known to be common (the first one: nothing but the prior)."""
+        if generation > 0:
+            self._origin, self._untouched = None, False
+        self._generation = generation
+        self._settled = generation == 0 or not self._edges
+        common = {} if self._origin is None else {0: self._origin}
+        self._edges = {neighbour: Edge(dict(common)) for neighbour in self._edges}
+
+    def _may_tell(self, edge: Edge) -> bool:
+        """Once settled; before that, an offer, when all other neighbours' offers are merged."""
+        if self._settled:
+            return True
+        others = all(other.taken for other in self._edges.values() if other is not edge)
+        return others and not edge.taken and edge.acknowledged == 0
+
+    def _may_take(self, neighbour: int, edge: Edge) -> bool:
+        """Take one offer of each neighbour; where two offers cross, the robot of higher number takes."""
+        return not self._settled and not edge.taken and (edge.sent == 0 or self._robot > neighbour)

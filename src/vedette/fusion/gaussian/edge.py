@@ -1,0 +1,79 @@
+"""One end of a channel: what both sides know, for every message that the other may have taken in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from vedette.fusion.gaussian.information import Information
+from vedette.fusion.gaussian.node import Node
+from vedette.fusion.gaussian.wire import TrackMessage
+
+MOST_PENDING = 8  # tracks sent and not known to have arrived
+
+
+class Told(NamedTuple):
+    """The latest tracks sent, kept in case they get lost."""
+
+    included: int = 0
+    step: int = 0
+    data: bytes = b""
+
+
+_NOTHING = Told()
+
+
+@dataclass(eq=False)
+class Edge:
+    """Numbers and common information of one neighbour, at the node's step.
+
+    ``common[n]`` is what both sides know if the neighbour has taken in the tracks that we sent as number n,
+    and none later; 0 stands for none at all. Numbers that it cannot come back to are dropped.
+    """
+
+    common: dict[int, Information] = field(default_factory=dict)
+    peer: int = -1  # the neighbour's side of the edge; -1: never heard
+    sent: int = 0
+    acknowledged: int = 0
+    heard: int = 0
+    latest: Told = _NOTHING
+    sent_at: float = -float("inf")
+    greeted_at: float = -float("inf")
+    news: bool = True  # we hold something that we have not told
+    owed: bool = False  # an acknowledgement
+    taken: bool = False  # the neighbour's offer is merged into our tracks
+    early: TrackMessage | None = None  # of a step that we have not reached
+
+    @property
+    def outstanding(self) -> bool:
+        """Whether the latest tracks may have got lost."""
+        return self.acknowledged < self.sent
+
+    @property
+    def has_room(self) -> bool:
+        """Whether one more message may be on its way."""
+        return len(self.common) < MOST_PENDING
+
+    def tell(self, node: Node, now: float) -> None:
+        """Note that the node's tracks go to the neighbour under a new number."""
+        self.sent += 1
+        self.common[self.sent] = node.track
+        self.latest = Told(self.heard, node.step, node.encoded())
+        self.sent_at = now
+        self.news = False
+
+    def learn(self, theirs: Information, included: int) -> None:
+        """Note that both sides know from now on what the neighbour's tracks add to what they knew."""
+        news = theirs - self.common[included]
+        self.common = {n: track + news for n, track in self.common.items() if n >= included}
+
+    def take(self) -> None:
+        """Note that the neighbour's offer is merged, and that any of ours will not be."""
+        self.taken = True
+        self.acknowledged = self.sent
+        self.common = {}
+
+    def release(self, message: TrackMessage) -> None:
+        """Drop what the neighbour cannot come back to: all that it sent is here, and it has heard more."""
+        if self.heard >= message.sent and message.heard in self.common:
+            self.common = {n: track for n, track in self.common.items() if n >= message.heard}
