@@ -1,0 +1,165 @@
+"""Sensors that may detect a target in range: what they report, and how likely a report is."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from vedette.errors import InputError, nearest_name
+from vedette.kernels.search import look_footprints
+from vedette.maps import GridFrame
+
+Report: TypeAlias = tuple[float, float] | None  # where a target was reported [m], team frame; None: nowhere
+Pose: TypeAlias = ArrayLike  # (3,) x, y, heading [m, m, rad], team frame
+
+SAMPLES = 2  # points along each side of a cell over which a look is averaged
+LEAST_FALSE_ALARM = 1e-9  # assumed at least, so that no report is taken for proof
+LEAST_MISS = 1e-9  # likewise for looks that cannot miss
+_TABLE = 4096  # entries in the squared distance
+
+
+@dataclass(frozen=True)
+class Detector(ABC):
+    """``P(r)`` up to a range, in a field of view; at most one report a look, of the target or a false alarm.
+
+    A look at a target at distance r reports it with probability P(r), at its place plus noise; otherwise,
+    with probability ``false_alarm``, it reports a place anywhere in the field of view.
+
+    Raises:
+        InputError: a field is not a number in its range; the line names it.
+    """
+
+    detection: float = 0.9  # probability of detection at best, per look
+    range: float = 100.0  # beyond it nothing is detected [m]
+    view: float = 360.0  # field of view, centred on the heading [deg]
+    noise: float = 10.0  # standard deviation of a reported place along each axis [m]
+    false_alarm: float = 0.0  # probability of a false alarm, per look without a detection
+
+    def __post_init__(self) -> None:
+        for name, (low, high, unit) in _RANGES.items():
+            value = getattr(self, name, low)
+            number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+            if not number or not low <= value <= high:
+                raise InputError(f"detector: {name} must be {low:g} to {high:g}{unit}; got {value!r}")
+
+    @abstractmethod
+    def probability(self, distance: ArrayLike) -> NDArray[np.float64]:
+        """Probability that one look detects a target at this distance [m] in the field of view."""
+
+    def table(self) -> NDArray[np.float64]:
+        """Return the probability in equal steps of the squared distance, as the kernel takes it."""
+        return self.probability(self.range * np.sqrt((np.arange(_TABLE) + 0.5) / _TABLE))
+
+    def footprints(
+        self, frame: GridFrame, poses: NDArray[np.float64]
+    ) -> tuple[NDArray[np.int64], NDArray[np.uint32], NDArray[np.float64]]:
+        """Probability that at least one of L looks detects a target that is anywhere in a cell.
+
+        Args:
+            frame: the grid.
+            poses: ``(N, L, 3)`` x, y, heading [m, m, rad], team frame.
+
+        Returns:
+            starts ``(N + 1,)``, cells ``(M,)`` and probabilities ``(M,)``, the rows of a sparse matrix.
+        """
+        local = np.asarray(poses, np.float64) - (frame.origin_x, frame.origin_y, 0.0)
+        view = math.radians(self.view) if self.view < 360.0 else 2.0 * math.pi
+        return look_footprints(frame.shape, frame.resolution, local, self.table(), self.range, view, SAMPLES)
+
+    def glimpse(self, rng: np.random.Generator, pose: Pose, target: ArrayLike) -> Report:
+        """Return what one look reports with the target at ``target`` (2,) [m], team frame."""
+        x, y, heading = np.asarray(pose, np.float64)
+        dx, dy = np.asarray(target, np.float64) - (x, y)
+        off = (math.atan2(dy, dx) - heading + math.pi) % (2.0 * math.pi) - math.pi
+        seen = math.degrees(abs(off)) <= self.view / 2.0
+        chance = float(self.probability(math.hypot(dx, dy))) if seen else 0.0
+        detects, alarms = rng.random(2)
+        if detects < chance:
+            error = self.noise * rng.standard_normal(2)
+            return float(x + dx + error[0]), float(y + dy + error[1])
+        if alarms < self.false_alarm:
+            away = self.range * math.sqrt(rng.random())
+            bearing = heading + math.radians(self.view) * (rng.random() - 0.5)
+            return float(x + away * math.cos(bearing)), float(y + away * math.sin(bearing))
+        return None
+
+    def log_likelihood(
+        self, frame: GridFrame, pose: Pose, report: Report
+    ) -> tuple[NDArray[np.uint32], NDArray[np.float64]]:
+        """``ln p(report | target in cell) / p(report | target elsewhere)`` of one look, where it is not 0.
+
+        None: ``ln (1 - P)``. A place z: ``ln (1 - P + P N(z; x, noise) A / P_FA)``, A the area of the field
+        of view. The noise is widened by that of a target anywhere in its cell. ``P_FA`` counts as 1e-9 at
+        least, and a miss likewise.
+
+        Returns:
+            cells ``(M,)`` and log-likelihood ratios ``(M,)`` [nat].
+        """
+        _, cells, detection = self.footprints(frame, np.asarray(pose, np.float64)[None, None])
+        if report is None:
+            return cells, np.log(np.maximum(1.0 - detection, LEAST_MISS))
+        variance = self.noise**2 + frame.resolution**2 / 12.0
+        square = ((frame.centres(cells) - report) ** 2).sum(axis=1)
+        density = np.exp(-square / (2.0 * variance)) / (2.0 * math.pi * variance)
+        area = math.radians(self.view) / 2.0 * self.range**2
+        alarms = max(self.false_alarm, LEAST_FALSE_ALARM) / area
+        return cells, np.log(np.maximum(1.0 - detection, LEAST_MISS) + detection * density / alarms)
+
+
+@dataclass(frozen=True)
+class DefiniteRange(Detector):
+    """``P(r) = P_D`` up to the range."""
+
+    def probability(self, distance: ArrayLike) -> NDArray[np.float64]:
+        """``P_D [r <= R]``."""
+        return np.where(np.asarray(distance) <= self.range, self.detection, 0.0)
+
+
+@dataclass(frozen=True)
+class ExponentialRange(Detector):
+    """``P(r) = P_D exp(-(r / sigma)^k)``, cut at the range."""
+
+    sigma: float = 50.0  # distance at which P is P_D / e [m]
+    power: float = 2.0  # k
+
+    def probability(self, distance: ArrayLike) -> NDArray[np.float64]:
+        """``P_D exp(-(r / sigma)^k) [r <= R]``."""
+        distance = np.asarray(distance, np.float64)
+        falling = self.detection * np.exp(-((distance / self.sigma) ** self.power))
+        return np.where(distance <= self.range, falling, 0.0)
+
+
+DETECTORS: dict[str, type[Detector]] = {"definite": DefiniteRange, "exponential": ExponentialRange}
+
+_RANGES = {  # field: lowest, highest, unit
+    "detection": (0.0, 1.0, ""),
+    "range": (1e-3, 1e6, " m"),
+    "view": (1.0, 360.0, " deg"),
+    "noise": (0.0, 1e6, " m"),
+    "false_alarm": (0.0, 1.0, ""),
+    "sigma": (1e-3, 1e6, " m"),
+    "power": (0.1, 20.0, ""),
+}
+
+
+def detector_from(settings: Mapping[str, Any]) -> Detector:
+    """Make a detector from ``{type: NAME, field: value, ...}``, as a scenario file says it.
+
+    Raises:
+        InputError: no or an unknown type, an unknown field (with the nearest known), a value out of range.
+    """
+    kind = settings.get("type")
+    if not isinstance(kind, str) or kind not in DETECTORS:
+        raise InputError(f"detector: unknown type {kind!r}; {nearest_name(str(kind), DETECTORS)}")
+    known = [field.name for field in fields(DETECTORS[kind])]
+    values = {name: value for name, value in settings.items() if name != "type"}
+    for name in values:
+        if name not in known:
+            raise InputError(f"detector: unknown field {name!r}; {nearest_name(str(name), known)}")
+    return DETECTORS[kind](**values)

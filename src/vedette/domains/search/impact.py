@@ -1,0 +1,140 @@
+"""The impact of a search strategy: quantised log-misses per cell and layer, sparse."""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.kernels.search import Keys, Misses
+from vedette.maps import GridFrame
+
+STEPS_PER_NAT = 16.0
+MOST = 255  # a miss probability of exp(-255/16) = 1.2e-7 or less
+
+
+@dataclass(frozen=True, eq=False)
+class Impact:
+    """Log-misses of looks; an absent entry is a miss probability of 1 (identity)."""
+
+    keys: Keys  # (M,) strictly increasing, cell * layers + layer
+    misses: Misses  # (M,) log-miss in steps of 1/16 nat, 1..255
+
+    def __eq__(self, other: object) -> bool:
+        return (
+            isinstance(other, Impact)
+            and np.array_equal(self.keys, other.keys)
+            and np.array_equal(self.misses, other.misses)
+        )
+
+    def __hash__(self) -> int:
+        return hash((self.keys.tobytes(), self.misses.tobytes()))
+
+    @property
+    def sparse(self) -> tuple[Keys, Misses]:
+        """The two arrays, as the kernels take them."""
+        return self.keys, self.misses
+
+
+NOTHING = Impact(np.empty(0, np.uint32), np.empty(0, np.uint8))
+
+
+NOTHING = Impact(np.empty(0, np.uint32), np.empty(0, np.uint8))
+
+
+def quantise(probability: NDArray[np.float64]) -> Misses:
+    """``-16 ln(1 - p)``, rounded once; a detection probability below 3 % rounds to nothing (0)."""
+    with np.errstate(divide="ignore"):
+        levels = -STEPS_PER_NAT * np.log(1.0 - np.asarray(probability, np.float64))
+    return np.minimum(levels + 0.5, MOST).astype(np.uint8)
+
+
+def clip(impact: Impact, frame: GridFrame, layers: int, boxes: NDArray[np.float64]) -> Impact:
+    """Keep what lies in cells that any of the boxes touches.
+
+    If the boxes hold those of ``SearchPlatform.reach`` for every receiver, no receiver's gains change.
+
+    Args:
+        impact: what to send.
+        frame: the belief's grid.
+        layers: the belief's.
+        boxes: ``(B, 4)`` x_min, x_max, y_min, y_max [m], team frame.
+    """
+    row, col = np.divmod(impact.keys // np.uint32(layers), np.uint32(frame.cols))
+    keep = np.zeros(len(impact.keys), bool)
+    for x_min, x_max, y_min, y_max in boxes:
+        first, last = frame.cell(x_min, y_min), frame.cell(x_max, y_max)
+        keep |= (row >= first[0]) & (row <= last[0]) & (col >= first[1]) & (col <= last[1])
+    return Impact(impact.keys[keep], impact.misses[keep])
+
+
+class ImpactCodec:
+    """Impacts as bytes: layer by layer, cells by gaps, log-misses apart, deflated."""
+
+    def __init__(self, cells: int, layers: int) -> None:
+        """Take the belief's number of cells and layers."""
+        self._cells = cells
+        self._layers = layers
+
+    def encode(self, impact: Impact) -> bytes:
+        """Return at most ``bound`` bytes for any impact over these cells and layers."""
+        cell, layer = np.divmod(impact.keys.astype(np.int64), self._layers)
+        place = layer * self._cells + cell
+        order = np.argsort(place, kind="stable")
+        gap = np.diff(place[order], prepend=0)
+        small = np.minimum(gap, 255).astype(np.uint8)
+        large = gap[gap >= 255].astype("<u4")
+        count = np.array([len(gap)], "<u4")
+        body = b"".join((count.tobytes(), small.tobytes(), impact.misses[order].tobytes(), large.tobytes()))
+        return zlib.compress(body, 6, wbits=-15)
+
+    def decode(self, payload: bytes) -> Impact:
+        """Return the impact.
+
+        Raises:
+            ValueError: the payload is not an impact over these cells and layers.
+        """
+        body = self._inflate(payload)
+        count = int(np.frombuffer(body, "<u4", 1)[0])
+        if len(body) < 4 + 2 * count:
+            raise ValueError("impact has fewer entries than it declares")
+        small = np.frombuffer(body, np.uint8, count, 4)
+        misses = np.frombuffer(body, np.uint8, count, 4 + count)
+        large = body[4 + 2 * count :]
+        wide = small == 255
+        if len(large) != 4 * int(np.count_nonzero(wide)):
+            raise ValueError("impact has the wrong number of wide gaps")
+        gap = small.astype(np.int64)
+        gap[wide] = np.frombuffer(large, "<u4")
+        if np.any(gap[1:] == 0) or np.any(misses == 0):
+            raise ValueError("impact has the same cell and layer twice, or an empty entry")
+        place = np.cumsum(gap)
+        if count and place[-1] >= self._cells * self._layers:
+            raise ValueError("impact has a cell outside the area or a layer beyond the horizon")
+        layer, cell = np.divmod(place, self._cells)
+        keys = (cell * self._layers + layer).astype(np.uint32)
+        order = np.argsort(keys, kind="stable")
+        return Impact(keys[order], misses[order])
+
+    def _inflate(self, payload: bytes) -> bytes:
+        try:
+            unpacker = zlib.decompressobj(wbits=-15)
+            body = unpacker.decompress(payload, self._largest_body + 1)
+        except zlib.error as error:
+            raise ValueError(f"impact does not inflate: {error}") from None
+        if not unpacker.eof or unpacker.unused_data or len(body) < 4:
+            raise ValueError("impact is cut short or too large")
+        return body
+
+    @property
+    def bound(self) -> int:
+        """Largest encoding of any impact over these cells and layers [bytes]; no team size in it."""
+        return self._largest_body + 5 * (self._largest_body // 16383 + 1) + 64  # deflate at its worst
+
+    @property
+    def _largest_body(self) -> int:
+        """The count, two bytes an entry, four more a wide gap: gaps sum to less than the places."""
+        places = self._cells * self._layers
+        return 4 + 2 * places + 4 * (places // 255)

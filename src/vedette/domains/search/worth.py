@@ -1,0 +1,78 @@
+"""What a detection is worth by the layer in which it is made."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.errors import InputError
+
+DELAYS = np.array([0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0])  # after the horizon [horizons], first in each layer
+
+
+@dataclass(frozen=True, eq=False)
+class Worth:
+    """``w_k >= 0``, non-increasing in k: that makes the objective monotone and submodular.
+
+    Layers beyond the horizon are what platforms promise to search afterwards, by how much later.
+    """
+
+    weights: NDArray[np.float64]  # (horizon,) or, with promises, (horizon + len(DELAYS),)
+    horizon: int
+
+    def __post_init__(self) -> None:
+        weights = np.asarray(self.weights, np.float64)
+        if self.horizon < 1 or weights.shape not in (
+            (self.horizon,),
+            (self.horizon + len(DELAYS),),
+        ):
+            raise InputError(
+                f"worth: {weights.shape} weights for a horizon of {self.horizon}; give one a step, "
+                f"and none or {len(DELAYS)} more"
+            )
+        if not (np.isfinite(weights).all() and (weights >= 0.0).all() and (np.diff(weights) <= 0.0).all()):
+            raise InputError(f"worth: weights must be >= 0 and never rise; got {weights.tolist()}")
+
+    @property
+    def promises(self) -> bool:
+        """Whether there are layers for what is promised after the horizon."""
+        return len(self.weights) > self.horizon
+
+
+def plain(horizon: int, tail: float = 1.0) -> Worth:
+    """``w_k = 1``: psi is the probability of detection by the horizon, and what is promised after it."""
+    return _worth(np.ones(max(horizon, 0)), tail)
+
+
+def discounted(horizon: int, gamma: float, tail: float = 1.0) -> Worth:
+    """``w_k = gamma^k``: psi is ``E[gamma^k]`` of the step k of detection.
+
+    Raises:
+        InputError: gamma is not in (0, 1].
+    """
+    if not 0.0 < gamma <= 1.0:
+        raise InputError(f"gamma must be more than 0 and at most 1; got {gamma}")
+    return _worth(np.float64(gamma) ** np.arange(max(horizon, 0)), tail)
+
+
+def mean_time(horizon: int, tail: float = 1.0) -> Worth:
+    """``w_k = 1 - k / K``: the largest psi has the least mean time to detection, cut at the horizon K.
+
+    ``E[min(step of detection, K)] = K (1 - psi)`` with steps counted from 0.
+    """
+    return _worth(1.0 - np.arange(max(horizon, 0)) / max(horizon, 1), tail)
+
+
+def _worth(weights: NDArray[np.float64], tail: float) -> Worth:
+    """Add the promises' layers, the last step's weight times ``tail / (1 + DELAYS)``; none if tail is 0."""
+    if not (math.isfinite(tail) and 0.0 <= tail <= 1.0):
+        raise InputError(f"tail must be 0 to 1; got {tail}")
+    if tail == 0.0 or len(weights) == 0:
+        return Worth(weights, len(weights))
+    return Worth(np.append(weights, tail * weights[-1] / (1.0 + DELAYS)), len(weights))
+
+
+WORTHS = {"plain": plain, "discounted": discounted, "mean-time": mean_time}
