@@ -11,7 +11,7 @@ pub(super) fn miss_table() -> [f64; 256] {
     table
 }
 
-/// `a * b`: log-misses add, saturating.  docs/theory.md (V20)
+/// `a * b`: log-misses add, saturating.  docs/mapping.md (V20)
 pub fn combine(a: (&[u32], &[u8]), b: (&[u32], &[u8])) -> Sparse {
     let mut keys = Vec::with_capacity(a.0.len() + b.0.len());
     let mut misses = Vec::with_capacity(a.0.len() + b.0.len());

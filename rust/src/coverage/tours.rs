@@ -508,7 +508,7 @@ pub fn best_tour(
     Reply { tour: best.iter().map(|&stop| stop as i64).collect(), gain, current_gain }
 }
 
-/// No tour adds more than this to the team's impact.  docs/theory.md (V26)
+/// No tour adds more than this to the team's impact.  docs/mapping.md (V26)
 pub fn most_any_tour_adds(
     stops: Stops,
     weights: &[f32],

@@ -86,7 +86,7 @@ def footprints(
 
 
 def combine(keys_a: Keys, misses_a: Misses, keys_b: Keys, misses_b: Misses) -> tuple[Keys, Misses]:
-    """``a * b``: log-misses add, saturating; exactly associative and commutative.  docs/theory.md (V20)"""
+    """``a * b``: log-misses add, saturating; exactly associative and commutative.  docs/mapping.md (V20)"""
     return _kernels.combine(keys_a, misses_a, keys_b, misses_b)
 
 
@@ -162,7 +162,7 @@ def most_any_tour_adds(
     legs: NDArray[np.float32],
     max_stops: int,
 ) -> float:
-    """An upper bound on what any tour adds to the team's impact.  docs/theory.md (V26)"""
+    """An upper bound on what any tour adds to the team's impact.  docs/mapping.md (V26)"""
     return _kernels.most_any_tour_adds(
         weights,
         layer_weights,

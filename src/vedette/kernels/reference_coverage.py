@@ -175,7 +175,7 @@ def missed(impact: Sparse, cells: int) -> Floats:
 
 
 def value(weights: NDArray[np.float32], layer_weights: Floats, impact: Sparse) -> float:
-    """``sum_s w_s sum_b w_b (1 - m(s, b))``.  docs/theory.md (V21)"""
+    """``sum_s w_s sum_b w_b (1 - m(s, b))``.  docs/mapping.md (V21)"""
     return float(weights.astype(np.float64) @ (1.0 - missed(impact, len(weights))) @ layer_weights)
 
 

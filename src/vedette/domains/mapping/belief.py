@@ -12,7 +12,7 @@ from vedette.domains.mapping.layers import TimeLayers
 from vedette.kernels.frontier import find_frontiers
 from vedette.maps import UNKNOWN, GridFrame
 
-PLANNING_CELL = 0.2  # [m]; coarser costs quality, finer only bytes (docs/theory.md, section 6)
+PLANNING_CELL = 0.2  # [m]; coarser costs quality, finer only bytes (docs/mapping.md, section 3)
 MIN_FRONTIER = 0.25  # shortest frontier worth a name [m]
 LN2 = float(np.log(2.0))  # entropy of a cell with P = 0.5 [nats]
 
@@ -58,7 +58,7 @@ def freeze(
     """Snapshot a team map for a round.
 
     A planning cell is worth ln 2 for each unknown cell in it (paper, section 4.1, P = 0.5), and the unknown
-    cells that touch a frontier carry the area that the frontier stands for.  docs/theory.md (V24)
+    cells that touch a frontier carry the area that the frontier stands for.  docs/mapping.md (V24)
 
     Args:
         classes: (R, C) team map; copied.

@@ -20,7 +20,7 @@ class TimeLayers:
 
     An observation that arrives in layer b counts in b and in every later layer, so a planning cell first
     seen in layer b contributes ``worth(edges[b])`` of its weight, however many see it later: variable
-    horizons stay partially separable.  docs/theory.md (V22)
+    horizons stay partially separable.  docs/mapping.md (V22)
     """
 
     edges: NDArray[np.float64]  # (LAYERS,) upper edge of each layer [s]; the last takes all later arrivals
@@ -41,7 +41,7 @@ def _layers(worth: NDArray[np.float64]) -> TimeLayers:
 
 
 def rate(start: float = 0.0) -> TimeLayers:
-    """Worth ``1 / (start + t)``: the paper's rate of uncertainty reduction, eq. (42).  docs/theory.md (V23)
+    """Worth ``1 / (start + t)``: the paper's rate of uncertainty reduction, eq. (42).  docs/mapping.md (V23)
 
     A ``start`` [s] keeps a trifle close by from outweighing a room a little farther on.
     """

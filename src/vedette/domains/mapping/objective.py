@@ -17,7 +17,7 @@ class MappingObjective(Objective[MapBelief, Impact]):
     """``psi(impact) = sum_s H_s sum_b w_b (1 - prod_i m_i(s, b))``  [nats].
 
     With one layer this is the paper's eq. (41) in gain form; with weights ``1/t_b - 1/t_{b+1}`` it is its eq.
-    (42) made exactly partially separable.  docs/theory.md (V21)-(V23)
+    (42) made exactly partially separable.  docs/mapping.md (V21)-(V23)
     """
 
     monotone = True

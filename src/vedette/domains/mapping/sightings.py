@@ -41,7 +41,7 @@ def measured_model(
     """Learned share of unknown cells seen at each depth; counts add, so a team pools them; paper, Fig. 3.
 
     Each bin is shrunk to ``exp(-depth / 3 m)`` with the weight of 20 trials, and the curve is made
-    non-increasing by pooling adjacent violators.  docs/theory.md (V25)
+    non-increasing by pooling adjacent violators.  docs/mapping.md (V25)
 
     Args:
         counts: (4, BINS) as ``kernels.lidar.count_sightings`` sums them.
