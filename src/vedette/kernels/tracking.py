@@ -32,7 +32,7 @@ def chain_values(
 
     With ``P_k = (P_{k|k-1}^-1 + I_k)^-1`` and ``P_{k|k-1} = F P_{k-1} F' + Q`` a target's value is
     ``sum_k 1/2 ln det(1 + P_{k|k-1} I_k)`` for ``trajectory``; for ``final-logdet`` and ``final-trace`` it is
-    what is taken off ``1/2 ln det P_K`` and off the position's part of ``tr P_K``.
+    what is taken off ``1/2 ln det P_K`` and off the position's part of ``tr P_K``.  docs/tracking.md (V36), (V37)
 
     Args:
         tracks: T targets; any positive semi-definite covariance for ``trajectory`` and ``final-trace``.
@@ -48,5 +48,5 @@ def chain_values(
 
 
 def chain_gradient(tracks: Motion, measure: Measure, team: Sparse) -> NDArray[np.float64]:
-    """Derivative of the team's value in ``chain_values`` by each number in its blocks, (M, K, 3)."""
+    """Derivative of the value in ``chain_values`` by each number in the team's blocks, (M, K, 3); (V38)."""
     return _kernels.track_gradient(tracks, measure, team)

@@ -20,6 +20,7 @@ def turn_rate_gradient(
 
     With turns ``a_k = u_k dt`` and chords ``c_k = V dt sinc(a_k / 2)`` at angles ``m_k``, half a turn past
     the last heading, ``x_k = x_0 + sum_{j<=k} c_j (cos m_j, sin m_j)``: one pass back over the steps.
+    docs/theory.md (V30)
     """
     turns = rates * dt
     middles = pose[2] + np.cumsum(turns) - turns / 2.0

@@ -17,7 +17,7 @@ from vedette.problem import Reach
 class Impact:
     """``H' R^-1 H`` of the position of some targets at each step; nothing about all others.
 
-    Source: paper, eq. (25), for each step of the horizon.
+    Source: paper, eq. (25), for each step of the horizon; docs/tracking.md (V35).
     """
 
     targets: NDArray[np.int64]  # (M,) ascending

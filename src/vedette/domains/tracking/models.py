@@ -15,7 +15,7 @@ STATE = 4  # x, y, vx, vy [m, m, m/s, m/s], team frame
 
 @dataclass(frozen=True, eq=False)
 class TargetModel:
-    """``x' = F x + w, w ~ N(0, Q)`` in one step.
+    """``x' = F x + w, w ~ N(0, Q)`` in one step; docs/tracking.md (V31).
 
     Every target has the state x, y, vx, vy. One without velocity uses ``d = 2`` of it: the rest is a dummy
     that neither changes nor touches the position, with mean 0 and variance 1, so that nothing is singular.

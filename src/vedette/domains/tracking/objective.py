@@ -22,6 +22,7 @@ class TrackingObjective(Objective[Tracks, Impact]):
     trajectories, ``1/2 ln det(L + blkdiag(I_k)) - 1/2 ln det L`` with L the trajectories' prior information,
     but it takes a singular Q. As the mutual information of conditionally independent measurements it is
     monotone and submodular. With a horizon of one step it is the paper's eq. (28), as a logarithm.
+    docs/tracking.md (V36)
     """
 
     monotone = True

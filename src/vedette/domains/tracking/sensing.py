@@ -29,6 +29,8 @@ _COMMON: dict[str, Limits] = {
 class Sensor(ABC):
     """``I = a e_r e_r' + b e_t e_t'``: what a look tells along the line of sight and across it.
 
+    docs/tracking.md (V33)
+
     A target is seen within ``range`` and within half of ``view`` on either side of the heading. Nearer than
     ``min_range`` the information is that at ``min_range``, or the 1 / r^2 of a bearing would draw platforms
     onto the targets. Predicted information is scaled by the probability of detection, an approximation: the
@@ -155,6 +157,7 @@ class Sensor(ABC):
         Source: paper, eqs. (20) and (21). As printed, (21) has z for ``z - a``, which is right only where h
         is linear without an offset. With the estimate's covariance, mean and variance of what the line leaves
         out go into a and R: otherwise a bearing from close by makes the estimate surer than it is.
+        docs/tracking.md (V32), (V34)
 
         Args:
             measured: (m,) from ``measure``.

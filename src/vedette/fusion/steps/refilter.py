@@ -17,6 +17,8 @@ DENSE = 8  # checkpoints in each doubling of age
 class Refilter(Generic[B, E]):
     """``belief(k) = update(predict(belief(k - 1)), total(k))``: the central filter over what is known now.
 
+    docs/theory.md (V29)
+
     Exact however late evidence comes, as long as its step is open. Checkpoints are dense for recent steps and
     thin out with age, some ``8 log2(steps / 8)`` in all; evidence that is *a* steps late costs at most
     ``1.125 a`` steps of filtering again.
