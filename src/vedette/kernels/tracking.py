@@ -32,7 +32,8 @@ def chain_values(
 
     With ``P_k = (P_{k|k-1}^-1 + I_k)^-1`` and ``P_{k|k-1} = F P_{k-1} F' + Q`` a target's value is
     ``sum_k 1/2 ln det(1 + P_{k|k-1} I_k)`` for ``trajectory``; for ``final-logdet`` and ``final-trace`` it is
-    what is taken off ``1/2 ln det P_K`` and off the position's part of ``tr P_K``.  docs/tracking.md (V36), (V37)
+    what is taken off ``1/2 ln det P_K`` and off the position's part of ``tr P_K``.
+    docs/tracking.md (V36), (V37)
 
     Args:
         tracks: T targets; any positive semi-definite covariance for ``trajectory`` and ``final-trace``.
