@@ -19,7 +19,7 @@ INSTALLED := $(VENV)/.installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help explore test test-all check lint types contracts rust-lint bench missions build ready ready-dev clean
+.PHONY: help explore test test-all check lint types contracts rust-lint bench missions api build ready ready-dev clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -56,13 +56,17 @@ bench: ready-dev ## Measure speed and traffic against the targets: MET or MISSED
 missions: ready-dev ## Run the table of missions beside the yardsticks (long)
 	@$(PY) -m bench.missions $(if $(wildcard $(MAPS)),--maps $(MAPS)) $(ARGS)
 
+api: ready-dev ## Write the API reference from the docstrings into build/api
+	@$(PY) tools/api_reference.py build/api
+	@echo "open build/api/index.html"
+
 # The copy is moved into place: overwriting a module that a running process has loaded would crash it.
 build: ## Compile the kernels and put them in place
 	@cargo build --release --quiet $(CARGO_FLAGS) --features extension-module
 	@cp rust/target/release/lib_kernels.so $(KERNELS).new && mv $(KERNELS).new $(KERNELS)
 
 clean: ## Remove all that make has made; runs/ stays
-	rm -rf $(VENV) rust/target $(KERNELS) .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
+	rm -rf $(VENV) build rust/target $(KERNELS) .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
 
 # Installing compiles the kernels, so make has to look at their age afresh after it.
 ready: $(INSTALLED)
