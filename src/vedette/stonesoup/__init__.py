@@ -1,0 +1,11 @@
+"""A sensor manager for Stone Soup in which sensors negotiate; needs the extra ``stonesoup``."""
+
+try:
+    import stonesoup as _  # noqa: F401
+except ImportError as error:
+    raise ImportError("vedette.stonesoup needs Stone Soup; run: pip install 'vedette[stonesoup]'") from error
+
+from vedette.stonesoup.manager import Decision, VedetteSensorManager
+from vedette.stonesoup.objectives import LogDetReward, TrackReward, Tracks, UncertaintyReward
+
+__all__ = ["Decision", "LogDetReward", "TrackReward", "Tracks", "UncertaintyReward", "VedetteSensorManager"]
