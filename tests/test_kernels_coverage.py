@@ -17,6 +17,7 @@ from vedette.kernels import reference_coverage as reference
 from vedette.kernels.coverage import LAYERS, Footprints
 from vedette.kernels.frontier import find_frontiers
 from vedette.kernels.reference_coverage import Problem, Sparse
+from vedette.maps import FREE, OCCUPIED, UNKNOWN
 
 seeds = st.integers(0, 2**32 - 1)
 CELLS = 30
@@ -251,3 +252,20 @@ def test_the_bound_holds_where_going_by_another_stop_is_the_shorter_way() -> Non
     straight = sum(reference.tour_gain(problem, [stop]) for stop in (0, 1))
     assert reference.tour_gain(problem, [0, 1]) > straight
     assert most_any_tour_adds(problem, 2) >= reference.tour_gain(problem, [0, 1])
+
+
+def test_a_frontier_whose_middle_nobody_can_see_is_seen_by_another_of_its_cells() -> None:
+    classes = np.full((30, 60), OCCUPIED, np.uint8)
+    classes[15:29, 1:59] = FREE  # a corridor,
+    classes[14, 50:54] = FREE  # a door,
+    classes[10:14, 10:54] = FREE  # and what was glimpsed through it of a room
+    classes[1:10, 10:54] = UNKNOWN
+    field = np.full(classes.shape, np.inf, np.float32)
+    field[18:26, 1:59] = 1.0  # where the robot can stand
+    cells = np.array([10 * 60 + col for col in range(10, 54)], np.int64)
+    (middle,), (view,) = coverage.viewpoints(field, classes, cells, np.array([0, len(cells)]), 20)
+    assert view >= 0
+    assert field.flat[view] == 1.0
+    row, col = divmod(int(middle), 60)
+    assert row == 10
+    assert col > 45  # not the middle, which is behind the wall

@@ -28,8 +28,11 @@ fn sees(classes: &[u8], cols: usize, from: usize, to: usize) -> bool {
     true
 }
 
-/// For each cluster: its representative (the member nearest the centroid) and the nearest reachable
-/// cell, at most `reach` cells away, that sees it; -1 where there is none.
+/// Members of a cluster that are tried for a viewpoint.
+const TRIES: usize = 4;
+
+/// For each cluster: its representative, the member nearest the centroid of those tried that can be seen,
+/// and the nearest reachable cell, at most `reach` cells away, that sees it; -1 where there is none.
 pub fn viewpoints(
     field: &[f32],
     classes: &[u8],
@@ -42,24 +45,36 @@ pub fn viewpoints(
     let mut representatives = Vec::with_capacity(starts.len());
     let mut views = Vec::with_capacity(starts.len());
     for bounds in starts.windows(2) {
-        let members = &cells[bounds[0] as usize..bounds[1] as usize];
-        let representative = nearest_to_centroid(members, cols as i64);
+        let members = spread(&cells[bounds[0] as usize..bounds[1] as usize], cols as i64);
+        let seen = members.iter().find_map(|&member| {
+            let view = view_of(field, classes, rows, cols, member, reach);
+            (view >= 0).then_some((member, view))
+        });
+        let (representative, view) = seen.unwrap_or((members[0], -1));
         representatives.push(representative);
-        views.push(view_of(field, classes, rows, cols, representative, reach));
+        views.push(view);
     }
     (representatives, views)
 }
 
-fn nearest_to_centroid(members: &[i64], cols: i64) -> i64 {
+/// The member of a cluster nearest its centroid, then those farthest from all before, so that one of them is
+/// seen if the cluster is.
+fn spread(members: &[i64], cols: i64) -> Vec<i64> {
     let n = members.len() as i64;
     let (row_sum, col_sum) = members.iter().fold((0, 0), |(r, c), &m| (r + m / cols, c + m % cols));
-    *members
-        .iter()
-        .min_by_key(|&&m| {
-            let (dr, dc) = (n * (m / cols) - row_sum, n * (m % cols) - col_sum);
-            (dr * dr + dc * dc, m)
-        })
-        .expect("a cluster has members")
+    let from_centroid = |&&m: &&i64| {
+        let (dr, dc) = (n * (m / cols) - row_sum, n * (m % cols) - col_sum);
+        (dr * dr + dc * dc, m)
+    };
+    let mut chosen = vec![*members.iter().min_by_key(from_centroid).expect("a cluster has members")];
+    while chosen.len() < TRIES.min(members.len()) {
+        let apart = |m: i64| {
+            let squared = |&k: &i64| (k / cols - m / cols).pow(2) + (k % cols - m % cols).pow(2);
+            chosen.iter().map(squared).min()
+        };
+        chosen.push(*members.iter().max_by_key(|&&m| (apart(m), -m)).expect("a cluster has members"));
+    }
+    chosen
 }
 
 fn view_of(field: &[f32], classes: &[u8], rows: usize, cols: usize, target: i64, reach: i64) -> i64 {

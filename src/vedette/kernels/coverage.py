@@ -47,7 +47,8 @@ def viewpoints(
         reach: how far from the representative to look [cells].
 
     Returns:
-        (K,) the member nearest each centroid, and (K,) the viewpoint's cell, -1 where there is none.
+        (K,) the member nearest each centroid of those that can be seen from somewhere, and (K,) the
+        viewpoint's cell, -1 where no member can be.
     """
     return _kernels.viewpoints(field, classes, cells, starts, reach)
 

@@ -34,6 +34,8 @@ class Problem:
 
 # -- viewpoints and footprints ------------------------------------------------------------------------
 
+TRIES = 4  # members of a cluster that are tried for a viewpoint
+
 
 def segment(start: tuple[int, int], end: tuple[int, int]) -> Iterator[tuple[int, int]]:
     """Yield the cells from one centre to another, without the first; through a corner rows come first."""
@@ -58,9 +60,14 @@ def viewpoints(
     for first, last in itertools.pairwise(starts):
         members = np.column_stack(np.divmod(cells[first:last], classes.shape[1])).tolist()
         row, col = (Fraction(sum(axis), len(members)) for axis in zip(*members, strict=True))
-        _, middle = min(((r - row) ** 2 + (c - col) ** 2, (r, c)) for r, c in members)
+        tried = [min(((r - row) ** 2 + (c - col) ** 2, (r, c)) for r, c in members)[1]]
+        while len(tried) < min(TRIES, len(members)):
+            gaps = [min((r - a) ** 2 + (c - b) ** 2 for a, b in tried) for r, c in members]
+            tried.append(min((-gap, (r, c)) for gap, (r, c) in zip(gaps, members, strict=True))[1])
+        found = [(cell, _nearest_view(field, classes, cell, reach)) for cell in tried]
+        middle, view = next(((cell, view) for cell, view in found if view >= 0), (tried[0], -1))
         middles.append(middle[0] * classes.shape[1] + middle[1])
-        views.append(_nearest_view(field, classes, middle, reach))
+        views.append(view)
     return np.array(middles, np.int64), np.array(views, np.int64)
 
 
