@@ -97,7 +97,7 @@ def negotiate(
     root = next(i for i in range(tree.n) if len(tree.neighbours(i)) <= 1) if inverse else 0  # a chain's end
     parents = tree.parents(root)
     before = reduce(objective.combine, (seat.impact for seat in seats))
-    reaches, told, told_size = _tell_reaches(tree, parents, reach)
+    reaches, told, told_size = tell_reaches(tree, parents, reach)
     nodes: list[TokenNode[ImpactT] | JacobiNode[ImpactT]] = []
     for i, seat in enumerate(seats):
         links, parent = tree.neighbours(i), parents[i]
@@ -142,7 +142,7 @@ def _deliver(nodes: Sequence[Negotiator[ImpactT]], codec: Codec[ImpactT] | None)
     return sent, size
 
 
-def _tell_reaches(
+def tell_reaches(
     tree: Tree, parents: Sequence[int | None], reach: Sequence[Reach] | None
 ) -> tuple[list[dict[int, Reach]], int, int]:
     """Return what each platform hears from each neighbour of the reach beyond it, and how much was said."""

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import reduce
 from typing import Generic, Protocol
 
 from vedette.errors import InputError
+from vedette.negotiation.fold import Fold
 from vedette.negotiation.messages import Message, Outcome
 from vedette.problem.objective import ImpactT
 from vedette.problem.reach import Reach
@@ -86,25 +86,28 @@ class Links(Generic[ImpactT]):
         self.neighbours = tuple(neighbours)
         self._reaches = reaches or {}
         self._own = own
-        self._held: dict[int, ImpactT] = {}  # the last mu from each neighbour
+        self._place = {k: place for place, k in enumerate(self.neighbours)}
+        self._held = Fold(len(self.neighbours), own.combine)  # the last mu from each neighbour
         self._stale = set(neighbours)  # those that have yet to hear of a change
 
     def check(self, sender: int) -> None:
         """Raise ``InputError`` if the sender is not a neighbour."""
-        if sender not in self.neighbours:
+        if sender not in self._place:
             raise InputError(f"negotiation message from {sender}, who is not a neighbour; drop it")
 
     def receive(self, sender: int, mu: ImpactT | None) -> None:
         """Hold a neighbour's mu; ``None`` keeps the one held."""
         if mu is not None:
-            self._held[sender] = mu
+            self._held.put(self._place[sender], mu)
             self._stale.update(k for k in self.neighbours if k != sender)
-        elif sender not in self._held:
+        elif self._held[self._place[sender]] is None:
             raise InputError(f"negotiation message from {sender} refers to an impact never sent; drop it")
 
     def held(self, sender: int) -> ImpactT:
         """Return the last mu from a neighbour that has sent one."""
-        return self._held[sender]
+        mu = self._held[self._place[sender]]
+        assert mu is not None
+        return mu
 
     def changed(self) -> None:
         """Note that the own impact has changed."""
@@ -115,14 +118,12 @@ class Links(Generic[ImpactT]):
         if receiver not in self._stale:
             return None
         self._stale.remove(receiver)
-        parts = (mu for k, mu in self._held.items() if k != receiver)
-        mu = self._combined(self._own.impact, parts)
+        rest = self._held.without(self._place[receiver])
+        mu = self._own.impact if rest is None else self._own.combine(self._own.impact, rest)
         reach = self._reaches.get(receiver)
         return mu if reach is None else self._own.clip(mu, reach)
 
     def others(self) -> ImpactT:
         """Return the rest of the team, ``* of mu_{k->i}`` over all neighbours: exact if all are fresh."""
-        return self._combined(self._own.nothing(), self._held.values())
-
-    def _combined(self, first: ImpactT, parts: Iterable[ImpactT]) -> ImpactT:
-        return reduce(self._own.combine, parts, first)
+        total = self._held.total
+        return self._own.nothing() if total is None else total
