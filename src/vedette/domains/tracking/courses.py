@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from vedette.vehicle import turn_sequences
 
 CHOICES = 3  # turn rates: right, straight, left
-BLOCKS = 5  # turn rates chosen independently: 3^5 = 243 sequences
+MOST_DECISIONS = 5  # turn rates chosen independently: 3^5 = 243 sequences
 
 
 @dataclass(frozen=True)
@@ -26,15 +26,15 @@ class Course:
         return Course(k0, left + (0.0,) * (horizon - len(left)))
 
 
-def sequences(turn_rate: float, horizon: int) -> NDArray[np.float64]:
+def sequences(turn_rate: float, horizon: int, decisions: int = MOST_DECISIONS) -> NDArray[np.float64]:
     """Turn rates that are compared, (C, K) [rad/s], straight ahead first: it wins where all are equal.
 
-    With up to five steps every sequence of right, straight and left; with more, steps share a rate in five
-    blocks, the earlier ones shorter, for plans are made again before their end. So C <= 243.
+    With no more steps than ``decisions`` every sequence of right, straight and left; with more, steps share a
+    rate in so many blocks, the earlier ones shorter, for plans are made again before their end.
     """
     if turn_rate == 0.0:
         return np.zeros((1, horizon))
-    blocks = min(horizon, BLOCKS)
+    blocks = min(horizon, decisions)
     lengths = [horizon // blocks + (i >= blocks - horizon % blocks) for i in range(blocks)]
     rates = np.repeat(turn_sequences(turn_rate, blocks, CHOICES), lengths, axis=1)
     turning = np.abs(rates).sum(axis=1)

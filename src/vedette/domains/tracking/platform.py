@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from vedette.domains.tracking import impact as impacts
 from vedette.domains.tracking.ascent import ascend, turn_rate_gradient
 from vedette.domains.tracking.belief import Tracks
-from vedette.domains.tracking.courses import Course, sequences
+from vedette.domains.tracking.courses import MOST_DECISIONS, Course, sequences
 from vedette.domains.tracking.impact import Impact, Impacts
 from vedette.domains.tracking.objective import TrackingObjective
 from vedette.domains.tracking.sensing import Sensor
@@ -37,6 +37,7 @@ class TrackingPlatform:
     turn_rate: float  # most it can turn [rad/s]
     sensor: Sensor
     objective: TrackingObjective = field(default_factory=TrackingObjective)
+    decisions: int = MOST_DECISIONS  # turn rates chosen independently in a horizon
     continuous: bool = False  # improve the best sequence of right, straight and left by its gradient
     pose: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))  # [m, m, rad], team frame
     present: Course | None = None
@@ -56,7 +57,7 @@ class TrackingPlatform:
 
     def prepare(self, belief: Tracks) -> None:
         """List the courses, the present one among them, and what each would observe: the slow part."""
-        rates = sequences(self.turn_rate, belief.horizon)
+        rates = sequences(self.turn_rate, belief.horizon, self.decisions)
         carried = np.clip(self.carry_over(belief, self.present).rates, -self.turn_rate, self.turn_rate)
         if not (rates == carried).all(axis=1).any():
             rates = np.vstack([rates, carried])
