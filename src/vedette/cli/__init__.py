@@ -8,6 +8,8 @@ import sys
 import click
 
 from vedette.cli.explore import explore
+from vedette.cli.search import search
+from vedette.cli.track import track
 from vedette.cli.world import world
 from vedette.errors import InputError
 
@@ -21,6 +23,8 @@ def commands() -> None:
 
 
 commands.add_command(explore)
+commands.add_command(search)
+commands.add_command(track)
 commands.add_command(world)
 
 

@@ -2,20 +2,25 @@
 
 from __future__ import annotations
 
-import math
-import re
-import signal
-import threading
-from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
 import click
 import numpy as np
 
+from vedette.cli.options import (
+    STATUS,
+    OneOf,
+    Positive,
+    ending_on_ctrl_c,
+    fault_options,
+    output_options,
+    parse_kills,
+    seed_option,
+)
 from vedette.domains.mapping.planners import PLANNERS
-from vedette.errors import InputError, nearest_name
+from vedette.errors import InputError
 from vedette.maps import write_map
 from vedette.negotiation import SCHEMES
 from vedette.record.animate import animate_gif
@@ -24,80 +29,16 @@ from vedette.record.files import new_directory, output_directory
 from vedette.record.live import LiveView
 from vedette.record.mcap import McapWriter
 from vedette.record.progress import progress_png
-from vedette.record.summary import Outcome, Summary
+from vedette.record.summary import Summary
 from vedette.sim.exploration import FUSIONS, ExploreSetup, ExploreSimulation
 from vedette.sim.explore import Report, planning_frame, prepare
 from vedette.sim.explore import explore as run_mission
-from vedette.sim.simulation import Simulation
 from vedette.sim.starts import parse_starts
 from vedette.sim.world import World
 from vedette.sim.worlds import office
 from vedette.team import PlatformSpec, load_team
 
 ROBOTS = 3
-STATUS = {Outcome.COMPLETE: 0, Outcome.INTERRUPTED: 130}  # any other end: 1
-_KILL = re.compile(r"(\d+)@(\d+(?:\.\d*)?)")
-
-
-class OneOf(click.ParamType[str]):
-    """A word of a list; for another, the nearest one is offered."""
-
-    name = "name"
-
-    def __init__(self, words: Sequence[str]) -> None:
-        self.words = tuple(words)
-
-    def get_metavar(self, param: click.Parameter, ctx: click.Context) -> str:
-        """Show the choice in ``--help``."""
-        return "|".join(self.words)
-
-    def convert(self, value: str, param: click.Parameter | None, ctx: click.Context | None) -> str:
-        """Return the word, or refuse it."""
-        if value not in self.words:
-            what = param.name if param is not None and param.name else "name"
-            raise InputError(f"unknown {what} {value!r}: {nearest_name(value, self.words)}")
-        return value
-
-
-class Positive(click.ParamType[float]):
-    """A finite number above zero, with its unit for the message."""
-
-    name = "number"
-
-    def __init__(self, unit: str, least: float = 0.0, most: float = math.inf) -> None:
-        self.unit, self.least, self.most = unit, least, most
-
-    def convert(self, value: str | float, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        """Return the number, or refuse it."""
-        option = param.opts[0] if param is not None else "value"
-        try:
-            number = float(value)
-        except ValueError:
-            number = math.nan
-        if not (number > 0 and self.least <= number <= self.most and math.isfinite(number)):
-            most = "" if math.isinf(self.most) else f" and at most {self.most:g}"
-            raise InputError(f"{option} must be above {self.least:g}{most} {self.unit}; got {value!r}")
-        return number
-
-
-class Share(click.ParamType[float]):
-    """A number from 0 up to a most."""
-
-    name = "share"
-
-    def __init__(self, most: float) -> None:
-        self.most = most
-
-    def convert(self, value: str | float, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        """Return the number, or refuse it."""
-        option = param.opts[0] if param is not None else "value"
-        try:
-            number = float(value)
-        except ValueError:
-            number = math.nan
-        if not 0.0 <= number <= self.most:
-            raise InputError(f"{option} must be 0 to {self.most:g}; got {value!r}")
-        return number
 
 
 @click.command()
@@ -114,13 +55,7 @@ class Share(click.ParamType[float]):
     metavar='"x,y;x,y"',
     help="Where the robots start [m].  [default: together, chosen by the seed]",
 )
-@click.option(
-    "--seed",
-    type=click.IntRange(min=0),
-    default=0,
-    show_default=True,
-    help="Of the office, the starts and all chance.",
-)
+@seed_option("the office, the starts and all chance")
 @click.option(
     "--planner", type=OneOf(list(PLANNERS)), default="tours", show_default=True, help="How the team decides."
 )
@@ -135,34 +70,9 @@ class Share(click.ParamType[float]):
 @click.option(
     "--max-time", type=Positive("s"), default=3600.0, show_default=True, help="Simulated time limit [s]."
 )
-@click.option(
-    "--link-delay",
-    type=Positive("s", most=0.3),
-    default=0.02,
-    show_default=True,
-    help="Of a message on a link [s].",
-)
-@click.option(
-    "--link-loss",
-    type=Share(0.9),
-    default=0.0,
-    show_default=True,
-    help="Share of messages lost.",
-)
-@click.option(
-    "--kill",
-    "kills",
-    multiple=True,
-    metavar="R@T",
-    help="Robot R (from 1) dies at T seconds; may be repeated.",
-)
+@fault_options
 @click.option("--return-home", is_flag=True, help="The robots drive back to their starts in the end.")
-@click.option(
-    "--out", type=Path, metavar="DIR", help="Folder for the results.  [default: a new one under runs/]"
-)
-@click.option("--force", is_flag=True, help="Write into DIR although it exists.")
-@click.option("--json", "as_json", is_flag=True, help="Print the summary alone, as JSON.")
-@click.option("--animate", is_flag=True, help="Make a GIF of the mission as well.")
+@output_options
 def explore(
     map_path: Path | None,
     resolution: float | None,
@@ -198,13 +108,13 @@ def explore(
         max_time=max_time,
         link_delay=link_delay,
         link_loss=link_loss,
-        kills=tuple(_kill(text, len(specs)) for text in kills),
+        kills=parse_kills(kills, len(specs)),
         return_home=return_home,
     )
     # Everything that can be wrong with the input is found before the folder is made.
     prepared = prepare(world, specs, setup)
     folder = new_directory("runs", world.name) if out is None else output_directory(out, force)
-    with _ending_on_ctrl_c(prepared):
+    with ending_on_ctrl_c(prepared.stop):
         report = _run(prepared, folder, quiet=as_json)
         _write(report, world, folder, animate)
     click.echo(report.summary.to_json() if as_json else _closing(report.summary, folder), nl=not as_json)
@@ -219,24 +129,6 @@ def _run(prepared: ExploreSimulation, folder: Path, quiet: bool) -> Report:
         names = [spec.name for spec in prepared.specs]
         mcap = sinks.enter_context(McapWriter(folder / "run.mcap", world.name, world.frame, planning, names))
         return run_mission(prepared, (live, mcap))
-
-
-@contextmanager
-def _ending_on_ctrl_c(simulation: Simulation) -> Iterator[None]:
-    """Let the first Ctrl-C end the mission between two steps, so that files are whole; a second aborts."""
-
-    def stop(*_: object) -> None:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-        simulation.stop()
-
-    if threading.current_thread() is not threading.main_thread():  # only the main one may handle signals
-        yield
-        return
-    before = signal.signal(signal.SIGINT, stop)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
 
 
 def _world(path: Path | None, resolution: float | None, seed: int) -> World:
@@ -262,16 +154,6 @@ def _team(team: Path | None, robots: int | None, starts: str | None) -> list[Pla
     if len(places) > len(specs):
         raise InputError(f"--starts has {len(places)} places for {len(specs)} robots; leave some out")
     return [replace(spec, start=places[i]) if i < len(places) else spec for i, spec in enumerate(specs)]
-
-
-def _kill(text: str, robots: int) -> tuple[int, float]:
-    match = _KILL.fullmatch(text.strip())
-    if match is None:
-        raise InputError(f"--kill must be robot@seconds, such as 2@60; got {text!r}")
-    robot = int(match[1])
-    if not 1 <= robot <= robots:
-        raise InputError(f"--kill {text}: there is no robot {robot}; they are 1 to {robots}")
-    return robot - 1, float(match[2])
 
 
 def _write(report: Report, world: World, folder: Path, animate: bool) -> None:

@@ -7,20 +7,18 @@ whatever ended the mission. Stamps are simulated time from 0 s: the same mission
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
-from typing import IO, Any
 
 import numpy as np
-from mcap.writer import CompressionType, Writer
 
 from vedette.maps import GridFrame
-from vedette.record.files import atomic_path
 from vedette.record.log import RobotSample, Snapshot
-from vedette.record.ros import FRAME_ID, RosMessages, ros_names
+from vedette.record.ros import RosMessages, ros_names
+from vedette.record.topics import Topics, atomic_stream
 
 
 class McapWriter:
@@ -50,8 +48,8 @@ class McapWriter:
         self._ros = RosMessages()
         self._closed = False
         self._files = ExitStack()
-        stream = self._files.enter_context(_atomic_stream(path))
-        self._topics = _Topics(stream, self._ros)
+        stream = self._files.enter_context(atomic_stream(path))
+        self._topics = Topics(stream, self._ros)
         self._topics.describe({"world": world} | {f"robot {name}": ros for name, ros in self._names.items()})
 
     def update(self, snapshot: Snapshot) -> None:
@@ -116,43 +114,6 @@ class McapWriter:
         if snapshot.impact is not None:
             impact = self._ros.share_grid(stamp, self._planning, snapshot.impact)
             self._topics.write("/team_impact", stamp, impact)
-
-
-class _Topics:
-    """An MCAP stream whose channels and schemas are registered as they are first written to."""
-
-    def __init__(self, stream: IO[bytes], ros: RosMessages) -> None:
-        self._ros = ros
-        self._schemas: dict[str, int] = {}
-        self._channels: dict[str, int] = {}
-        self._counts: dict[int, int] = {}
-        self._writer = Writer(stream, compression=CompressionType.ZSTD)
-        self._writer.start(profile="ros2", library="vedette")
-
-    def describe(self, facts: dict[str, str]) -> None:
-        self._writer.add_metadata("vedette", {"frame": FRAME_ID} | facts)
-
-    def write(self, topic: str, stamp: int, message: Any) -> None:
-        channel = self._channels.get(topic) or self._open(topic, str(message.__msgtype__))
-        self._counts[channel] += 1
-        self._writer.add_message(channel, stamp, self._ros.encode(message), stamp, self._counts[channel])
-
-    def finish(self) -> None:
-        self._writer.finish()  # type: ignore[no-untyped-call]
-
-    def _open(self, topic: str, kind: str) -> int:
-        if kind not in self._schemas:
-            definition = self._ros.definition(kind).encode()
-            self._schemas[kind] = self._writer.register_schema(kind, "ros2msg", definition)
-        self._channels[topic] = self._writer.register_channel(topic, "cdr", self._schemas[kind])
-        self._counts[self._channels[topic]] = 0
-        return self._channels[topic]
-
-
-@contextmanager
-def _atomic_stream(path: Path | str) -> Iterator[IO[bytes]]:
-    with atomic_path(path) as temporary, temporary.open("wb") as stream:
-        yield stream
 
 
 def _stamp(snapshot: Snapshot) -> int:

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import json
-import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields, is_dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from vedette.record.files import write_text
+from vedette.record.plain import json_text, plain
 
 SCHEMA_VERSION = 1
-_DIGITS = 6
 
 
 class Outcome(StrEnum):
@@ -71,7 +68,7 @@ class Summary:
 
     def to_json(self) -> str:
         """Return the text of ``summary.json``: fields in the order declared, floats to 6 decimals."""
-        return _to_json({"schema_version": self.schema_version} | _plain(self))
+        return json_text({"schema_version": self.schema_version} | plain(self))
 
     def write(self, path: Path | str) -> None:
         """Put ``summary.json`` in place."""
@@ -106,27 +103,8 @@ class Timing:
 
     def to_json(self) -> str:
         """Return the text of ``timing.json``."""
-        return _to_json(_plain(self))
+        return json_text(self)
 
     def write(self, path: Path | str) -> None:
         """Put ``timing.json`` in place."""
         write_text(path, self.to_json())
-
-
-def _plain(value: Any) -> Any:
-    """Return ``value`` as JSON types: floats rounded, not finite ones ``None``, dataclasses objects."""
-    if is_dataclass(value) and not isinstance(value, type):
-        return {f.name: _plain(getattr(value, f.name)) for f in fields(value)}
-    if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, (bool, np.bool_)):
-        return bool(value)
-    if isinstance(value, (int, np.integer)):
-        return int(value)
-    if isinstance(value, (float, np.floating)):
-        return round(float(value), _DIGITS) + 0.0 if math.isfinite(value) else None  # + 0.0: no "-0.0"
-    return value if value is None else str(value)
-
-
-def _to_json(plain: Any) -> str:
-    return json.dumps(plain, indent=2, ensure_ascii=False, allow_nan=False) + "\n"

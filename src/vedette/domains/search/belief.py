@@ -42,14 +42,14 @@ class TargetPdf:
         return self.motion.stencil(self.frame.resolution, self.dt)
 
     def predict(self, steps: int = 1) -> TargetPdf:
-        """``P(x_{k+n}) = T^n P(x_k)``: the mass moves, none is lost (paper, eq. (2))."""
+        """``P(x_{k+n}) = T^n P(x_k)``: the mass moves, none is lost (paper, eq. (2)); (V41)."""
         mass, stencil = self.mass, self.stencil
         for _ in range(steps):
             mass = search.propagate(mass, stencil)
         return replace(self, mass=mass, step=self.step + steps)
 
     def observe(self, cells: NDArray[np.integer], log_likelihood: NDArray[np.float64]) -> TargetPdf:
-        """``P(x | z) ~ P(x) p(z | x)``: Bayes' rule (paper, eq. (3)).
+        """``P(x | z) ~ P(x) p(z | x)``: Bayes' rule (paper, eq. (3)); docs/search.md (V42).
 
         Args:
             cells: ``(M,)`` distinct flat cells.
@@ -97,6 +97,7 @@ class SearchBelief:
     dt: float  # [s]
     step: int
     worth: Worth
+    committed: int = 0  # first steps of the horizon in which everybody flies on as planned before
 
     @property
     def horizon(self) -> int:
@@ -122,17 +123,24 @@ class SearchBelief:
         return self.horizon * self.dt
 
 
-def freeze(pdf: TargetPdf, worth: Worth) -> SearchBelief:
-    """Snapshot a pdf for a round.
+def freeze(pdf: TargetPdf, worth: Worth, committed: int = 0) -> SearchBelief:
+    """Snapshot a pdf for a round whose plans take over ``committed`` steps later.
+
+    Until then everybody's present flight goes on; what it detects is part of every impact, so that the
+    team does not plan to search what it is about to have searched.
 
     Raises:
-        InputError: more cells and layers than an impact can number.
+        InputError: more cells and layers than an impact can number, or no step of the horizon left to plan.
     """
+    if not 0 <= committed < worth.horizon:
+        raise InputError(
+            f"a horizon of {worth.horizon} steps must be longer than the {committed} already taken"
+        )
     if pdf.frame.size * len(worth.weights) >= 2**32 - 1:
         raise InputError(
             f"{pdf.frame.size} cells and {len(worth.weights)} layers are too many; take larger cells"
         )
-    return SearchBelief(pdf.frame, pdf.mass, pdf.stencil, pdf.dt, pdf.step, worth)
+    return SearchBelief(pdf.frame, pdf.mass, pdf.stencil, pdf.dt, pdf.step, worth, committed)
 
 
 def normalised(frame: GridFrame, mass: NDArray[np.float64], field: str) -> NDArray[np.float64]:

@@ -1,14 +1,15 @@
 """How much a search can find at best: the ideal searchers to compare with.
 
-All are for targets that stay. What is counted as effort decides for which sensors they are bounds:
+For targets that stay, and for all whose moves do not depend on where they are, as long as they stay off the
+area's border (docs/search.md (V52)). What is counted as effort decides for which sensors they are bounds:
 
 - ``search_effort`` is the log-miss that one look spreads over the area, ``int -ln(1 - P) dA`` [m^2]. It adds
   up whatever the looks' pattern, so ``allocation`` of all looks' effort bounds *every* detector with P < 1.
 - ``covered_area`` is all that can have been in range, so ``top_mass`` of it bounds every detector that
   detects nothing beyond its range, those with P = 1 too. The lesser of the two holds where both do.
 - With the swept area ``n W V t`` for the effort, W the sweep width, ``random_search`` and ``gaussian`` are
-  Koopman's ideal of a sensor whose looks fall at random; a definite-range sensor on parallel tracks beats
-  them, up to ``parallel_sweep``.
+  Koopman's ideal of a sensor whose looks fall at random (V51); a definite-range sensor on parallel tracks
+  beats them, up to ``parallel_sweep``.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from vedette.domains.search.detectors import Detector
+from vedette.domains.search.motion import TargetMotion
 
 
 @lru_cache(maxsize=64)
@@ -55,6 +57,14 @@ def covered_area(detector: Detector, speed: float, time: ArrayLike, platforms: i
     return np.asarray(platforms * (disc + 2.0 * detector.range * speed * np.asarray(time, np.float64)))
 
 
+def wander(motion: TargetMotion, dt: float) -> float:
+    """``sqrt(|v|^2 + 4 D / dt)`` [m/s]: at least the mean speed of a target, in steps of ``dt`` [s].
+
+    ``covered_area`` at a speed greater by so much holds for a target that moves; docs/search.md (V52).
+    """
+    return math.sqrt(motion.drift[0] ** 2 + motion.drift[1] ** 2 + 4.0 * motion.diffusion / dt)
+
+
 def parallel_sweep(swept: ArrayLike, area: float) -> NDArray[np.float64]:
     """``min(1, n W V t / A)``: uniform prior, no place searched twice; definite range.  Koopman"""
     return np.minimum(1.0, np.asarray(swept, np.float64) / area)
@@ -77,7 +87,7 @@ def gaussian(swept: ArrayLike, sigma: float) -> NDArray[np.float64]:
 def allocation(mass: NDArray[np.float64], cell_area: float, effort: ArrayLike) -> NDArray[np.float64]:
     """``max_z sum_x P(x) (1 - exp(-z(x)))``, ``sum_x z(x) A = effort``, z >= 0: de Guenin's best allocation.
 
-    ``z = max(0, ln(P / lambda))``: effort goes where the posterior is highest, until it is level.
+    ``z = max(0, ln(P / lambda))``: effort goes where the posterior is highest, until it is level; (V51).
 
     Args:
         mass: probability of each cell, any shape.

@@ -72,18 +72,23 @@ class Detector(ABC):
         view = math.radians(self.view) if self.view < 360.0 else 2.0 * math.pi
         return look_footprints(frame.shape, frame.resolution, local, self.table(), self.range, view, SAMPLES)
 
+    def chance(self, pose: Pose, targets: ArrayLike) -> NDArray[np.float64]:
+        """Probability that one look detects each of the targets at ``targets`` (n, 2) [m], ``(n,)``."""
+        x, y, heading = np.asarray(pose, np.float64)
+        away = np.asarray(targets, np.float64) - (x, y)
+        off = (np.arctan2(away[:, 1], away[:, 0]) - heading + math.pi) % (2.0 * math.pi) - math.pi
+        seen = np.degrees(np.abs(off)) <= self.view / 2.0
+        return np.where(seen, self.probability(np.hypot(away[:, 0], away[:, 1])), 0.0)
+
     def glimpse(self, rng: np.random.Generator, pose: Pose, target: ArrayLike) -> Report:
         """Return what one look reports with the target at ``target`` (2,) [m], team frame."""
-        x, y, heading = np.asarray(pose, np.float64)
-        dx, dy = np.asarray(target, np.float64) - (x, y)
-        off = (math.atan2(dy, dx) - heading + math.pi) % (2.0 * math.pi) - math.pi
-        seen = math.degrees(abs(off)) <= self.view / 2.0
-        chance = float(self.probability(math.hypot(dx, dy))) if seen else 0.0
+        place = np.asarray(target, np.float64)
         detects, alarms = rng.random(2)
-        if detects < chance:
-            error = self.noise * rng.standard_normal(2)
-            return float(x + dx + error[0]), float(y + dy + error[1])
+        if detects < self.chance(pose, place[None])[0]:
+            x, y = (place + self.noise * rng.standard_normal(2)).tolist()
+            return x, y
         if alarms < self.false_alarm:
+            x, y, heading = np.asarray(pose, np.float64)
             away = self.range * math.sqrt(rng.random())
             bearing = heading + math.radians(self.view) * (rng.random() - 0.5)
             return float(x + away * math.cos(bearing)), float(y + away * math.sin(bearing))
@@ -96,7 +101,7 @@ class Detector(ABC):
 
         None: ``ln (1 - P)``. A place z: ``ln (1 - P + P N(z; x, noise) A / P_FA)``, A the area of the field
         of view. The noise is widened by that of a target anywhere in its cell. ``P_FA`` counts as 1e-9 at
-        least, and a miss likewise.
+        least, and a miss likewise.  docs/search.md (V42)
 
         Returns:
             cells ``(M,)`` and log-likelihood ratios ``(M,)`` [nat].

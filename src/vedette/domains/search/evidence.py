@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-import zlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
+from vedette.domains.search.detectors import LEAST_MISS, Detector, Report
+from vedette.maps import GridFrame
 
 LEVELS_PER_NAT = 1024.0
 MOST = 64 * 1024  # levels one step's evidence of one robot may have in a cell, either sign
@@ -54,35 +57,20 @@ def _summed(cells: NDArray[np.uint32], levels: NDArray[np.int64]) -> Evidence:
     return Evidence(distinct[total != 0].astype(np.uint32), total[total != 0])
 
 
-class EvidenceCodec:
-    """Evidence as bytes: cells by gaps, levels apart, deflated."""
+def evidence_of_looks(
+    detector: Detector, frame: GridFrame, poses: NDArray[np.float64], reports: Sequence[Report]
+) -> Evidence:
+    """Evidence of the looks of one step, from poses ``(L, 3)``: those without a report together.
 
-    def __init__(self, cells: int) -> None:
-        """Take the grid's number of cells."""
-        self._cells = cells
-
-    def encode(self, evidence: Evidence) -> bytes:
-        """Return the evidence as bytes."""
-        gaps = np.diff(evidence.cells.astype(np.int64), prepend=0).astype("<u4")
-        return zlib.compress(gaps.tobytes() + evidence.levels.astype("<i4").tobytes(), 6, wbits=-15)
-
-    def decode(self, payload: bytes) -> Evidence:
-        """Return the evidence.
-
-        Raises:
-            ValueError: the payload is not evidence over this many cells.
-        """
-        try:
-            unpacker = zlib.decompressobj(wbits=-15)
-            body = unpacker.decompress(payload, 8 * self._cells + 1)
-        except zlib.error as error:
-            raise ValueError(f"evidence does not inflate: {error}") from None
-        if not unpacker.eof or unpacker.unused_data or len(body) % 8:
-            raise ValueError("evidence is cut short or too large")
-        count = len(body) // 8
-        gaps = np.frombuffer(body, "<u4", count).astype(np.int64)
-        levels = np.frombuffer(body, "<i4", count, 4 * count).astype(np.int64)
-        cells = np.cumsum(gaps)
-        if np.any(gaps[1:] == 0) or np.any(levels == 0) or (count and cells[-1] >= self._cells):
-            raise ValueError("evidence has a cell twice, an empty entry, or a cell outside the area")
-        return Evidence(cells.astype(np.uint32), levels)
+    ``ln (1 - P)`` with P the probability that at least one of them detects, as plans take it; a report by
+    ``Detector.log_likelihood``.
+    """
+    silent = np.array([report is None for report in reports], bool)
+    total = NO_EVIDENCE
+    if silent.any():
+        _, cells, detection = detector.footprints(frame, poses[silent][None])
+        total += evidence(cells, np.log(np.maximum(1.0 - detection, LEAST_MISS)))
+    for pose, report in zip(poses, reports, strict=True):
+        if report is not None:
+            total += evidence(*detector.log_likelihood(frame, pose, report))
+    return total

@@ -70,6 +70,8 @@ def share_left(delay: NDArray[np.float64], duration: float) -> NDArray[np.float6
 def promise(delay: NDArray[np.float64], duration: float) -> tuple[NDArray[np.int64], Misses]:
     """Layer after the horizon, and log-miss of every cell, of a block that is reached ``delay`` [s] after it.
 
+    docs/search.md (V48)
+
     The layer is the last that is not later, so its worth is too high by the share by which the detection is
     thinned: alone, a promise is worth ``PROMISED H / (H + tau)``; a second one for the same place, little.
     """

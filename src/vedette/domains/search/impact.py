@@ -17,7 +17,7 @@ MOST = 255  # a miss probability of exp(-255/16) = 1.2e-7 or less
 
 @dataclass(frozen=True, eq=False)
 class Impact:
-    """Log-misses of looks; an absent entry is a miss probability of 1 (identity)."""
+    """Log-misses of looks; an absent entry is a miss probability of 1 (identity); docs/search.md (V44)."""
 
     keys: Keys  # (M,) strictly increasing, cell * layers + layer
     misses: Misses  # (M,) log-miss in steps of 1/16 nat, 1..255
@@ -36,9 +36,6 @@ class Impact:
     def sparse(self) -> tuple[Keys, Misses]:
         """The two arrays, as the kernels take them."""
         return self.keys, self.misses
-
-
-NOTHING = Impact(np.empty(0, np.uint32), np.empty(0, np.uint8))
 
 
 NOTHING = Impact(np.empty(0, np.uint32), np.empty(0, np.uint8))

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 
 def cumulative_detection(missed: ArrayLike) -> NDArray[np.float64]:
-    """``C_k = 1 - prod_{j <= k} Q_j``: probability of detection by the end of each step.
+    """``C_k = 1 - prod_{j <= k} Q_j``: probability of detection by the end of each step; (V43).
 
     Args:
         missed: ``(K,)`` Q_j, the probability that nobody detects in step j given that nobody did before: the
@@ -20,7 +20,7 @@ def cumulative_detection(missed: ArrayLike) -> NDArray[np.float64]:
 
 
 def mean_time_to_detection(detection: ArrayLike, dt: float, tail: float = 0.0) -> float:
-    """``sum_{k=0}^{K-1} (1 - C_k) dt + (1 - C_K) tail``, C_0 = 0: mean time, cut at the search's end [s].
+    """``sum_{k=0}^{K-1} (1 - C_k) dt + (1 - C_K) tail``, C_0 = 0: mean time, cut at the end [s]; (V50).
 
     A detection in a step counts at the step's end. ``tail`` [s] is what is added if the target was not found:
     0 gives ``E[min(T, K dt)]``, which is a lower bound of the mean time; say so wherever it is shown.

@@ -18,7 +18,7 @@ CUT = 3e-4  # probability of the farthest moves that a stencil leaves out
 
 @dataclass(frozen=True)
 class TargetMotion:
-    """``x' = x + v dt + N(0, 2 D dt I)``, reflected at the borders of the area.
+    """``x' = x + v dt + N(0, 2 D dt I)``, reflected at the borders of the area; docs/search.md (V41).
 
     Raises:
         InputError: a number that is not finite, or a negative diffusion.

@@ -15,7 +15,7 @@ from vedette.problem import Objective
 
 
 class SearchObjective(Objective[SearchBelief, Impact]):
-    """``psi = sum_k w_k d_k = E[w(first detection)]``, d_k the probability of detection first in layer k.
+    """``psi = sum_k w_k d_k = E[w(first detection)]``, d_k as in docs/search.md (V43), psi as in (V45).
 
     ``d_k = sum_x q_k (1 - m_k)``, ``q_0 = T p``, ``q_{k+1} = T (q_k m_k)``, ``m_k = prod_i m_{i,k}``: the
     forward filter of a target that nobody has detected. For a target that stays T = 1, and this is the
@@ -24,7 +24,8 @@ class SearchObjective(Objective[SearchBelief, Impact]):
     Monotone and submodular: given the target's path ``x_0, x_1, ...`` psi is
     ``sum_k (w_k - w_{k+1}) (1 - exp(-sum_{j <= k} min(C, sum_i l_{i,j}(x_j))))`` with l the log-misses and C
     where they saturate. The cut sum is monotone and submodular in the set of platforms i; so is an increasing
-    concave function of it, a sum of those with ``w_k - w_{k+1} >= 0``, and the mean over paths, which is psi.
+    concave function of it, a sum of those with ``w_k - w_{k+1} >= 0``, and the mean over paths, which is psi;
+    docs/search.md (V46).
     """
 
     monotone = True
@@ -35,7 +36,7 @@ class SearchObjective(Objective[SearchBelief, Impact]):
         return NOTHING
 
     def combine(self, a: Impact, b: Impact) -> Impact:
-        """``a * b``: products of miss probabilities, as saturating sums of log-misses; paper, eq. (40)."""
+        """``a * b``: products of misses, as saturating sums of log-misses; paper, eq. (40); (V44)."""
         return Impact(*coverage.combine(*a.sparse, *b.sparse))
 
     def value(self, belief: SearchBelief, impact: Impact) -> float:

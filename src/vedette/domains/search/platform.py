@@ -43,7 +43,8 @@ class SearchPlatform:
     impact like any other, so that the team divides far places too, and the laws hold. Where ``worth`` has no
     promises, a vehicle with nothing to detect within the horizon flies to the best block, unseen by others.
 
-    ``place`` says where it is before ``prepare``; a round then works on what ``prepare`` found.
+    ``place`` says where it is before ``prepare``; a round then works on what ``prepare`` found. In the steps
+    that the belief calls committed all candidates hold the present flight's turn rates.
 
     Raises:
         InputError: a number out of its range, or more than 300 candidates.
@@ -58,6 +59,7 @@ class SearchPlatform:
     pose: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
     present: Flight | None = None
     options: Options | None = None
+    _known: dict[Impact, NDArray[np.float64]] = field(default_factory=dict)  # gains by the rest of the team
 
     def __post_init__(self) -> None:
         for name in ("speed", "turn_rate"):
@@ -90,15 +92,13 @@ class SearchPlatform:
 
     def prepare(self, belief: SearchBelief) -> None:
         """List the flights and what each would detect; the slow part, before the round."""
+        present = self._restated(belief)
+        kept, free = present[: belief.committed], belief.horizon - belief.committed
+        begin = drive(self.pose, kept, self.speed, belief.dt)[-1] if len(kept) else self.pose
         goals = self._goals(belief)
-        towards = self._steer(belief, self.pose, goals.places, belief.horizon)
-        turn_rates = np.concatenate(
-            (
-                self._restated(belief)[None],
-                held_sequences(self.turn_rate, belief.horizon, self.controls, self.choices),
-                towards,
-            )
-        )
+        towards = self._steer(belief, begin, goals.places, free)
+        chosen = np.concatenate((held_sequences(self.turn_rate, free, self.controls, self.choices), towards))
+        turn_rates = np.vstack((present, np.hstack((np.tile(kept, (len(chosen), 1)), chosen))))
         tree = branches(turn_rates)
         poses = look_poses(tree, self.pose, self.speed, belief.dt, self.looks_a_step(belief.dt))
         starts, cells, probability = self.detector.footprints(belief.frame, poses)
@@ -117,6 +117,7 @@ class SearchPlatform:
         boxes = boxes_of(belief, paths, promised)
         paths, ends = with_promises(paths, tree.ends, promised, after, *promise(delays, belief.duration))
         self.options = Options(flights, index, to_best, paths, ends, boxes)
+        self._known.clear()
 
     @property
     def start(self) -> Flight:
@@ -131,13 +132,22 @@ class SearchPlatform:
         return impact_of(options.paths, int(options.ends[options.index[strategy.name]]), belief.layers)
 
     def gains(self, belief: SearchBelief, others: Impact) -> NDArray[np.float64]:
-        """``psi(others * own_k) - psi(others)`` of each of the round's flights, ``(C,)``."""
+        """``psi(others * own_k) - psi(others)`` of each of the round's flights, ``(C,)``.
+
+        Each flight depletes what it finds later itself; docs/search.md (V47).
+        """
         options = self.options
         assert options is not None
-        weights = belief.worth.weights
-        return search.path_gains(
-            belief.mass, belief.stencil, belief.horizon, weights, others.sparse, options.paths
-        )[options.ends]
+        if others not in self._known:
+            self._known[others] = search.path_gains(
+                belief.mass,
+                belief.stencil,
+                belief.horizon,
+                belief.worth.weights,
+                others.sparse,
+                options.paths,
+            )[options.ends]
+        return self._known[others]
 
     def reply(self, belief: SearchBelief, others: Impact, current: Flight) -> Flight:
         """Best flight against the rest of the team, if clearly better than the present one.

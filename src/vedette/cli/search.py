@@ -1,0 +1,153 @@
+"""``vedette search``: a team of vehicles looks for a hidden target in simulation."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from pathlib import Path
+
+import click
+
+from vedette.cli.options import (
+    OneOf,
+    Positive,
+    ending_on_ctrl_c,
+    fault_options,
+    output_options,
+    parse_kills,
+    seed_option,
+)
+from vedette.negotiation import SCHEMES
+from vedette.record.files import new_directory, output_directory
+from vedette.record.search.detection import detection_png
+from vedette.record.search.film import search_gif
+from vedette.record.search.live import search_display
+from vedette.record.search.mcap import SearchMcapWriter
+from vedette.record.search.stages import pdf_png
+from vedette.record.search.summary import SearchOutcome, SearchSummary
+from vedette.sim.search.case import default_case, read_case
+from vedette.sim.search.run import SearchReport, scene_of
+from vedette.sim.search.run import search as run_search
+from vedette.sim.search.simulation import COORDINATIONS, FUSIONS, SearchSetup, SearchSimulation
+from vedette.sim.search.trials import Running, assessed
+
+STATUS = {SearchOutcome.FOUND: 0, SearchOutcome.INTERRUPTED: 130}  # any other end: 1
+MOST_TRIALS = 1_000_000
+
+
+@click.command()
+@click.argument("scenario_path", metavar="[SCENARIO]", required=False, type=Path)
+@seed_option("the hidden target and all chance")
+@click.option(
+    "--coordination",
+    type=OneOf(COORDINATIONS),
+    default="negotiated",
+    show_default=True,
+    help="What the vehicles tell each other: nothing, what they see, or what they mean to do as well.",
+)
+@click.option("--scheme", type=OneOf(SCHEMES), default="token", show_default=True, help="How they negotiate.")
+@click.option(
+    "--fusion",
+    type=OneOf(FUSIONS),
+    default="replicated",
+    show_default=True,
+    help="How they share what they see.",
+)
+@click.option(
+    "--max-time",
+    type=Positive("s"),
+    help="Search no longer than that [s].  [default: the scenario's duration]",
+)
+@fault_options
+@click.option(
+    "--trials",
+    type=click.IntRange(0, MOST_TRIALS),
+    metavar="N",
+    help="Targets drawn for the counted curve; 0: none.  [default: 1000, or 20 whole searches: see the docs]",
+)
+@output_options
+@click.option("--no-compare", is_flag=True, help="Leave out the other ways of coordination.")
+def search(
+    scenario_path: Path | None,
+    seed: int,
+    coordination: str,
+    scheme: str,
+    fusion: str,
+    max_time: float | None,
+    link_delay: float,
+    link_loss: float,
+    kills: tuple[str, ...],
+    trials: int | None,
+    out: Path | None,
+    force: bool,
+    as_json: bool,
+    animate: bool,
+    no_compare: bool,
+) -> None:
+    """Let a team of vehicles look for a hidden target in simulation: every vehicle runs its own agent.
+
+    SCENARIO is a YAML file; without it, four aircraft look for a raft adrift. Exit status: 0 found, 1 not
+    found in time or declared where it is not, 2 bad input, 130 interrupted.
+    """
+    case = default_case() if scenario_path is None else read_case(scenario_path)
+    longest = case.scenario.duration
+    setup = SearchSetup(
+        coordination=coordination,
+        scheme=scheme,
+        fusion=fusion,
+        seed=seed,
+        max_time=longest if max_time is None else min(max_time, longest),
+        link_delay=link_delay,
+        link_loss=link_loss,
+        kills=parse_kills(kills, len(case.names)),
+    )
+    # Everything that can be wrong with the input is found before the folder is made.
+    simulation = SearchSimulation(case, setup)
+    folder = new_directory("runs", case.name) if out is None else output_directory(out, force)
+    running = Running()
+    with ending_on_ctrl_c(running.stop):
+        report = _run(simulation, folder, running, trials, not no_compare, quiet=as_json)
+        _write(report, folder, animate)
+    click.echo(report.summary.to_json() if as_json else _closing(report.summary, folder), nl=not as_json)
+    raise SystemExit(STATUS.get(report.summary.outcome, 1))
+
+
+def _run(
+    simulation: SearchSimulation,
+    folder: Path,
+    running: Running,
+    trials: int | None,
+    compare: bool,
+    quiet: bool,
+) -> SearchReport:
+    """Run the search, shown live unless ``quiet`` and recorded in the folder; then what goes beside it."""
+    scene = scene_of(simulation)
+    running.current = simulation
+    with ExitStack() as sinks:
+        live = sinks.enter_context(search_display(scene, quiet))
+        mcap = sinks.enter_context(SearchMcapWriter(folder / "run.mcap", scene))
+        report = run_search(simulation, (live, mcap))
+    running.say = live.say
+    return assessed(report, simulation, running, trials, compare)
+
+
+def _write(report: SearchReport, folder: Path, animate: bool) -> None:
+    report.summary.write(folder / "summary.json")
+    report.timing.write(folder / "timing.json")
+    pdf_png(report.log, report.summary, folder / "pdf.png")
+    detection_png(report.curves, report.summary, folder / "detection.png")
+    if animate:
+        search_gif(report.log, folder / "mission.gif")
+
+
+def _closing(summary: SearchSummary, folder: Path) -> str:
+    """Say in a few lines how it went and where the pictures are."""
+    if summary.found_s is None:
+        how = f"{summary.outcome.value.replace('_', ' ')} after {summary.time_s:.0f} s"
+    else:
+        how = f"found after {summary.found_s:.0f} s by {summary.found_by}, {summary.error_m:.0f} m off"
+    means = ", ".join(f"{name} {quality.mean_time_s:.0f} s" for name, quality in summary.comparison.items())
+    expected = f"mean time to detection, cut at {summary.duration_s:.0f} s: {means}\n" if means else ""
+    return (
+        f"{how}; probability of detection by then {100 * summary.detection_then:.0f} %\n{expected}"
+        f"pictures: {folder / 'pdf.png'}, {folder / 'detection.png'}; all else beside them"
+    )

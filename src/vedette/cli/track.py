@@ -1,0 +1,181 @@
+"""``vedette track``: a team of vehicles follows moving and static targets in simulation."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import click
+
+from vedette.cli.options import (
+    STATUS,
+    OneOf,
+    Positive,
+    ending_on_ctrl_c,
+    fault_options,
+    output_options,
+    parse_kills,
+    seed_option,
+)
+from vedette.domains.tracking.objective import OBJECTIVES
+from vedette.fusion.gaussian import WAYS
+from vedette.negotiation import SCHEMES
+from vedette.record.files import new_directory, output_directory
+from vedette.record.track.entropy import entropy_png
+from vedette.record.track.film import track_gif
+from vedette.record.track.live import track_display
+from vedette.record.track.log import Scene
+from vedette.record.track.mcap import TrackMcapWriter
+from vedette.record.track.summary import TrackSummary
+from vedette.record.track.tracks import tracks_png
+from vedette.sim.track.run import TrackReport, compared, scene_of
+from vedette.sim.track.run import track as run_mission
+from vedette.sim.track.scenario import default_scenario, read_scenario
+from vedette.sim.track.simulation import COORDINATIONS, TrackSetup, TrackSimulation
+
+
+@click.command()
+@click.argument("scenario_path", metavar="[SCENARIO]", required=False, type=Path)
+@seed_option("the targets' true ways and all chance")
+@click.option(
+    "--coordination",
+    type=OneOf(COORDINATIONS),
+    default="negotiated",
+    show_default=True,
+    help="How the vehicles decide.",
+)
+@click.option("--scheme", type=OneOf(SCHEMES), default="token", show_default=True, help="How they negotiate.")
+@click.option(
+    "--fusion",
+    type=OneOf(WAYS),
+    default="replicated",
+    show_default=True,
+    help="How they share what they see.",
+)
+@click.option(
+    "--objective",
+    type=OneOf(list(OBJECTIVES)),
+    help="What they gain.  [default: the scenario's, else trajectory]",
+)
+@click.option(
+    "--continuous", is_flag=True, help="Improve the best course's turn rates by the objective's gradient."
+)
+@click.option(
+    "--max-time", type=Positive("s"), help="Simulated time limit [s].  [default: the scenario's duration]"
+)
+@fault_options
+@output_options
+@click.option("--no-compare", is_flag=True, help="Leave out the other ways of coordination.")
+def track(
+    scenario_path: Path | None,
+    seed: int,
+    coordination: str,
+    scheme: str,
+    fusion: str,
+    objective: str | None,
+    continuous: bool,
+    max_time: float | None,
+    link_delay: float,
+    link_loss: float,
+    kills: tuple[str, ...],
+    out: Path | None,
+    force: bool,
+    as_json: bool,
+    animate: bool,
+    no_compare: bool,
+) -> None:
+    """Let a team of vehicles follow the targets of SCENARIO in simulation: every vehicle runs its own agent.
+
+    SCENARIO is a YAML file; without it, four vehicles follow six targets over 800 x 600 m for two minutes.
+    Afterwards the same is done with every other way of coordination, to compare. Exit status: 0 complete,
+    1 incomplete, 2 bad input, 130 interrupted.
+    """
+    scenario = default_scenario() if scenario_path is None else read_scenario(scenario_path)
+    name = "track" if scenario_path is None else scenario_path.stem
+    setup = TrackSetup(
+        scheme=scheme,
+        seed=seed,
+        max_time=scenario.duration + 1.0 if max_time is None else max_time,
+        link_delay=link_delay,
+        link_loss=link_loss,
+        kills=parse_kills(kills, len(scenario.vehicles)),
+        coordination=coordination,
+        fusion=fusion,
+        objective=objective,
+        continuous=continuous,
+    )
+    # Everything that can be wrong with the input is found before the folder is made.
+    prepared = TrackSimulation(scenario, setup)
+    folder = new_directory("runs", name) if out is None else output_directory(out, force)
+    running = _Running(name, folder, quiet=as_json)
+    with ending_on_ctrl_c(running.stop):
+        report = running.live(prepared)
+        if not no_compare:
+            report = compared(report, scenario, setup, running.beside)
+        _write(report, folder, animate)
+    click.echo(report.summary.to_json() if as_json else _closing(report.summary, folder), nl=not as_json)
+    raise SystemExit(STATUS.get(report.summary.outcome, 1))
+
+
+@dataclass
+class _Running:
+    """Runs missions one after another, whichever is on when Ctrl-C comes."""
+
+    name: str
+    folder: Path
+    quiet: bool
+    stopped: bool = field(default=False, init=False)
+    _now: TrackSimulation | None = field(default=None, init=False)
+
+    def stop(self) -> None:
+        """End the mission that is on, and those to come before they begin."""
+        self.stopped = True
+        if self._now is not None:
+            self._now.stop()
+
+    def live(self, simulation: TrackSimulation) -> TrackReport:
+        """Run a mission, shown live unless quiet and recorded in the folder."""
+        self._begin(simulation)
+        scene: Scene = scene_of(simulation, self.name)
+        with ExitStack() as sinks:
+            live = sinks.enter_context(track_display(scene, self.quiet))
+            mcap = sinks.enter_context(TrackMcapWriter(self.folder / "run.mcap", scene))
+            return run_mission(simulation, self.name, (live, mcap))
+
+    def beside(self, simulation: TrackSimulation, coordination: str) -> TrackReport:
+        """Run a mission to compare with; say which, unless quiet."""
+        self._begin(simulation)
+        if not self.quiet:
+            click.echo(f"to compare: {coordination}")
+        return run_mission(simulation, self.name)
+
+    def _begin(self, simulation: TrackSimulation) -> None:
+        self._now = simulation
+        if self.stopped:
+            simulation.stop()
+
+
+def _write(report: TrackReport, folder: Path, animate: bool) -> None:
+    report.summary.write(folder / "summary.json")
+    report.timing.write(folder / "timing.json")
+    tracks_png(report.log, folder / "tracks.png")
+    logs = {report.summary.coordination: report.log, **report.others}
+    entropy_png(logs, report.left_out, folder / "entropy.png")
+    if animate:
+        track_gif(report.log, folder / "mission.gif")
+
+
+def _closing(summary: TrackSummary, folder: Path) -> str:
+    """Say in a few lines how it went and where the pictures are."""
+    own = summary.quality
+    lines = [
+        f"{summary.outcome.value}: {summary.vehicles} vehicles followed {summary.targets} targets for "
+        f"{summary.time_s:.0f} s; entropy {own.entropy_mean_nat:.1f} nat on average, "
+        f"position error {own.position_rmse_m:.1f} m (rms), NEES {own.nees:.2f}"
+    ]
+    if summary.comparison:
+        each = (f"{name} {quality.entropy_mean_nat:.1f}" for name, quality in summary.comparison.items())
+        lines.append(f"mean entropy [nat]: {', '.join(each)}")
+    lines.append(f"pictures: {folder / 'tracks.png'}, {folder / 'entropy.png'}; all else beside them")
+    return "\n".join(lines)

@@ -1,0 +1,252 @@
+"""Searching as a mission: the domain of search and step evidence, put together for the agent."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.agent.events import Pose, Sensed
+from vedette.agent.flight import FlightPlan, start_step
+from vedette.agent.mates import Mate
+from vedette.agent.messages import Note
+from vedette.domains.search.belief import SearchBelief, TargetPdf, freeze
+from vedette.domains.search.detectors import Report
+from vedette.domains.search.evidence import LEVELS_PER_NAT, Evidence, evidence_of_looks
+from vedette.domains.search.flights import Flight
+from vedette.domains.search.impact import Impact, ImpactCodec, clip
+from vedette.domains.search.objective import SearchObjective
+from vedette.domains.search.platform import SearchPlatform
+from vedette.domains.search.worth import Worth
+from vedette.fusion.steps import Refilter, Sparse, SparseIntegers, StepEvidence
+from vedette.problem import Reach
+from vedette.vehicle import drive
+
+_ROUNDING = 1e-6  # of a step: times this near its beginning are at it
+
+
+@dataclass(frozen=True, eq=False)
+class SearchPlan:
+    """What a team agrees on beforehand."""
+
+    prior: TargetPdf  # at step 0, with the target's motion and the length of a step
+    worth: Worth
+    lead: float  # from freezing a round to the start of its plans, at least [s]
+    threshold: float = 0.95  # posterior probability that a declared place must have within ``radius``
+    radius: float = 100.0  # [m]
+
+    def step(self, time: float) -> int:
+        """Return the step that a time [s] lies in; step k begins at ``k dt``."""
+        return math.floor(time / self.prior.dt + _ROUNDING)
+
+
+@dataclass(frozen=True, eq=False)
+class Looks:
+    """What a vehicle's sensor tells at the end of a step; the target is taken to be where it is then."""
+
+    poses: NDArray[np.float64]  # (L, 3) where it looked from [m, m, rad]
+    reports: tuple[Report, ...]  # (L,)
+
+
+@dataclass(frozen=True)
+class Declared:
+    """A place at which a vehicle says that the target is."""
+
+    x: float  # [m], team frame
+    y: float
+    time: float  # [s]
+    certain: bool  # by a detection that cannot be a false alarm
+
+
+@dataclass(eq=False)
+class Searching:
+    """One vehicle's share of a search; ``vedette.agent.mission.FlightMission``.
+
+    Evidence waits to be published: a round's must not change while it lasts.
+    """
+
+    platform: SearchPlatform
+    team: SearchPlan
+    fusion: StepEvidence[Sparse]
+    strategy: Flight | None = None
+    declared: Declared | None = None
+    objective: SearchObjective = field(default_factory=SearchObjective)
+    codec: ImpactCodec = field(init=False)
+    _elements: SparseIntegers = field(init=False)
+    _filter: Refilter[TargetPdf, Sparse] = field(init=False)
+    _waiting: list[tuple[int, Evidence]] = field(default_factory=list)
+    _flown: Flight | None = None  # what the vehicle was last told to fly
+    _seen_at: tuple[float, float, float] | None = None  # x, y [m], time [s] of the last pose
+
+    def __post_init__(self) -> None:
+        prior = self.team.prior
+        self.codec = ImpactCodec(prior.frame.size, len(self.team.worth.weights))
+        self._elements = SparseIntegers(prior.frame.size)
+        self._filter = Refilter(self.fusion, prior, prior.step, predict=_moved, update=_observed)
+
+    # -- evidence -----------------------------------------------------------------------------------
+
+    def observe(self, seen: Sensed, pose: Pose, mates: Sequence[Mate], now: float) -> None:
+        """``ln p(reports | target in the cell)``, relative to that elsewhere; docs/search.md (V42)."""
+        assert isinstance(seen.data, Looks)
+        self._seen_at = pose.x, pose.y, now
+        detector, reports = self.platform.detector, seen.data.reports
+        told = evidence_of_looks(detector, self.team.prior.frame, seen.data.poses, reports)
+        self._waiting.append((self.team.step(seen.time), told))
+        places = [report for report in reports if report is not None]
+        if places and detector.false_alarm == 0.0 and self.declared is None:
+            self.declared = Declared(*places[0], now, certain=True)
+
+    def publish(self, now: float) -> None:
+        """Hand the evidence that waits to fusion."""
+        waiting, self._waiting = self._waiting, []
+        for step, told in waiting:
+            self.fusion.publish(step, self._elements.of(told.cells.astype(np.int64), told.levels))
+
+    def pdf(self, step: int) -> TargetPdf:
+        """Return where the target may be at a step, by all that this vehicle has published and heard."""
+        return self._filter.at(step)
+
+    # -- planning -----------------------------------------------------------------------------------
+
+    def notes(self) -> list[Note]:
+        """Tell nothing beside the evidence."""
+        return []
+
+    def hear_notes(self, notes: Sequence[Note]) -> None:
+        """Hear nothing beside the evidence."""
+
+    def freeze(self, t0: float) -> SearchBelief:
+        """Snapshot the pdf of the present step; plans take over at the first step that all can make."""
+        step = self.team.step(t0)
+        pdf = self.pdf(step)
+        if self.declared is None and self.platform.detector.false_alarm > 0.0:
+            self.declared = self._sure(pdf, t0)
+        return freeze(pdf, self.team.worth, start_step(t0, self.team.lead, pdf.dt) - step)
+
+    def _sure(self, pdf: TargetPdf, now: float) -> Declared | None:
+        """Return the most probable place if the target is near it with the threshold's probability."""
+        row, col = pdf.best_cell
+        x, y = pdf.frame.centres(np.array([row * pdf.frame.cols + col]))[0].tolist()
+        if pdf.probability_near(x, y, self.team.radius) < self.team.threshold:
+            return None
+        return Declared(x, y, now, certain=False)
+
+    def prepare(
+        self, belief: SearchBelief, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float
+    ) -> None:
+        """List the flights from where the vehicle will be, and restate the present one.
+
+        ``pose`` is where the committed steps end; flown backwards they lead to where they begin.
+        """
+        flown = self._taken_to(belief)
+        kept = flown.turn_rates[max(0, belief.step - flown.step) :][: belief.committed]
+        end = np.array((pose.x, pose.y, pose.heading))
+        begin = drive(end, -kept[::-1], -self.platform.speed, belief.dt)[-1] if len(kept) else end
+        self.platform.place(begin, flown)
+        self.platform.prepare(belief)
+        self.strategy = self.platform.start
+
+    def _taken_to(self, belief: SearchBelief) -> Flight:
+        """Return the flight under way, with the circles that follow it until new plans take over."""
+        until, circle = belief.step + belief.committed, self.platform.turn_rate
+        flown = self._flown or Flight(belief.step, np.empty(0))
+        circles = np.full(max(0, until - flown.step - len(flown.turn_rates)), circle)
+        goal = flown.goal if not len(circles) else None
+        return Flight(flown.step, np.concatenate((flown.turn_rates, circles)), goal)
+
+    def key(self, strategy: Flight | None) -> Hashable:
+        """Name a flight."""
+        return None if strategy is None else strategy.name
+
+    def impact(self, belief: SearchBelief, strategy: Flight) -> Impact:
+        """Return what a flight would detect."""
+        return self.platform.impact(belief, strategy)
+
+    def reply(self, belief: SearchBelief, others: Impact, current: Flight) -> Flight:
+        """Return the best flight against the rest of the team."""
+        return self.platform.reply(belief, others, current)
+
+    def nothing(self, belief: SearchBelief) -> Impact:
+        """Identity of ``*``."""
+        return self.objective.nothing(belief)
+
+    def combine(self, a: Impact, b: Impact) -> Impact:
+        """``a * b``."""
+        return self.objective.combine(a, b)
+
+    def value(self, belief: SearchBelief, impact: Impact) -> float:
+        """``psi(impact)``."""
+        return self.objective.value(belief, impact)
+
+    def slack(self, belief: SearchBelief, base: Impact) -> float:
+        """Return the most that a flight of this vehicle adds to ``base``."""
+        return self.platform.slack(belief, base)
+
+    def reach(self, now: float) -> Reach | None:
+        """Return the box that its gains depend on in a round frozen within ``lead`` of now; (V14), (V49).
+
+        It holds what the sensor can see by the end of the horizon, and from where a target can get there
+        meanwhile. With promises gains depend on places anywhere: no bounds.
+        """
+        team, prior = self.team, self.team.prior
+        if self._seen_at is None or team.worth.promises:
+            return None
+        x, y, then = self._seen_at
+        flown = self.platform.speed * (now - then + team.lead + team.worth.horizon * prior.dt)
+        drift = (prior.stencil.reach * team.worth.horizon + 1.0) * prior.frame.resolution
+        most = flown + self.platform.detector.range + drift
+        return ((x - most, y - most, x + most, y + most),)
+
+    def clip(self, belief: SearchBelief, impact: Impact, reach: Reach) -> Impact:
+        """Leave out the cells outside of ``reach``."""
+        boxes = np.array([(x0, x1, y0, y1) for x0, y0, x1, y1 in reach]).reshape(-1, 4)
+        return clip(impact, belief.frame, belief.layers, boxes)
+
+    def nothing_left(self, value: float, now: float) -> bool:
+        """A search goes on until the target is declared."""
+        return False
+
+    # -- flying -------------------------------------------------------------------------------------
+
+    def start(self, belief: SearchBelief) -> float:
+        """Return when flights planned on this belief take over [s]."""
+        return (belief.step + belief.committed) * belief.dt
+
+    def plan(self) -> FlightPlan | None:
+        """Return the flight decided on; None before the first round."""
+        if self.strategy is None:
+            return None
+        self._flown = self.strategy
+        dt = self.team.prior.dt
+        return FlightPlan(self.strategy.step * dt, dt, self.strategy.turn_rates)
+
+
+class SharedBeliefSearching(Searching):
+    """Tells what it has seen, but nothing of what it will do: the classic "coordinated" team.
+
+    Everybody plans alone on the common pdf. So an impact is nothing, to others and to the team's value.
+    """
+
+    def impact(self, belief: SearchBelief, strategy: Flight) -> Impact:
+        """Tell nothing."""
+        return self.nothing(belief)
+
+    def reply(self, belief: SearchBelief, others: Impact, current: Flight) -> Flight:
+        """Return the best flight as if nobody else were there."""
+        return self.platform.reply(belief, self.nothing(belief), current)
+
+    def slack(self, belief: SearchBelief, base: Impact) -> float:
+        """Promise nothing of what the team could gain."""
+        return math.inf
+
+
+def _moved(pdf: TargetPdf, step: int) -> TargetPdf:
+    return pdf.predict()
+
+
+def _observed(pdf: TargetPdf, step: int, total: Sparse) -> TargetPdf:
+    return pdf.observe(total.index, total.value / LEVELS_PER_NAT) if len(total.index) else pdf

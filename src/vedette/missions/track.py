@@ -1,0 +1,223 @@
+"""Tracking as a mission: the domain of Gaussian tracks and a way to fuse them, put together for the agent."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.agent.events import Pose, Sensed
+from vedette.agent.flight import FlightPlan, start_step
+from vedette.agent.mates import Mate
+from vedette.agent.messages import Note
+from vedette.domains.tracking.belief import Tracks
+from vedette.domains.tracking.codec import ImpactCodec
+from vedette.domains.tracking.courses import Course
+from vedette.domains.tracking.filter import predict
+from vedette.domains.tracking.impact import Impact
+from vedette.domains.tracking.models import TargetModel
+from vedette.domains.tracking.platform import TrackingPlatform
+from vedette.domains.tracking.sensing import evidence
+from vedette.fusion.gaussian import Information, TrackFusion
+from vedette.problem import Reach
+
+NEAR = 2.0  # standard deviations of its place: a target must be farther away than that for a line to fit
+_ROUNDING = 1e-6  # of a step: times this near its beginning are at it
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a team plans: the targets' models, the steps, and when plans can start."""
+
+    models: tuple[TargetModel, ...]
+    dt: float  # step [s]
+    horizon: int  # [steps]
+    lead: float  # from freezing a round to the start of its plans, at least [s]
+
+    def step(self, time: float) -> int:
+        """Return the step that a time [s] lies in; step k begins at ``k dt``."""
+        return math.floor(time / self.dt + _ROUNDING)
+
+
+class Bounds(NamedTuple):
+    """Largest numbers that a likelihood may hold: fixed-point fusion takes no larger ones."""
+
+    matrix: float  # [1/m^2]
+    vector: float
+
+
+@dataclass(eq=False)
+class Tracking:
+    """One vehicle's share of tracking; ``vedette.agent.mission.FlightMission``.
+
+    Measurements are linearised as they come, about the vehicle's own estimate, and wait to be published: a
+    round's evidence must not change while it lasts.
+    """
+
+    vehicle: TrackingPlatform
+    team: Plan
+    fusion: TrackFusion
+    bounds: Bounds
+    strategy: Course = field(default_factory=lambda: Course(0, ()))
+    skipped: int = 0  # measurements that could not be linearised, or whose likelihood exceeded the bounds
+    codec: ImpactCodec = field(init=False)
+    _waiting: list[tuple[int, Information]] = field(default_factory=list)  # step, likelihood
+    _seen_at: tuple[float, float, float] | None = None  # x, y [m], time [s] of the last pose
+
+    def __post_init__(self) -> None:
+        self.codec = ImpactCodec(len(self.team.models), self.team.horizon)
+
+    # -- evidence -----------------------------------------------------------------------------------
+
+    def observe(self, seen: Sensed, pose: Pose, mates: Sequence[Mate], now: float) -> None:
+        """``I = H' R^-1 H``, ``i = H' R^-1 (z - h(x) + H x)`` of each target seen; paper, eqs. (20), (21)."""
+        assert isinstance(seen.data, Mapping)
+        self._seen_at = pose.x, pose.y, now
+        if not seen.data:
+            return
+        step, known = self.team.step(seen.time), self.tracks()
+        known = predict(known, max(0, step - known.k0))
+        at = np.array((pose.x, pose.y, pose.heading))
+        measured = {t: z for t, z in seen.data.items() if self._has_a_line(at, known, t)}
+        self.skipped += len(seen.data) - len(measured)
+        matrix, vector = evidence(self.vehicle.sensor, at, measured, known.means, known.covariances)
+        fits = (np.abs(matrix) <= self.bounds.matrix).all(axis=(1, 2))
+        fits &= (np.abs(vector) <= self.bounds.vector).all(axis=1)
+        self.skipped += int(np.count_nonzero(~fits))
+        matrix[~fits], vector[~fits] = 0.0, 0.0
+        self._waiting.append((step, Information(matrix, vector)))
+
+    def _has_a_line(self, at: NDArray[np.float64], known: Tracks, target: int) -> bool:
+        """Tell whether a measurement of a target can be linearised about its estimate.
+
+        A bearing from overhead says nothing of the kind: where the estimate is nearer than ``min_range``, or
+        than `NEAR` standard deviations, its direction is anybody's guess. It hangs on the estimate alone, not
+        on what was measured: so leaving it out makes nobody surer than he should be.
+        """
+        point, covariance = known.means[target, :2], known.covariances[target, :2, :2]
+        sensor = self.vehicle.sensor
+        if not sensor.curvature(at, point, covariance)[1].any():
+            return True  # linear anyhow
+        deviation = math.sqrt(np.linalg.eigvalsh(covariance)[1])
+        return math.dist(point, at[:2]) >= max(sensor.min_range, NEAR * deviation)
+
+    def publish(self, now: float) -> None:
+        """Hand the likelihoods that wait to fusion."""
+        waiting, self._waiting = self._waiting, []
+        for step, likelihood in waiting:
+            self.fusion.observe(step, likelihood)
+
+    def tracks(self) -> Tracks:
+        """Return the team's tracks as this vehicle knows them, at the step that fusion has come to."""
+        step, estimate = self.fusion.estimate()
+        team = self.team
+        return Tracks(step, team.dt, team.horizon, team.models, estimate.matrix, estimate.vector)
+
+    # -- planning -----------------------------------------------------------------------------------
+
+    def notes(self) -> list[Note]:
+        """Tell nothing beside the evidence."""
+        return []
+
+    def hear_notes(self, notes: Sequence[Note]) -> None:
+        """Hear nothing beside the evidence."""
+
+    def freeze(self, t0: float) -> Tracks:
+        """Predict the team's tracks to the first step that everybody can still plan for.
+
+        Fusion does not go on past evidence that waits: some ways could no longer take it in.
+        """
+        self.fusion.advance(min([self.team.step(t0), *(step for step, _ in self._waiting)]))
+        known = self.tracks()
+        return predict(known, max(0, start_step(t0, self.team.lead, self.team.dt) - known.k0))
+
+    def prepare(self, belief: Tracks, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float) -> None:
+        """List the courses from where the vehicle will be, and restate the present one."""
+        self.vehicle.place(pose.x, pose.y, pose.heading, self.strategy)
+        self.vehicle.prepare(belief)
+        self.strategy = self.vehicle.carry_over(belief, self.strategy)
+
+    def key(self, strategy: Course) -> Hashable:
+        """The course itself."""
+        return strategy
+
+    def impact(self, belief: Tracks, strategy: Course) -> Impact:
+        """Return the information that a course would bring."""
+        return self.vehicle.impact(belief, strategy)
+
+    def reply(self, belief: Tracks, others: Impact, current: Course) -> Course:
+        """Return the best course against the rest of the team."""
+        return self.vehicle.reply(belief, others, current)
+
+    def nothing(self, belief: Tracks) -> Impact:
+        """Identity of ``*``."""
+        return self.vehicle.objective.nothing(belief)
+
+    def combine(self, a: Impact, b: Impact) -> Impact:
+        """``a * b``."""
+        return self.vehicle.objective.combine(a, b)
+
+    def value(self, belief: Tracks, impact: Impact) -> float:
+        """``psi(impact)`` in the objective's unit."""
+        return self.vehicle.objective.value(belief, impact)
+
+    def slack(self, belief: Tracks, base: Impact) -> float:
+        """Return the most that a course of this vehicle adds to ``base``."""
+        return self.vehicle.slack(belief, base)
+
+    def reach(self, now: float) -> Reach | None:
+        """Return the box that it can see into by the end of plans frozen within ``lead`` of now.
+
+        From the last pose observed: at full speed until the plans start, one step of rounding up included,
+        and through the horizon. docs/theory.md (V14)
+        """
+        if self._seen_at is None:
+            return None
+        x, y, then = self._seen_at
+        team = self.team
+        flown = self.vehicle.speed * (now - then + 2.0 * team.lead + (team.horizon + 1) * team.dt)
+        most = flown + self.vehicle.sensor.range
+        return ((x - most, y - most, x + most, y + most),)
+
+    def clip(self, belief: Tracks, impact: Impact, reach: Reach) -> Impact:
+        """Leave out the targets that nobody who sees into ``reach`` can see."""
+        return self.vehicle.objective.clip(belief, impact, reach)
+
+    def nothing_left(self, value: float, now: float) -> bool:
+        """Targets move on: there is always something to gain."""
+        return False
+
+    # -- flying -------------------------------------------------------------------------------------
+
+    def start(self, belief: Tracks) -> float:
+        """Return when courses planned on this belief start [s]."""
+        return belief.k0 * self.team.dt
+
+    def plan(self) -> FlightPlan | None:
+        """Return the present course; None before the first round."""
+        if not self.strategy.rates:
+            return None
+        return FlightPlan(self.strategy.k0 * self.team.dt, self.team.dt, np.array(self.strategy.rates))
+
+
+class SharedBeliefTracking(Tracking):
+    """Tells what it has seen, but nothing of what it will do: the classic "coordinated" team.
+
+    Everybody plans alone on the common belief. So an impact is nothing, to others and to the team's value.
+    """
+
+    def impact(self, belief: Tracks, strategy: Course) -> Impact:
+        """Tell nothing."""
+        return self.nothing(belief)
+
+    def reply(self, belief: Tracks, others: Impact, current: Course) -> Course:
+        """Return the best course as if nobody else were there."""
+        return self.vehicle.reply(belief, self.nothing(belief), current)
+
+    def slack(self, belief: Tracks, base: Impact) -> float:
+        """Promise nothing of what the team could gain."""
+        return math.inf

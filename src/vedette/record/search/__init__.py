@@ -1,0 +1,1 @@
+"""What a search leaves: its log, summary, MCAP record, pictures, film and live view."""

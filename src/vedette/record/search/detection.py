@@ -1,0 +1,89 @@
+"""``detection.png``: the probability that the target has been found, against time."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import PercentFormatter
+
+from vedette.record import palette
+from vedette.record.canvas import DPI, picture, save
+from vedette.record.search.curves import Curves
+from vedette.record.search.summary import SearchSummary
+from vedette.record.signs import FAINT, INK
+
+_SIZE = 8.0, 5.2  # [inch]
+_STYLES: dict[str, dict[str, Any]] = {  # a line differs in more than its colour
+    "none": {"color": palette.unit((213, 94, 0)), "ls": (0, (1, 1.2)), "lw": 1.7, "zorder": 3},
+    "shared": {"color": palette.unit((0, 158, 115)), "ls": (0, (6, 2)), "lw": 1.7, "zorder": 4},
+    "negotiated": {"color": palette.unit((0, 114, 178)), "ls": "-", "lw": 2.2, "zorder": 5},
+}
+_MEANING = {
+    "none": "none: nobody tells anybody anything",
+    "shared": "shared: one belief, everybody plans alone",
+    "negotiated": "negotiated",
+}
+
+
+def detection_png(curves: Curves, summary: SearchSummary, path: Path | str) -> None:
+    """Draw the predicted curves by coordination, what was counted, the bound and Koopman's ideal."""
+    with picture():
+        figure = Figure(figsize=_SIZE, dpi=DPI)
+        axes = figure.add_axes((0.085, 0.105, 0.895, 0.79))
+        _ideal(axes, curves)
+        _counted(axes, curves, summary)
+        for name in (name for name in _STYLES if name in curves.detection):
+            mean = summary.comparison[name].mean_time_s
+            label = f"{_MEANING[name]}  (mean {mean:.0f} s)"
+            axes.plot(curves.times, curves.detection[name], label=label, **_STYLES[name])
+        if summary.found_s is not None:
+            axes.axvline(summary.found_s, color=INK, lw=0.8, ls=(0, (2, 2)), zorder=1)
+            axes.annotate(
+                f"found, {summary.found_s:.0f} s", (summary.found_s, 1.0), (4, -3),
+                xycoords=("data", "axes fraction"), textcoords="offset points", va="top", fontsize=8,
+                color=FAINT,
+            )  # fmt: skip
+        axes.set(xlabel="time [s]", ylabel="probability of detection", ylim=(0.0, 1.08))
+        axes.set(xlim=(0.0, float(curves.times[-1]) or 1.0), yticks=np.linspace(0.0, 1.0, 6))
+        axes.yaxis.set_major_formatter(PercentFormatter(1.0))
+        axes.spines[["top", "right"]].set_visible(False)
+        axes.grid(axis="y", color=palette.unit((235, 237, 240)), lw=0.8)
+        axes.set_axisbelow(True)
+        axes.tick_params(length=3)
+        axes.legend(loc="lower right", framealpha=0.9, edgecolor="none", labelspacing=0.45)
+        count = f"{summary.vehicles} vehicle" + ("s" if summary.vehicles > 1 else "")
+        figure.text(0.085, 0.935, f"{summary.scenario}: {count}", fontsize=12, fontweight="bold")
+        figure.text(0.98, 0.935, f"seed {summary.seed}", ha="right", color=FAINT)
+        save(figure, path)
+
+
+def _ideal(axes: Axes, curves: Curves) -> None:
+    """Shade what nobody can reach, and draw Koopman's ideal searcher."""
+    edge = palette.unit((150, 153, 157))
+    axes.fill_between(
+        curves.times, curves.bound, 1.08, color=palette.unit((225, 227, 230)), alpha=0.6, lw=0, zorder=0
+    )
+    axes.plot(curves.times, curves.bound, color=edge, lw=1.2, zorder=2, label="bound: no team can do better")
+    axes.plot(
+        curves.times, curves.koopman, color=edge, lw=1.1, ls=(0, (5, 1.5, 1, 1.5)), zorder=2,
+        label="Koopman: swept area spread ideally, looks at random",
+    )  # fmt: skip
+
+
+def _counted(axes: Axes, curves: Curves, summary: SearchSummary) -> None:
+    counted = curves.counted
+    if counted is None:
+        return
+    colour = _STYLES[summary.coordination]["color"]
+    low, high = (np.clip(counted.detection + way * counted.band, 0.0, 1.0) for way in (-1.0, 1.0))
+    what = "targets drawn" if counted.of == "looks" else "searches run"
+    axes.fill_between(
+        curves.times, low, high, step="post", color=colour, alpha=0.16, lw=0, zorder=1,
+        label=f"{summary.coordination}, counted over {counted.trials} {what}, 95 % band",
+    )  # fmt: skip
+    if counted.of == "runs":
+        axes.plot(curves.times, counted.detection, color=colour, lw=1.0, drawstyle="steps-post", zorder=2)

@@ -1,0 +1,101 @@
+"""Signs that pictures of flying missions share: vehicles, their badges in a legend, and scale bars."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.legend_handler import HandlerTuple
+from matplotlib.lines import Line2D
+from matplotlib.transforms import ScaledTranslation
+from numpy.typing import NDArray
+
+from vedette.record import palette
+
+INK = palette.unit(palette.INK)
+FAINT = palette.unit((110, 113, 117))
+DASHES = (0, (3, 1.6))
+_ROUND = (0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000, 50_000, 100_000)
+
+
+class Sample(Protocol):
+    """A vehicle at one moment."""
+
+    @property
+    def x(self) -> float:
+        """[m]."""
+
+    @property
+    def y(self) -> float:
+        """[m]."""
+
+    @property
+    def heading(self) -> float:
+        """[rad]."""
+
+    @property
+    def alive(self) -> bool:
+        """Whether it still flies."""
+
+    @property
+    def path(self) -> NDArray[np.float64]:
+        """``(k, 2)`` its plan [m]."""
+
+
+def draw_vehicle(axes: Axes, index: int, vehicle: Sample) -> None:
+    """Draw a numbered disc with a nose, and the plan ahead of it; a cross if it is lost."""
+    rgb = palette.robot_colour(index)
+    colour = palette.unit(rgb)
+    if not vehicle.alive:
+        axes.plot(vehicle.x, vehicle.y, "X", color=colour, mec="white", mew=0.8, ms=10, zorder=6)
+        return
+    axes.plot(*vehicle.path.T, color="white", lw=2.4, alpha=0.8, zorder=5)
+    axes.plot(*vehicle.path.T, color=colour, lw=1.4, ls=DASHES, zorder=5)
+    ahead = np.array((math.cos(vehicle.heading), math.sin(vehicle.heading))) * 6.6 / 72
+    nose = axes.transData + ScaledTranslation(ahead[0], ahead[1], axes.figure.dpi_scale_trans)
+    turned = (3, 0, math.degrees(vehicle.heading) - 90)
+    axes.plot(
+        vehicle.x, vehicle.y, marker=turned, ms=6.5, color=colour, mec="white", mew=0.7, zorder=6,
+        transform=nose,
+    )  # fmt: skip
+    axes.plot(vehicle.x, vehicle.y, "o", color=colour, mec="white", mew=0.9, ms=10, zorder=7)
+    axes.annotate(
+        str(index + 1), (vehicle.x, vehicle.y), (0, -0.3), textcoords="offset points", ha="center",
+        va="center", fontsize=6.5, fontweight="bold", color=palette.unit(palette.text_on(rgb)), zorder=8,
+    )  # fmt: skip
+
+
+def badge(index: int, alive: bool) -> tuple[Line2D, ...]:
+    """Return a vehicle's sign in a legend."""
+    rgb = palette.robot_colour(index)
+    disc = Line2D((), (), ls="", marker="o" if alive else "X", ms=10, mec="white", color=palette.unit(rgb))
+    if not alive:
+        return (disc,)
+    digits = f"$\\mathbf{{{index + 1}}}$"
+    ink = palette.unit(palette.text_on(rgb))
+    return disc, Line2D((), (), ls="", marker=digits, ms=4.5, mew=0.1, color=ink)
+
+
+def legend_line(figure: Figure, x: float, y: float, handles: Sequence[Any], labels: Sequence[str]) -> None:
+    """Write a line of a legend that begins at ``x``, its middle at ``y`` [inch]."""
+    width, height = figure.get_size_inches()
+    figure.legend(
+        handles, labels, loc="center left", bbox_to_anchor=(x / width, y / height), ncols=len(labels),
+        frameon=False, borderpad=0, borderaxespad=0, columnspacing=1.5, handletextpad=0.6,
+        handler_map={tuple: HandlerTuple(1, 0)},
+    )  # fmt: skip
+
+
+def scale_bar(figure: Figure, x: float, y: float, metres: float, inches: float) -> None:
+    """Draw a bar of a round length at ``x``, ``y`` [inch], for a map of ``metres`` in ``inches``."""
+    width, height = figure.get_size_inches()
+    bar = max((b for b in _ROUND if b <= metres / 4), default=_ROUND[0])
+    axes = figure.add_axes((x / width, (y - 0.05) / height, bar * inches / metres / width, 0.1 / height))
+    axes.axis("off")
+    axes.plot((0, 0, 0, 1, 1, 1), (0, 1, 0.5, 0.5, 0, 1), color=INK, lw=1.1, clip_on=False)
+    axes.set(xlim=(0, 1), ylim=(0, 1))
+    axes.annotate(f"{bar:g} m", (1, 0.5), (5, 0), textcoords="offset points", va="center", fontsize=8)

@@ -1,0 +1,111 @@
+"""One moment of a tracking mission on a map: vehicles, what they view, and what is known of the targets."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patches import Ellipse, Wedge
+from matplotlib.transforms import ScaledTranslation
+from numpy.typing import NDArray
+
+from vedette.record import palette
+from vedette.record.track.log import TrackLog, TrackSnapshot, VehicleSample
+
+SIGMA = math.sqrt(-2.0 * math.log(0.05))  # a Gaussian in the plane lies within 2.45 sigma to 95 %
+INK = palette.unit(palette.INK)
+TRUTH = palette.unit((150, 153, 157))
+KNOWN = palette.unit((255, 183, 0))  # of an ellipse's inside
+DASHES = (0, (3, 1.6))
+RECENT = 20.0  # a vehicle's way of so long stands out from the rest of it [s]
+_MARGIN = 0.02  # of the larger side
+
+Box = tuple[float, float, float, float]  # lowest x, lowest y, highest x, highest y [m]
+
+
+def window(log: TrackLog) -> Box:
+    """Return the box that holds the area, everybody's way and the targets', with a margin."""
+    last = log.snapshots[-1].t
+    ways = np.concatenate([log.trails(last).reshape(-1, 2), log.truths(last).reshape(-1, 2)])
+    x0, y0, x1, y1 = log.scene.area
+    low, high = np.minimum(ways.min(axis=0), (x0, y0)), np.maximum(ways.max(axis=0), (x1, y1))
+    margin = _MARGIN * float((high - low).max())
+    (left, bottom), (right, top) = (low - margin).tolist(), (high + margin).tolist()
+    return left, bottom, right, top
+
+
+def draw(axes: Axes, log: TrackLog, snapshot: TrackSnapshot, box: Box) -> None:
+    """Draw a snapshot and all ways up to it."""
+    axes.set(xticks=(), yticks=(), xlim=(box[0], box[2]), ylim=(box[1], box[3]), aspect="equal")
+    x0, y0, x1, y1 = log.scene.area
+    frame = [(x0, x1, x1, x0, x0), (y0, y0, y1, y1, y0)]
+    axes.plot(*frame, color=palette.unit((225, 227, 230)), lw=0.8, zorder=0)
+    title = f"{snapshot.t:.0f} s    entropy {snapshot.entropy:.1f} nat"
+    axes.set_title(title, fontsize=10, loc="left", pad=5)
+    trails, truths = log.trails(snapshot.t), log.truths(snapshot.t)
+    for i, vehicle in enumerate(snapshot.vehicles):
+        _view(axes, log, i, vehicle)
+        colour = palette.unit(palette.robot_colour(i))
+        late = trails[log.times[: len(trails)] >= snapshot.t - RECENT, i]
+        axes.plot(*trails[:, i].T, color=colour, lw=0.9, alpha=0.22, solid_joinstyle="round", zorder=3)
+        axes.plot(*late.T, color=colour, lw=1.4, alpha=0.85, solid_joinstyle="round", zorder=3)
+    for t, name in enumerate(log.scene.targets):
+        axes.plot(*truths[:, t].T, color=TRUTH, lw=0.9, zorder=2)
+        axes.plot(*truths[-1, t], "x", color=TRUTH, ms=5, mew=1.2, zorder=5)
+        _track(axes, name, snapshot.means[t], snapshot.covariances[t])
+    for i, vehicle in enumerate(snapshot.vehicles):
+        _vehicle(axes, i, vehicle)
+
+
+def ellipse_axes(covariance: NDArray[np.float64]) -> tuple[float, float, float]:
+    """Return width and height [m] of a position's 95 % ellipse, and the angle of its width [deg]."""
+    variances, axes = np.linalg.eigh(covariance[:2, :2])
+    height, width = (2.0 * SIGMA * np.sqrt(np.maximum(variances, 0.0))).tolist()
+    return width, height, math.degrees(math.atan2(axes[1, 1], axes[0, 1]))
+
+
+def _view(axes: Axes, log: TrackLog, i: int, vehicle: VehicleSample) -> None:
+    """Shade what a living vehicle's sensor views."""
+    if not vehicle.alive:
+        return
+    half, facing = log.scene.views[i] / 2.0, math.degrees(vehicle.heading)
+    colour = palette.unit(palette.robot_colour(i))
+    at, reach = (vehicle.x, vehicle.y), log.scene.ranges[i]
+    for fill, ink, width in (((*colour, 0.06), "none", 0.0), ("none", (*colour, 0.35), 0.6)):
+        axes.add_patch(Wedge(at, reach, facing - half, facing + half, fc=fill, ec=ink, lw=width))
+
+
+def _track(axes: Axes, name: str, mean: NDArray[np.float64], covariance: NDArray[np.float64]) -> None:
+    """Draw the estimate of a target with its 95 % ellipse and its name."""
+    width, height, angle = ellipse_axes(covariance)
+    at = float(mean[0]), float(mean[1])
+    ellipse = Ellipse(at, width, height, angle=angle, fc=(*KNOWN, 0.28), ec=INK, lw=0.9, zorder=4)
+    axes.add_patch(ellipse)
+    axes.plot(*at, "o", color=INK, ms=2.2, zorder=5)
+    axes.annotate(
+        name, at, (5, 4), textcoords="offset points", fontsize=7, color=INK, zorder=8, annotation_clip=True
+    )
+
+
+def _vehicle(axes: Axes, index: int, vehicle: VehicleSample) -> None:
+    """Draw a numbered disc with a nose, and the plan ahead of it; a cross if it is lost."""
+    rgb = palette.robot_colour(index)
+    colour = palette.unit(rgb)
+    if not vehicle.alive:
+        axes.plot(vehicle.x, vehicle.y, "X", color=colour, mec="white", mew=0.8, ms=10, zorder=6)
+        return
+    axes.plot(*vehicle.path.T, color="white", lw=2.4, alpha=0.8, zorder=5)
+    axes.plot(*vehicle.path.T, color=colour, lw=1.4, ls=DASHES, zorder=5)
+    ahead = np.array((math.cos(vehicle.heading), math.sin(vehicle.heading))) * 6.6 / 72
+    nose = axes.transData + ScaledTranslation(ahead[0], ahead[1], axes.figure.dpi_scale_trans)
+    turned = (3, 0, math.degrees(vehicle.heading) - 90)
+    axes.plot(
+        vehicle.x, vehicle.y, marker=turned, ms=6.5, color=colour, mec="white", mew=0.7, zorder=6,
+        transform=nose,
+    )  # fmt: skip
+    axes.plot(vehicle.x, vehicle.y, "o", color=colour, mec="white", mew=0.9, ms=10, zorder=7)
+    axes.annotate(
+        str(index + 1), (vehicle.x, vehicle.y), (0, -0.3), textcoords="offset points", ha="center",
+        va="center", fontsize=6.5, fontweight="bold", color=palette.unit(palette.text_on(rgb)), zorder=8,
+    )  # fmt: skip

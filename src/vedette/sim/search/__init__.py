@@ -1,0 +1,1 @@
+"""Searching, simulated: the hidden target, scenarios, trials, curves, the run."""

@@ -1,0 +1,132 @@
+"""What a scenario file of a search says: the area, the vehicles, the target and where it is taken to be."""
+
+from __future__ import annotations
+
+from math import ceil, radians
+from typing import Annotated, Any, Literal, TypeAlias
+
+from msgspec import Meta, Struct, field
+
+from vedette.domains.search.worth import Worth, discounted, mean_time, plain
+from vedette.maps import GridFrame
+
+Name = Annotated[str, Meta(pattern=r"^[A-Za-z0-9._-]{0,64}$")]
+Metre = Annotated[float, Meta(ge=-1e6, le=1e6)]
+Weight = Annotated[float, Meta(gt=0.0, le=1e9)]
+
+MOST_VEHICLES = 64
+
+
+class Uniform(Struct, forbid_unknown_fields=True, frozen=True, kw_only=True, tag_field="type", tag="uniform"):
+    """Anywhere in the area alike."""
+
+    weight: Weight = 1.0
+
+
+class Gaussian(
+    Struct, forbid_unknown_fields=True, frozen=True, kw_only=True, tag_field="type", tag="gaussian"
+):
+    """Near a place."""
+
+    mean: tuple[Metre, Metre]
+    sigma: Annotated[float, Meta(gt=0.0, le=1e6)] | None = None  # [m]
+    covariance: tuple[tuple[float, float], tuple[float, float]] | None = None  # [m^2]
+    weight: Weight = 1.0
+
+
+class Polygon(Struct, forbid_unknown_fields=True, frozen=True, kw_only=True, tag_field="type", tag="polygon"):
+    """Anywhere in a polygon alike."""
+
+    corners: Annotated[tuple[tuple[Metre, Metre], ...], Meta(min_length=3)]
+    weight: Weight = 1.0
+
+
+class Heat(Struct, forbid_unknown_fields=True, frozen=True, kw_only=True, tag_field="type", tag="image"):
+    """As the grey levels of an image stretched over the area, black is nowhere."""
+
+    file: str  # relative to the scenario's folder
+    weight: Weight = 1.0
+
+
+Prior: TypeAlias = Uniform | Gaussian | Polygon | Heat
+
+
+class Target(Struct, forbid_unknown_fields=True, frozen=True):
+    """How the target moves."""
+
+    drift: tuple[float, float] = (0.0, 0.0)  # [m/s], team frame
+    diffusion: Annotated[float, Meta(ge=0.0, le=1e6)] = 0.0  # [m^2/s]
+    start: tuple[Metre, Metre] | None = None  # where it really is [m]; without it, drawn from the prior
+
+
+class Vehicle(Struct, forbid_unknown_fields=True, frozen=True):
+    """A vehicle at constant speed with a bounded turn rate."""
+
+    start: tuple[Metre, Metre, float]  # x, y, heading [m, m, deg]
+    name: Name = ""
+    speed: Annotated[float, Meta(gt=0.0, le=300.0)] = 25.0  # [m/s]
+    turn_rate: Annotated[float, Meta(gt=0.0, le=10.0)] = 0.2  # most [rad/s]
+    detector: dict[str, Any] | None = None  # without it the scenario's
+    looks: Annotated[int, Meta(ge=1)] | None = None  # a step; without it, one each half range
+
+    @property
+    def radius(self) -> float:
+        """Of the body [m]: vehicles keep altitudes of their own, so that nobody makes room."""
+        return 0.5
+
+    @property
+    def pose(self) -> tuple[float, float, float]:
+        """Start, heading in radians."""
+        return self.start[0], self.start[1], radians(self.start[2])
+
+
+class Declare(Struct, forbid_unknown_fields=True, frozen=True):
+    """When a team with false alarms says that it has found the target."""
+
+    probability: Annotated[float, Meta(gt=0.0, lt=1.0)] = 0.95  # posterior within the radius of a place
+    radius: Annotated[float, Meta(gt=0.0, le=1e6)] = 100.0  # [m]
+
+
+class SearchScenario(Struct, forbid_unknown_fields=True, frozen=True, kw_only=True):
+    """What a scenario file says."""
+
+    area: tuple[Metre, Metre, Metre, Metre]  # lowest x, lowest y, highest x, highest y [m]
+    cell: Annotated[float, Meta(gt=0.0, le=1e6)] = 25.0  # side of a cell [m]
+    prior: Annotated[tuple[Prior, ...], Meta(min_length=1, max_length=1000)]
+    target: Target = Target()
+    vehicles: Annotated[tuple[Vehicle, ...], Meta(min_length=1, max_length=MOST_VEHICLES)]
+    detector: dict[str, Any] = field(
+        default_factory=lambda: {"type": "definite"}
+    )  # of vehicles without one of their own
+    duration: Annotated[float, Meta(gt=0.0, le=86400.0)] = 300.0  # [s]
+    step: Annotated[float, Meta(ge=0.2, le=60.0)] = 2.0  # of looking and planning [s]
+    horizon: Annotated[int, Meta(ge=2, le=60)] = 10  # [steps]
+    replan: Annotated[int, Meta(ge=1, le=60)] = 1  # a round each so many [steps]
+    decisions: Annotated[int, Meta(ge=1, le=5)] = 4  # turn rates chosen in a horizon
+    worth: Literal["plain", "discounted", "mean-time"] = "discounted"
+    gamma: Annotated[float, Meta(gt=0.0, le=1.0)] = 0.97  # worth of a step's delay, for `discounted`
+    tail: Annotated[float, Meta(ge=0.0, le=1.0)] = 1.0  # worth of what is promised after the horizon
+    declare: Declare = Declare()
+
+    @property
+    def vehicle_names(self) -> list[str]:
+        """As given, ``vehicle-N`` where not."""
+        return [each.name or f"vehicle-{i}" for i, each in enumerate(self.vehicles, 1)]
+
+    @property
+    def frame(self) -> GridFrame:
+        """The grid over the area, whole cells."""
+        x0, y0, x1, y1 = self.area
+        rows, cols = (max(1, ceil((high - low) / self.cell - 1e-9)) for low, high in ((y0, y1), (x0, x1)))
+        return GridFrame(self.cell, rows, cols, x0, y0)
+
+    @property
+    def weights(self) -> Worth:
+        """What detections are worth when."""
+        match self.worth:
+            case "plain":
+                return plain(self.horizon, self.tail)
+            case "discounted":
+                return discounted(self.horizon, self.gamma, self.tail)
+            case "mean-time":
+                return mean_time(self.horizon, self.tail)

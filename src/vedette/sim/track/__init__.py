@@ -1,0 +1,1 @@
+"""Tracking, simulated: targets, scenarios, the joint optimum to compare with, the run."""
