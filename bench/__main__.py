@@ -11,6 +11,7 @@ import click
 from bench import RESULTS, command, machine
 from bench.criteria import Criterion, Measurement, verdicts
 from bench.frontiers import Effort, measure_frontiers
+from bench.scale import report as scale
 from bench.speed import Run, run_mission
 from vedette.record.files import write_json
 
@@ -24,17 +25,26 @@ QUICK_EFFORT = {SMALL: Effort(1, 200, 2), LARGE: Effort(1, 50, 1)}
 @click.option("--date", help="Of the run, to be put into the JSON.  [default: the commit's]")
 @click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for the JSON.")
 def bench(quick: bool, date: str | None, out: Path) -> None:
-    """Measure what the project has to reach, and say MET or MISSED. Exit status 0 either way."""
+    """Measure what the project has to reach, and say MET or MISSED. Exit status 0 either way.
+
+    The scale table comes last: ``python -m bench.scale`` makes it alone.
+    """
     folder = command.results_folder(out)
     machine.stay_on_one_core()
     about = machine.describe()
     click.echo(f"{about['machine']}; Python {about['python']}; commit {about['commit']}")
-    measurements = measure(quick, progress=lambda text: click.echo(f"  {text} ...", err=True))
+    about |= {"date": date or about["commit_date"]}
+
+    def progress(text: str) -> None:
+        click.echo(f"  {text} ...", err=True)
+
+    measurements = measure(quick, progress)
     click.echo("\n" + verdicts(measurements))
     click.echo("ratio: how many times better than asked")
     path = folder / ("bench-quick.json" if quick else "bench.json")
-    write_json(path, report(about | {"date": date or about["commit_date"]}, quick, measurements))
-    click.echo(f"written: {path}")
+    write_json(path, report(about, quick, measurements))
+    click.echo(f"written: {path}\n")
+    click.echo(scale.run(folder, about, quick, progress))
 
 
 def measure(quick: bool, progress: Callable[[str], None]) -> list[Measurement]:

@@ -17,7 +17,8 @@ def frontier_areas(
     """``A_f = hidden + return_price * d_f``: area behind a frontier, and the price of coming back for it.
 
     ``d_f`` is the distance to the fifth nearest other frontier, at most 15 m: a scrap left in a corner that
-    is otherwise finished costs a way back of about that length, one among many nothing.  docs/mapping.md (V24)
+    is otherwise finished costs a way back of about that length, one among many nothing.
+    docs/mapping.md (V24)
 
     Args:
         frame: of the window.

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.impact import NOTHING, Impact
 from vedette.kernels import coverage
-from vedette.problem import Objective
+from vedette.kernels.coverage import LAYERS
+from vedette.problem import Objective, Reach
 
 
 class MappingObjective(Objective[MapBelief, Impact]):
@@ -30,6 +31,16 @@ class MappingObjective(Objective[MapBelief, Impact]):
     def combine(self, a: Impact, b: Impact) -> Impact:
         """``a * b``: products of miss probabilities, as saturating sums of log-misses; paper, eq. (40)."""
         return Impact(*coverage.combine(*a.sparse, *b.sparse))
+
+    def clip(self, belief: MapBelief, impact: Impact, reach: Reach) -> Impact:
+        """Return what lies in planning cells that a box touches, in all layers; docs/theory.md (V14)."""
+        frame = belief.planning
+        row, col = np.divmod(impact.keys // LAYERS, frame.cols)
+        inside = np.zeros(len(row), bool)
+        for x0, y0, x1, y1 in reach:
+            (low_row, low_col), (high_row, high_col) = frame.cell(x0, y0), frame.cell(x1, y1)
+            inside |= (low_row <= row) & (row <= high_row) & (low_col <= col) & (col <= high_col)
+        return impact if inside.all() else Impact(impact.keys[inside], impact.misses[inside])
 
     def value(self, belief: MapBelief, impact: Impact) -> float:
         """Expected weighted entropy reduction [nats]."""

@@ -201,7 +201,7 @@ class MappingPlatform:
         return self.tour(order) if gain > present * (1.0 + HYSTERESIS) else current
 
     def slack(self, belief: MapBelief, team: Impact) -> float:
-        """No strategy of this robot adds more than this to the team's impact [nats]; docs/mapping.md (V26)."""
+        """No strategy of this robot adds more to the team's impact [nats]; docs/mapping.md (V26)."""
         assert self.stops is not None
         return coverage.most_any_tour_adds(
             belief.weights,

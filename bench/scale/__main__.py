@@ -1,0 +1,28 @@
+"""``python -m bench.scale``: what a platform computes and says as the team grows from 2 to 1024."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from bench import RESULTS, command, machine
+from bench.scale.report import run
+
+
+@click.command()
+@click.option("--quick", is_flag=True, help="Three teams up to 64 only.")
+@click.option("--date", help="Of the run, to be put into the JSON.  [default: the commit's]")
+@click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for table, JSON and picture.")
+def scale(quick: bool, date: str | None, out: Path) -> None:
+    """Measure what grows with the team, and say MET or MISSED. Exit status 0 either way."""
+    folder = command.results_folder(out)
+    machine.stay_on_one_core()
+    about = machine.describe()
+    click.echo(f"{about['machine']}; Python {about['python']}; commit {about['commit']}\n")
+    about |= {"date": date or about["commit_date"]}
+    click.echo(run(folder, about, quick, progress=lambda text: click.echo(f"  {text} ...", err=True)))
+
+
+if __name__ == "__main__":
+    command.run(scale, "bench.scale")

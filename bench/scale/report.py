@@ -1,0 +1,39 @@
+"""The whole scale section: measured, judged, written and told."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import asdict
+from pathlib import Path
+
+from bench.criteria import Measurement, verdicts
+from bench.scale.picture import scale_png
+from bench.scale.series import QUICK_SIZES, SIZES, rows
+from bench.scale.tables import brief, full
+from bench.scale.verdicts import judge
+from vedette.record.files import write_json, write_text
+
+
+def run(folder: Path, about: Mapping[str, str], quick: bool, progress: Callable[[str], None]) -> str:
+    """Measure, write ``scale.json``, ``scale.md`` and ``scale.png``, and return what to show."""
+    table = list(rows(QUICK_SIZES if quick else SIZES, progress))
+    judged = judge(table)
+    path = folder / ("scale-quick.json" if quick else "scale.json")
+    write_json(
+        path,
+        {
+            **about,
+            "quick": quick,
+            "measurements": [_plain(each) for each in judged],
+            "rows": [asdict(row) for row in table],
+        },
+    )
+    write_text(path.with_suffix(".md"), f"{full(table)}\n{verdicts(judged)}")
+    scale_png(table, path.with_suffix(".png"))
+    return f"{brief(table)}\n{verdicts(judged)}\nwritten: {path}, and beside it .md and .png"
+
+
+def _plain(each: Measurement) -> dict[str, object]:
+    measured = each.measured if math.isfinite(each.measured) else None
+    return asdict(each.criterion) | {"measured": measured, "verdict": each.verdict, "note": each.note}
