@@ -1,0 +1,177 @@
+"""One neighbour: what was heard from it, whether the link to it can be used, and when to say hello again."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass, field
+
+from vedette.overlay.clock import ClockFilter
+from vedette.overlay.hello import ASK, BYE, TICKS, UP, Echo, Hello
+from vedette.overlay.stamp import Stamp
+
+HELLOS_A_LEASE = 3
+FIRST_RESEND = 0.1  # of news that the neighbour has not confirmed, doubling up to the hello period [s]
+QUIET = 0.4  # of the lease: a neighbour silent for longer is asked to answer
+PROBE = 0.25  # between hellos that ask [s]
+FIRST_HOLD, MOST_HOLD = 1.0, 10.0  # for which a link that failed is left alone, doubling [s]
+SETTLED = 30.0  # a link that was up for so long starts with the first hold again [s]
+SMOOTHING = 0.1  # of the loss estimate, a hello
+MOST_MISSED = 8  # hellos that one gap counts for: silence is the lease's business
+NOWHERE = Stamp(1, 0, 0)
+COSTS = ((0.0, 0.0, 1), (0.15, 0.08, 2), (0.45, 0.3, 4))  # loss to enter a class, to leave it; hops it counts
+
+
+@dataclass(eq=False)
+class Peer:
+    """One robot's view of one neighbour."""
+
+    robot: int
+    lease: float
+    reachable: bool = True  # the transport can send to it
+    boot: int = -1  # -1: never heard
+    hello: Hello | None = None  # the latest
+    stamp: Stamp = NOWHERE  # of the tree that it is on
+    number: int = -1
+    since: float = 0.0  # when that stamp was first heard [s]
+    heard: float = -float("inf")  # when anything was [s]
+    greeted: float = -float("inf")  # when the latest hello was [s]
+    up: bool = False  # we would use the link
+    loss: float = 0.0  # share of its hellos that do not arrive
+    due: float = 0.0  # the next hello to it [s]
+    sent: int = 0  # hellos
+    clock: ClockFilter = field(default_factory=ClockFilter)
+    _level: int = 0  # of COSTS
+    _up_since: float = 0.0
+    _hold: float = 0.0
+    _trusted: float = -float("inf")  # when the link may be used again
+    _past: deque[int] = field(default_factory=lambda: deque(maxlen=8))  # its earlier boots
+    _last_sent: float = -float("inf")
+    _sent_at: dict[int, float] = field(default_factory=dict)  # the latest hellos
+    _told: int = 1  # the hello from which on all news is in
+    _tries: int = 0
+
+    # -- hearing -----------------------------------------------------------------------------------
+
+    def is_news(self, hello: Hello) -> bool:
+        """Tell whether a hello is neither a copy, nor overtaken, nor from an earlier life of the robot."""
+        if hello.boot != self.boot:
+            return hello.boot not in self._past
+        return self.hello is None or hello.sequence > self.hello.sequence
+
+    def take(self, hello: Hello, own_boot: int, now: float) -> None:
+        """Take in a hello that is news."""
+        if hello.boot != self.boot:
+            self._restart(hello.boot, now)
+        before, self.hello = self.hello, hello
+        if before is not None:
+            self._count(min(hello.sequence - before.sequence - 1, MOST_MISSED), hello.loss / 100)
+        if hello.stamp != self.stamp or before is None:
+            self.stamp, self.since = hello.stamp, now
+            self.number = self.stamp.number
+        self.heard = -float("inf") if hello.flags & BYE else now
+        self.greeted = now
+        self._take_times(hello, own_boot, now)
+        # Whoever has something new to say, or asks, is answered: it repeats itself until then.
+        if hello.flags & ASK or before is None or _content(before) != _content(hello):
+            self.due = now
+
+    def _restart(self, boot: int, now: float) -> None:
+        if self.boot >= 0:
+            self._past.append(self.boot)
+        self.boot, self.hello, self.loss = boot, None, 0.0
+        self.clock = ClockFilter()
+        self._go_down(now)
+
+    def _count(self, missed: int, loss_there: float) -> None:
+        self.loss = 1 - (1 - self.loss) * (1 - SMOOTHING) ** missed
+        self.loss *= 1 - SMOOTHING
+        worse = max(self.loss, loss_there)
+        while self._level + 1 < len(COSTS) and worse > COSTS[self._level + 1][0]:
+            self._level += 1
+        while worse < COSTS[self._level][1]:
+            self._level -= 1
+
+    def _take_times(self, hello: Hello, own_boot: int, now: float) -> None:
+        echo = hello.echo
+        if echo is None or echo.boot != own_boot or echo.sequence not in self._sent_at:
+            return
+        left = hello.time / TICKS
+        self.clock.take(self._sent_at[echo.sequence], left - echo.hold / TICKS, left, now)
+
+    # -- judging the link --------------------------------------------------------------------------
+
+    @property
+    def cost(self) -> int:
+        """Return what the link adds to the distance to the root: more than 1 where hellos are lost."""
+        return COSTS[self._level][2]
+
+    @property
+    def usable(self) -> bool:
+        """Tell whether both ends would use the link."""
+        return self.up and self.hello is not None and bool(self.hello.flags & UP)
+
+    def judge(self, own_boot: int, now: float) -> None:
+        """Decide whether to use the link: both ends hear each other, and it has not failed just now."""
+        hello = self.hello
+        two_way = hello is not None and hello.echo is not None and hello.echo.boot == own_boot
+        up = self.reachable and two_way and now < self.heard + self.lease and now >= self._trusted
+        if up and not self.up:
+            self.up, self._up_since = True, now
+            self.tell(now)
+        elif self.up and not up:
+            self._go_down(now)
+        if self.up and now >= self.heard + QUIET * self.lease:
+            self.due = min(self.due, self._last_sent + PROBE)
+
+    def _go_down(self, now: float) -> None:
+        if self.up:
+            again = now < self._up_since + SETTLED
+            self._hold = min(max(2 * self._hold, FIRST_HOLD), MOST_HOLD) if again else FIRST_HOLD
+            self._trusted = now + self._hold
+            self.up = False
+            self.tell(now)
+
+    def forget(self) -> None:
+        """Count the neighbour as silent from now on, until it is heard again."""
+        self.heard = -float("inf")
+
+    def wake(self, now: float) -> float:
+        """Return when time alone will next change something here [s]."""
+        due = self.due if self.reachable else float("inf")
+        if self.up:
+            probe = max(self.heard + QUIET * self.lease, self._last_sent + PROBE)
+            return min(due, probe, self.heard + self.lease)
+        return min(due, self._trusted) if now < self._trusted else due
+
+    # -- speaking ----------------------------------------------------------------------------------
+
+    def tell(self, at: float) -> None:
+        """Say hello at a time [s], and again and again until the neighbour has confirmed what is new now."""
+        self._told, self._tries = self.sent + 1, 0
+        self.due = at
+
+    def next_hello(self, own_boot: int, now: float) -> tuple[int, int, Echo | None]:
+        """Return sequence number, flags and echo of a hello that leaves now."""
+        self.sent += 1
+        self._last_sent = self._sent_at[self.sent] = now
+        self._sent_at.pop(self.sent - 16, None)
+        echo = self.hello.echo if self.hello else None
+        confirmed = echo is not None and echo.boot == own_boot and echo.sequence >= self._told
+        asks = self.up and now >= self.heard + QUIET * self.lease
+        pause = self.lease / HELLOS_A_LEASE
+        if not confirmed:
+            pause = min(pause, FIRST_RESEND * 2**self._tries)
+            self._tries = min(self._tries + 1, 8)
+        self.due = now + (min(pause, PROBE) if asks else pause)
+        heard = self.hello is not None and now < self.heard + self.lease
+        flags = (UP if self.up else 0) | (ASK if asks else 0)
+        return self.sent, flags, self._echo(now) if heard else None
+
+    def _echo(self, now: float) -> Echo | None:
+        assert self.hello
+        return Echo(self.boot, self.hello.sequence, round((now - self.greeted) * TICKS))
+
+
+def _content(hello: Hello) -> tuple[object, ...]:
+    """What a neighbour says that wants an answer."""
+    return hello.stamp, hello.distance, hello.flags & ~ASK, hello.echo is None
