@@ -11,11 +11,10 @@ from bench.scale.team import Lots, Team
 from vedette.domains.search import worth
 from vedette.domains.search.belief import SearchBelief, TargetPdf, freeze
 from vedette.domains.search.detectors import DefiniteRange
-from vedette.domains.search.impact import Impact, ImpactCodec, clip
+from vedette.domains.search.impact import Impact, ImpactCodec
 from vedette.domains.search.objective import SearchObjective
 from vedette.domains.search.platform import SearchPlatform
 from vedette.maps import GridFrame
-from vedette.problem import Reach
 
 LOT = 400.0  # [m]
 CELL = 50.0  # [m]
@@ -35,18 +34,13 @@ class Flights(list[Impact]):
 
 
 class LocalSearch(SearchObjective):
-    """The team's search objective, whose messages can leave out what lies elsewhere."""
+    """The team's search objective, which leaves pricing its flights to the platform that lists them."""
 
     def values(self, belief: SearchBelief, others: Impact, own: Sequence[Impact]) -> NDArray[np.float64]:
         """``value(others * own_k)`` for every k."""
         if not isinstance(own, Flights):
             return super().values(belief, others, own)
         return self.value(belief, others) + own.platform.gains(belief, others)
-
-    def clip(self, belief: SearchBelief, impact: Impact, reach: Reach) -> Impact:
-        """Return what can matter to platforms that look within ``reach`` only; docs/theory.md (V14)."""
-        boxes = np.array(reach, np.float64).reshape(-1, 4)[:, [0, 2, 1, 3]]
-        return clip(impact, belief.frame, belief.layers, boxes)
 
 
 def dense(lots: Lots, rng: np.random.Generator) -> Team:
@@ -73,6 +67,6 @@ def _team(frame: GridFrame, places: NDArray[np.float64], rng: np.random.Generato
         platform.place((x, y, rng.uniform(-np.pi, np.pi)), None)
         platform.prepare(belief)
         candidates.append(Flights(platform, belief))
-        reaches.append(tuple((x0, y0, x1, y1) for x0, x1, y0, y1 in platform.reach().tolist()))
+        reaches.append(platform.reach())
     codec = ImpactCodec(frame.size, belief.layers)
     return Team(LocalSearch(), belief, places, candidates, reaches, codec, codec.bound)

@@ -203,8 +203,7 @@ class Searching:
 
     def clip(self, belief: SearchBelief, impact: Impact, reach: Reach) -> Impact:
         """Leave out the cells outside of ``reach``."""
-        boxes = np.array([(x0, x1, y0, y1) for x0, y0, x1, y1 in reach]).reshape(-1, 4)
-        return clip(impact, belief.frame, belief.layers, boxes)
+        return clip(impact, belief.frame, belief.layers, reach)
 
     def nothing_left(self, value: float, now: float) -> bool:
         """A search goes on until the target is declared."""

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from vedette.kernels.search import Keys, Misses
 from vedette.maps import GridFrame
+from vedette.problem import Reach
 
 STEPS_PER_NAT = 16.0
 MOST = 255  # a miss probability of exp(-255/16) = 1.2e-7 or less
@@ -48,21 +49,21 @@ def quantise(probability: NDArray[np.float64]) -> Misses:
     return np.minimum(levels + 0.5, MOST).astype(np.uint8)
 
 
-def clip(impact: Impact, frame: GridFrame, layers: int, boxes: NDArray[np.float64]) -> Impact:
+def clip(impact: Impact, frame: GridFrame, layers: int, reach: Reach) -> Impact:
     """Keep what lies in cells that any of the boxes touches.
 
-    If the boxes hold those of ``SearchPlatform.reach`` for every receiver, no receiver's gains change.
+    If they hold those of ``SearchPlatform.reach`` for every receiver, no receiver's gains change.
 
     Args:
         impact: what to send.
         frame: the belief's grid.
         layers: the belief's.
-        boxes: ``(B, 4)`` x_min, x_max, y_min, y_max [m], team frame.
+        reach: boxes lowest x, lowest y, highest x, highest y [m], team frame.
     """
     row, col = np.divmod(impact.keys // np.uint32(layers), np.uint32(frame.cols))
     keep = np.zeros(len(impact.keys), bool)
-    for x_min, x_max, y_min, y_max in boxes:
-        first, last = frame.cell(x_min, y_min), frame.cell(x_max, y_max)
+    for x0, y0, x1, y1 in reach:
+        first, last = frame.cell(x0, y0), frame.cell(x1, y1)
         keep |= (row >= first[0]) & (row <= last[0]) & (col >= first[1]) & (col <= last[1])
     return Impact(impact.keys[keep], impact.misses[keep])
 

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.domains.search.belief import SearchBelief
-from vedette.domains.search.impact import NOTHING, Impact
+from vedette.domains.search.impact import NOTHING, Impact, clip
 from vedette.domains.search.paths import shared_paths
 from vedette.kernels import coverage, search
-from vedette.problem import Objective
+from vedette.problem import Objective, Reach
 
 
 class SearchObjective(Objective[SearchBelief, Impact]):
@@ -38,6 +38,10 @@ class SearchObjective(Objective[SearchBelief, Impact]):
     def combine(self, a: Impact, b: Impact) -> Impact:
         """``a * b``: products of misses, as saturating sums of log-misses; paper, eq. (40); (V44)."""
         return Impact(*coverage.combine(*a.sparse, *b.sparse))
+
+    def clip(self, belief: SearchBelief, impact: Impact, reach: Reach) -> Impact:
+        """Return what can matter to platforms that look within ``reach`` only; docs/theory.md (V14)."""
+        return clip(impact, belief.frame, belief.layers, reach)
 
     def value(self, belief: SearchBelief, impact: Impact) -> float:
         """``sum_k w_k d_k``, at most 1 with the weights of ``worth``."""

@@ -26,6 +26,7 @@ from vedette.domains.search.options import Options, boxes_of, quantised_looks, w
 from vedette.domains.search.paths import impact_of
 from vedette.errors import InputError
 from vedette.kernels import search
+from vedette.problem import Reach
 from vedette.vehicle import drive
 
 MOST_CANDIDATES = 300
@@ -167,13 +168,10 @@ class SearchPlatform:
         """No flight of this round adds more than this to the team's impact."""
         return max(0.0, float(self.gains(belief, team).max()))
 
-    def reach(self) -> NDArray[np.float64]:
-        """Boxes ``(B, 4)`` outside which the team's impact does not touch this vehicle's gains.
-
-        x_min, x_max, y_min, y_max [m], team frame; for ``impact.clip``.
-        """
+    def reach(self) -> Reach:
+        """Return boxes [m], team frame, outside which no team-mate's impact touches this vehicle's gains."""
         assert self.options is not None
-        return self.options.boxes
+        return tuple((x0, y0, x1, y1) for x0, x1, y0, y1 in self.options.boxes.tolist())
 
     def _goals(self, belief: SearchBelief) -> Goals:
         if self.speed == 0.0 or self.turn_rate == 0.0:
