@@ -7,17 +7,16 @@ import math
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Ellipse, Wedge
-from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
 from vedette.record import palette
+from vedette.record.signs import draw_vehicle
 from vedette.record.track.log import TrackLog, TrackSnapshot, VehicleSample
 
 SIGMA = math.sqrt(-2.0 * math.log(0.05))  # a Gaussian in the plane lies within 2.45 sigma to 95 %
 INK = palette.unit(palette.INK)
 TRUTH = palette.unit((150, 153, 157))
 KNOWN = palette.unit((255, 183, 0))  # of an ellipse's inside
-DASHES = (0, (3, 1.6))
 RECENT = 20.0  # a vehicle's way of so long stands out from the rest of it [s]
 _MARGIN = 0.02  # of the larger side
 
@@ -55,7 +54,7 @@ def draw(axes: Axes, log: TrackLog, snapshot: TrackSnapshot, box: Box) -> None:
         axes.plot(*truths[-1, t], "x", color=TRUTH, ms=5, mew=1.2, zorder=5)
         _track(axes, name, snapshot.means[t], snapshot.covariances[t])
     for i, vehicle in enumerate(snapshot.vehicles):
-        _vehicle(axes, i, vehicle)
+        draw_vehicle(axes, i, vehicle)
 
 
 def ellipse_axes(covariance: NDArray[np.float64]) -> tuple[float, float, float]:
@@ -86,26 +85,3 @@ def _track(axes: Axes, name: str, mean: NDArray[np.float64], covariance: NDArray
     axes.annotate(
         name, at, (5, 4), textcoords="offset points", fontsize=7, color=INK, zorder=8, annotation_clip=True
     )
-
-
-def _vehicle(axes: Axes, index: int, vehicle: VehicleSample) -> None:
-    """Draw a numbered disc with a nose, and the plan ahead of it; a cross if it is lost."""
-    rgb = palette.robot_colour(index)
-    colour = palette.unit(rgb)
-    if not vehicle.alive:
-        axes.plot(vehicle.x, vehicle.y, "X", color=colour, mec="white", mew=0.8, ms=10, zorder=6)
-        return
-    axes.plot(*vehicle.path.T, color="white", lw=2.4, alpha=0.8, zorder=5)
-    axes.plot(*vehicle.path.T, color=colour, lw=1.4, ls=DASHES, zorder=5)
-    ahead = np.array((math.cos(vehicle.heading), math.sin(vehicle.heading))) * 6.6 / 72
-    nose = axes.transData + ScaledTranslation(ahead[0], ahead[1], axes.figure.dpi_scale_trans)
-    turned = (3, 0, math.degrees(vehicle.heading) - 90)
-    axes.plot(
-        vehicle.x, vehicle.y, marker=turned, ms=6.5, color=colour, mec="white", mew=0.7, zorder=6,
-        transform=nose,
-    )  # fmt: skip
-    axes.plot(vehicle.x, vehicle.y, "o", color=colour, mec="white", mew=0.9, ms=10, zorder=7)
-    axes.annotate(
-        str(index + 1), (vehicle.x, vehicle.y), (0, -0.3), textcoords="offset points", ha="center",
-        va="center", fontsize=6.5, fontweight="bold", color=palette.unit(palette.text_on(rgb)), zorder=8,
-    )  # fmt: skip

@@ -13,8 +13,9 @@ from matplotlib.patches import Patch
 
 from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save
+from vedette.record.signs import DASHES
 from vedette.record.track.log import TrackLog
-from vedette.record.track.panel import DASHES, INK, KNOWN, TRUTH, Box, draw, window
+from vedette.record.track.panel import INK, KNOWN, TRUTH, Box, draw, window
 
 _GAP, _MARGIN, _TOP, _LINE = 0.14, 0.2, 0.72, 0.25  # [inch]
 _STAGES = 0.1, 0.5, 1.0  # shares of the time: while targets are being found, and two while they are kept
