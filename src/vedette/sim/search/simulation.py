@@ -8,15 +8,14 @@ from math import ceil, floor
 import numpy as np
 
 from vedette.agent import Agent, FlightBehaviour, Pace
-from vedette.agent.events import TreeChanged
 from vedette.errors import InputError
 from vedette.fusion.steps import ReplicatedSteps, Sparse, SparseIntegers, StepEvidence, StepSums
 from vedette.missions.search import Declared, Searching, SearchPlan, SharedBeliefSearching
 from vedette.record.summary import Outcome
+from vedette.sim.flights import FlightSetup, FlightSimulation, lead
 from vedette.sim.search.case import SearchCase
 from vedette.sim.search.hidden import Hidden, Searchers
-from vedette.sim.simulation import BOOT, Setup, Simulation, random_streams
-from vedette.sim.track.simulation import lead
+from vedette.sim.simulation import BOOT, random_streams
 
 COORDINATIONS = ("none", "shared", "negotiated")
 FUSIONS = ("replicated", "sums")
@@ -24,15 +23,14 @@ _WINDOW = 30.0  # steps stay open for late evidence, with sums [s]
 
 
 @dataclass(frozen=True)
-class SearchSetup(Setup):
+class SearchSetup(FlightSetup):
     """What to simulate, beside the scenario."""
 
-    coordination: str = "negotiated"
     fusion: str = "replicated"
     blind: bool = False  # nobody ever reports anything: the run that plans are made for
 
 
-class SearchSimulation(Simulation):
+class SearchSimulation(FlightSimulation):
     """A team of vehicles that look for a target; ``run`` lets it, until one declares it found."""
 
     setup: SearchSetup
@@ -87,7 +85,7 @@ class SearchSimulation(Simulation):
 
     def _plan(self, case: SearchCase, setup: SearchSetup) -> SearchPlan:
         scenario = case.scenario
-        team = 1 if setup.coordination == "none" else len(scenario.vehicles)
+        team = setup.team(len(scenario.vehicles))
         ahead = lead(team, setup.link_delay)
         taken = ceil(ahead / scenario.step) + 1
         if taken >= scenario.horizon:
@@ -107,12 +105,3 @@ class SearchSimulation(Simulation):
         if name == "sums":
             return StepSums(i, BOOT, elements, window=ceil(_WINDOW / self.case.scenario.step))
         return ReplicatedSteps(i, BOOT, elements)
-
-    def _plant_tree(self) -> None:
-        """Give the living a tree; without coordination, each a tree of its own."""
-        if self.setup.coordination != "none":
-            super()._plant_tree()
-            return
-        self._epoch += 1
-        for i in self.living:
-            self._step(i, [TreeChanged(self._epoch, None, (), 1)])

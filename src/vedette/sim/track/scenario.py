@@ -59,15 +59,6 @@ class _Target(Struct, forbid_unknown_fields=True, frozen=True, kw_only=True, tag
     start: Numbers | None = None  # true state; without it, drawn from the prior
     name: Name = ""
 
-    @property
-    def components(self) -> int:
-        """Numbers that the state has."""
-        return STATE
-
-    def moved(self, dt: float) -> TargetModel:
-        """Return how it moves in a step [s]."""
-        raise NotImplementedError
-
 
 class StaticTarget(_Target, tag="static", frozen=True, kw_only=True):
     """State x, y [m]."""
@@ -88,6 +79,11 @@ class MovingTarget(_Target, tag="constant-velocity", frozen=True, kw_only=True):
     """State x, y, vx, vy [m, m, m/s, m/s]."""
 
     q: Annotated[float, Meta(ge=0.0, le=1e6)] = 0.05  # intensity of the acceleration [m^2/s^3]
+
+    @property
+    def components(self) -> int:
+        """Four."""
+        return STATE
 
     def moved(self, dt: float) -> TargetModel:
         """Goes on, with a random acceleration."""
@@ -214,7 +210,7 @@ def _check_inside(what: str, place: Sequence[float], area: tuple[float, float, f
         )
 
 
-def _check_target(what: str, target: _Target) -> None:
+def _check_target(what: str, target: StaticTarget | MovingTarget) -> None:
     d = target.components
     model = "static" if d == 2 else "constant-velocity"
     for name, numbers in (("mean", target.mean), ("sd", target.sd), ("start", target.start)):
@@ -240,5 +236,5 @@ def _check_target(what: str, target: _Target) -> None:
             )
 
 
-def _covariance(target: _Target) -> NDArray[np.float64]:
+def _covariance(target: StaticTarget | MovingTarget) -> NDArray[np.float64]:
     return np.diag(np.square(target.sd)) if target.sd is not None else np.array(target.covariance)

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from vedette.agent import Agent, FlightBehaviour, Pace
-from vedette.agent.events import TreeChanged
 from vedette.domains.tracking.belief import Tracks
 from vedette.domains.tracking.objective import objective
 from vedette.domains.tracking.platform import TrackingPlatform
@@ -17,29 +15,27 @@ from vedette.errors import InputError
 from vedette.fusion.gaussian import Information, Motion, track_fusion
 from vedette.missions.track import Bounds, Plan, SharedBeliefTracking, Tracking
 from vedette.record.summary import Outcome
-from vedette.sim.simulation import BOOT, JOB_TIME, Setup, Simulation, random_streams
+from vedette.sim.flights import FlightSetup, FlightSimulation, lead
+from vedette.sim.simulation import BOOT, random_streams
 from vedette.sim.track.oracle import MOST_JOINT, DictatedTracking, Oracle, joint_choices
 from vedette.sim.track.scenario import TrackScenario
 from vedette.sim.track.targets import Targets
 from vedette.sim.vehicles import Vehicles
 
 COORDINATIONS = ("none", "shared", "negotiated", "optimum")
-_SWEEPS = 3  # of the token that a round mostly takes, at most
-_MARGIN = 0.1  # [s]
 _EXTENT = 10.0  # evidence holds up to so many times the area's farthest corner from the origin
 
 
 @dataclass(frozen=True)
-class TrackSetup(Setup):
+class TrackSetup(FlightSetup):
     """What to simulate, beside the scenario."""
 
-    coordination: str = "negotiated"
     fusion: str = "replicated"
     objective: str | None = None  # None: the scenario's
     continuous: bool = False
 
 
-class TrackSimulation(Simulation):
+class TrackSimulation(FlightSimulation):
     """A team of vehicles that follow targets; ``run`` lets it."""
 
     setup: TrackSetup
@@ -108,7 +104,7 @@ class TrackSimulation(Simulation):
             most_matrix=bounds.matrix,
             most_vector=bounds.vector,
         )
-        team = 1 if setup.coordination == "none" else len(scenario.vehicles)
+        team = setup.team(len(scenario.vehicles))
         plan = Plan(prior.models, prior.dt, prior.horizon, self._lead(team, setup.link_delay))
         match setup.coordination:
             case "shared":
@@ -130,15 +126,6 @@ class TrackSimulation(Simulation):
             )
         return time
 
-    def _plant_tree(self) -> None:
-        """Give the living a tree; without coordination, each a tree of its own."""
-        if self.setup.coordination != "none":
-            super()._plant_tree()
-            return
-        self._epoch += 1
-        for i in self.living:
-            self._step(i, [TreeChanged(self._epoch, None, (), 1)])
-
 
 def check_optimum(scenario: TrackScenario, setup: TrackSetup) -> None:
     """Raise InputError where the best joint choice cannot be had by trying everything."""
@@ -150,16 +137,6 @@ def check_optimum(scenario: TrackScenario, setup: TrackSetup) -> None:
             f"the optimum would try {joint} joint choices a round, at most {MOST_JOINT} are feasible; "
             "set fewer decisions in the scenario, or fewer vehicles"
         )
-
-
-def lead(vehicles: int, delay: float) -> float:
-    """Return how long a round takes from freezing to its end, on a balanced tree [s].
-
-    Freeze, Gather and Stop each go from end to end of the tree, and the token round it in every sweep.
-    """
-    depth = math.ceil(math.log2(vehicles + 1)) - 1
-    hops = 3 * depth + 2 * (vehicles - 1) * _SWEEPS
-    return JOB_TIME + _MARGIN + delay * hops
 
 
 def motion_of(prior: Tracks) -> Motion:
