@@ -6,12 +6,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.legend_handler import HandlerTuple
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.transforms import ScaledTranslation
@@ -22,6 +20,7 @@ from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save
 from vedette.record.log import RobotSample, RunLog, Snapshot
 from vedette.record.raster import Window, enlarge, known_window, paint
+from vedette.record.signs import DASHES, badge, legend_line, scale_bar
 
 _GAP, _MARGIN, _TOP = 0.14, 0.2, 0.72  # [inch]
 _LINE = 0.25  # of the legend [inch]
@@ -48,7 +47,9 @@ def progress_png(log: RunLog, path: Path | str) -> None:
         for corner, stage in zip(layout.corners, stages, strict=True):
             _panel(figure, corner, layout, log, window, stage)
         _heading(figure, layout, log)
-        _scale_bar(figure, layout, window)
+        lowest = min(corner[1] for corner in layout.corners)
+        metres = window.frame.cols * window.frame.resolution
+        scale_bar(figure, layout.corners[0][0], lowest - 0.16, metres, layout.panel[0])
         _legend(figure, layout, stages[-1].robots)
         save(figure, path)
 
@@ -104,7 +105,7 @@ def _ways(
         return
     if len(robot.path) > 1:
         axes.plot(*robot.path.T, color="white", lw=2.6, alpha=0.7, zorder=3)
-        axes.plot(*robot.path.T, color=colour, lw=1.4, ls=(0, (3, 1.6)), zorder=4)
+        axes.plot(*robot.path.T, color=colour, lw=1.4, ls=DASHES, zorder=4)
     if robot.goal is not None:
         axes.plot(*robot.goal, "s", color="white", mec=colour, mew=1.8, ms=6.5, zorder=5)
 
@@ -136,33 +137,18 @@ def _heading(figure: Figure, layout: _Layout, log: RunLog) -> None:
     figure.text(*at, f"{log.world}: {robots}", fontsize=12, fontweight="bold", va="top")
 
 
-def _scale_bar(figure: Figure, layout: _Layout, window: Window) -> None:
-    """Draw a bar of a round length under the first panel of the lowest row."""
-    metres = window.frame.cols * window.frame.resolution
-    inches = layout.panel[0] / metres
-    bar = max((b for b in _ROUND if b <= metres / 4), default=_ROUND[0])
-    x, y = layout.corners[0][0], min(corner[1] for corner in layout.corners) - 0.16
-    axes = figure.add_axes(_box(layout, x, y - 0.05, bar * inches, 0.1))
-    axes.axis("off")
-    axes.plot(
-        (0, 0, 0, 1, 1, 1), (0, 1, 0.5, 0.5, 0, 1), color=palette.unit(palette.INK), lw=1.1, clip_on=False
-    )
-    axes.set(xlim=(0, 1), ylim=(0, 1))
-    axes.annotate(f"{bar:g} m", (1, 0.5), (5, 0), textcoords="offset points", va="center", fontsize=8)
-
-
 def _legend(figure: Figure, layout: _Layout, robots: Sequence[RobotSample]) -> None:
     """Explain robots, ways, cell classes and the impact's colour under the panels."""
-    team = [_badge(i, robot) for i, robot in enumerate(robots)]
+    team = [badge(i, robot.alive) for i, robot in enumerate(robots)]
     labels = [robot.name + ("" if robot.alive else " (lost)") for robot in robots]
     per_row = _robots_a_row(layout.width, robots)
     y = min(corner[1] for corner in layout.corners) - 0.42
     for first in range(0, len(team), per_row):
         some = slice(first, first + per_row)
-        _line(figure, layout, y, team[some], labels[some])
+        legend_line(figure, _MARGIN, y, team[some], labels[some])
         y -= _LINE
     signs = _signs()
-    _line(figure, layout, y, signs, [str(sign.get_label()) for sign in signs])
+    legend_line(figure, _MARGIN, y, signs, [str(sign.get_label()) for sign in signs])
     _impact_ramp(figure, layout, y if layout.width >= _WIDE else y - _LINE)
 
 
@@ -172,33 +158,12 @@ def _robots_a_row(width: float, robots: Sequence[RobotSample]) -> int:
     return max(1, int((width - 2 * _MARGIN) / entry))
 
 
-def _line(figure: Figure, layout: _Layout, y: float, handles: Sequence[Any], labels: Sequence[str]) -> None:
-    """Write a line of the legend whose middle is ``y`` [inch]."""
-    at = _MARGIN / layout.width, y / layout.height
-    figure.legend(
-        handles, labels, loc="center left", bbox_to_anchor=at, ncols=len(labels), frameon=False, borderpad=0,
-        borderaxespad=0, columnspacing=1.6, handletextpad=0.6, handler_map={tuple: HandlerTuple(1, 0)},
-    )  # fmt: skip
-
-
-def _badge(index: int, robot: RobotSample) -> tuple[Line2D, ...]:
-    """Return a robot's sign in the legend: its numbered disc, or its cross."""
-    rgb = palette.robot_colour(index)
-    disc = Line2D((), (), ls="", marker="o", ms=11, mec="white", color=palette.unit(rgb))
-    if not robot.alive:
-        disc.set_marker("X")
-        return (disc,)
-    digits = f"$\\mathbf{{{index + 1}}}$"
-    ink = palette.unit(palette.text_on(rgb))
-    return disc, Line2D((), (), ls="", marker=digits, ms=5, mew=0.1, color=ink)
-
-
 def _signs() -> list[Line2D | Patch]:
     ink = palette.unit((110, 113, 117))
     classes = ((FREE, "free"), (OCCUPIED, "wall"), (UNKNOWN, "unknown"))
     return [
         Line2D((), (), color=ink, lw=1.3, label="travelled"),
-        Line2D((), (), color=ink, lw=1.4, ls=(0, (3, 1.6)), label="planned"),
+        Line2D((), (), color=ink, lw=1.4, ls=DASHES, label="planned"),
         Line2D((), (), ls="", marker="s", color="white", mec=ink, mew=1.6, ms=6, label="goal"),
         *(Patch(fc=tuple(palette.CLASSES[c] / 255), ec=ink, lw=0.6, label=name) for c, name in classes),
     ]
@@ -217,9 +182,6 @@ def _impact_ramp(figure: Figure, layout: _Layout, y: float) -> None:
         (1.06, "1", "left"),
     ):
         axes.text(x, 0.5, text, ha=align, va="center_baseline", fontsize=9)
-
-
-_ROUND = (0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500)
 
 
 def _box(

@@ -1,4 +1,4 @@
-"""Signs that pictures of flying missions share: vehicles, their badges in a legend, and scale bars."""
+"""Signs that pictures of missions share: vehicles, badges and lines of a legend, scale bars."""
 
 from __future__ import annotations
 

@@ -4,23 +4,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from matplotlib.figure import Figure
-from matplotlib.legend_handler import HandlerTuple
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save
-from vedette.record.signs import DASHES
+from vedette.record.signs import DASHES, badge, legend_line, scale_bar
 from vedette.record.track.log import TrackLog
 from vedette.record.track.panel import INK, KNOWN, TRUTH, Box, draw, window
 
 _GAP, _MARGIN, _TOP, _LINE = 0.14, 0.2, 0.72, 0.25  # [inch]
 _STAGES = 0.1, 0.5, 1.0  # shares of the time: while targets are being found, and two while they are kept
 _LEAST = 8.2  # width of the figure, for the signs in one line [inch]
-_ROUND = (0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000, 50_000, 100_000)
 
 
 @dataclass(frozen=True)
@@ -44,7 +41,8 @@ def tracks_png(log: TrackLog, path: Path | str) -> None:
             axes = figure.add_axes(_part(layout, x, y, *layout.panel))
             draw(axes, log, stage, box)
         _heading(figure, layout, log)
-        _scale_bar(figure, layout, box)
+        lowest = min(corner[1] for corner in layout.corners)
+        scale_bar(figure, layout.corners[0][0], lowest - 0.16, box[2] - box[0], layout.panel[0])
         _legend(figure, layout, log)
         save(figure, path)
 
@@ -84,23 +82,10 @@ def _heading(figure: Figure, layout: _Layout, log: TrackLog) -> None:
     )
 
 
-def _scale_bar(figure: Figure, layout: _Layout, box: Box) -> None:
-    """Draw a bar of a round length under the first panel of the lowest row."""
-    metres = box[2] - box[0]
-    inches = layout.panel[0] / metres
-    bar = max((b for b in _ROUND if b <= metres / 4), default=_ROUND[0])
-    x, y = layout.corners[0][0], min(corner[1] for corner in layout.corners) - 0.16
-    axes = figure.add_axes(_part(layout, x, y - 0.05, bar * inches, 0.1))
-    axes.axis("off")
-    axes.plot((0, 0, 0, 1, 1, 1), (0, 1, 0.5, 0.5, 0, 1), color=INK, lw=1.1, clip_on=False)
-    axes.set(xlim=(0, 1), ylim=(0, 1))
-    axes.annotate(f"{bar:g} m", (1, 0.5), (5, 0), textcoords="offset points", va="center", fontsize=8)
-
-
 def _legend(figure: Figure, layout: _Layout, log: TrackLog) -> None:
     """Name the vehicles with their sensors, and explain the signs."""
     last, scene = log.snapshots[-1], log.scene
-    badges = [_badge(i, vehicle.alive) for i, vehicle in enumerate(last.vehicles)]
+    badges = [badge(i, vehicle.alive) for i, vehicle in enumerate(last.vehicles)]
     labels = [
         f"{name} ({sensor}{'' if vehicle.alive else ', lost'})"
         for name, sensor, vehicle in zip(scene.vehicles, scene.sensors, last.vehicles, strict=True)
@@ -108,30 +93,10 @@ def _legend(figure: Figure, layout: _Layout, log: TrackLog) -> None:
     y = min(corner[1] for corner in layout.corners) - 0.46
     for first in range(0, len(badges), layout.per_row):
         some = slice(first, first + layout.per_row)
-        _line(figure, layout, y, badges[some], labels[some])
+        legend_line(figure, _MARGIN, y, badges[some], labels[some])
         y -= _LINE
     signs = _signs()
-    _line(figure, layout, y, signs, [str(sign.get_label()) for sign in signs])
-
-
-def _line(figure: Figure, layout: _Layout, y: float, handles: list[Any], labels: list[str]) -> None:
-    """Write a line of the legend whose middle is ``y`` [inch]."""
-    at = _MARGIN / layout.width, y / layout.height
-    figure.legend(
-        handles, labels, loc="center left", bbox_to_anchor=at, ncols=len(labels), frameon=False, borderpad=0,
-        borderaxespad=0, columnspacing=1.5, handletextpad=0.6, handler_map={tuple: HandlerTuple(1, 0)},
-    )  # fmt: skip
-
-
-def _badge(index: int, alive: bool) -> tuple[Line2D, ...]:
-    """Return a vehicle's sign in the legend."""
-    rgb = palette.robot_colour(index)
-    disc = Line2D((), (), ls="", marker="o" if alive else "X", ms=10, mec="white", color=palette.unit(rgb))
-    if not alive:
-        return (disc,)
-    digits = f"$\\mathbf{{{index + 1}}}$"
-    ink = palette.unit(palette.text_on(rgb))
-    return disc, Line2D((), (), ls="", marker=digits, ms=4.5, mew=0.1, color=ink)
+    legend_line(figure, _MARGIN, y, signs, [str(sign.get_label()) for sign in signs])
 
 
 def _signs() -> list[Line2D | Patch]:
