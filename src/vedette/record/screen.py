@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from rich.color import Color
 from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
 from rich.measure import Measurement
 from rich.panel import Panel
@@ -21,12 +19,11 @@ from rich.text import Text
 from vedette.maps import FREE, OCCUPIED, GridFrame
 from vedette.record import palette
 from vedette.record.log import RobotSample, Snapshot
+from vedette.record.marks import badge, sign, two_colours
 from vedette.record.raster import Window, fit, paint, pool
 
 _MAP = 24, 70  # most lines and columns of the map
 _TABLE = 50  # columns of the table beside the map
-_SIGNS = "123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ"
-_LOST = "×"
 
 
 def screen(
@@ -89,18 +86,9 @@ def _robots(robots: Sequence[RobotSample], travelled: Sequence[float]) -> Table:
         table.add_column(title, no_wrap=True, justify="right")
     for i, (robot, metres) in enumerate(zip(robots, travelled, strict=True)):
         goal = "" if robot.goal is None else f"{robot.goal[0]:.1f}, {robot.goal[1]:.1f}"
-        sign = Text(f" {_sign(i, robot)} ", _sign_style(i, robot))
-        table.add_row(sign, robot.name, robot.state, goal, f"{metres:.1f}")
+        mark = Text(f" {sign(i, robot.alive)} ", badge(i))
+        table.add_row(mark, robot.name, robot.state, goal, f"{metres:.1f}")
     return table
-
-
-def _sign(index: int, robot: RobotSample) -> str:
-    return _SIGNS[index % len(_SIGNS)] if robot.alive else _LOST
-
-
-def _sign_style(index: int, robot: RobotSample) -> Style:
-    colour = palette.robot_colour(index)
-    return _style(palette.text_on(colour), colour, bold=True)
 
 
 class HalfBlocks:
@@ -150,7 +138,7 @@ def _signs(
         row = int((y_max - robot.y) / (y_max - y_min) * rows)
         col = int((robot.x - x_min) / (x_max - x_min) * cols)
         if 0 <= row < rows and 0 <= col < cols:
-            yield (row // 2, col), (_sign(i, robot), _sign_style(i, robot))
+            yield (row // 2, col), (sign(i, robot.alive), badge(i))
 
 
 def _paired(pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:
@@ -174,7 +162,7 @@ def _line(
             segments.append(Segment(*signs[line, first]))
         else:
             ink = both[first].tolist()
-            segments.append(Segment("▀" * (end - first), _style(tuple(ink[:3]), tuple(ink[3:]))))
+            segments.append(Segment("▀" * (end - first), two_colours(tuple(ink[:3]), tuple(ink[3:]))))
     return segments
 
 
@@ -190,9 +178,3 @@ def _glyphs(pairs: NDArray[np.uint8]) -> list[str]:
 
 def _plain_line(glyphs: str, line: int, signs: dict[tuple[int, int], tuple[str, Style]]) -> list[Segment]:
     return [Segment("".join(signs[line, i][0] if (line, i) in signs else g for i, g in enumerate(glyphs)))]
-
-
-@lru_cache(maxsize=4096)
-def _style(ink: tuple[int, ...], ground: tuple[int, ...], bold: bool = False) -> Style:
-    """Return a style of two colours; making one is slow, and a map needs few different ones."""
-    return Style(color=Color.from_rgb(*ink), bgcolor=Color.from_rgb(*ground), bold=bold)

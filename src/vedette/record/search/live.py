@@ -16,11 +16,11 @@ from rich.text import Text
 
 from vedette.record import palette
 from vedette.record.display import Display
+from vedette.record.marks import badge, sign
 from vedette.record.search.log import Scene, SearchSnapshot
 
 _MAP = 24, 76  # most lines and columns of the picture
 _ASPECT = 2.0  # height of a character over its width
-_SIGNS = "123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 _SHADES = " ·░▒▓█"
 _POWER = 0.6  # of the shades, as in the pictures
 
@@ -86,7 +86,7 @@ def _picture(scene: Scene, snapshot: SearchSnapshot, lines: int, columns: int) -
         for x, y in vehicle.path[1:].tolist():
             put(x, y, "∙", Style(color=f"rgb({red},{green},{blue})", bold=True))
     for i, vehicle in enumerate(snapshot.vehicles):
-        put(vehicle.x, vehicle.y, _sign(i, vehicle.alive), _badge(i))
+        put(vehicle.x, vehicle.y, sign(i, vehicle.alive), badge(i))
     return Text("\n").join(Text.assemble(*row) for row in cells)
 
 
@@ -112,20 +112,6 @@ def _table(scene: Scene, snapshot: SearchSnapshot) -> Table:
     table.add_column("afterwards to (m)", no_wrap=True, justify="right")
     for i, vehicle in enumerate(snapshot.vehicles):
         goal = "" if vehicle.goal is None else f"{vehicle.goal[0]:.0f}, {vehicle.goal[1]:.0f}"
-        sign = Text(f" {_sign(i, vehicle.alive)} ", _badge(i))
-        table.add_row(sign, scene.vehicles[i], vehicle.state, goal)
+        mark = Text(f" {sign(i, vehicle.alive)} ", badge(i))
+        table.add_row(mark, scene.vehicles[i], vehicle.state, goal)
     return table
-
-
-def _sign(index: int, alive: bool) -> str:
-    return _SIGNS[index % len(_SIGNS)] if alive else "×"
-
-
-def _badge(index: int) -> Style:
-    ground = palette.robot_colour(index)
-    ink = palette.text_on(ground)
-    return Style(
-        color=f"rgb({ink[0]},{ink[1]},{ink[2]})",
-        bgcolor=f"rgb({ground[0]},{ground[1]},{ground[2]})",
-        bold=True,
-    )

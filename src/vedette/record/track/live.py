@@ -16,11 +16,11 @@ from rich.text import Text
 
 from vedette.record import palette
 from vedette.record.display import Display
+from vedette.record.marks import badge, sign
 from vedette.record.track.log import Scene, TrackSnapshot
 
 _MAP = 24, 76  # most lines and columns of the picture
 _ASPECT = 2.0  # height of a character over its width
-_SIGNS = "123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 _NAMES = "abcdefghijklmnopqrstuvwxyz"
 _ROUND = 48  # points of an ellipse
 _SIGMA = math.sqrt(-2.0 * math.log(0.05))  # a Gaussian in the plane lies within 2.45 sigma to 95 %
@@ -101,7 +101,7 @@ def _draw_vehicles(snapshot: TrackSnapshot, put: Put) -> None:
         for x, y in vehicle.path[1:].tolist():
             put(x, y, "∙", _ink(rgb))
     for i, vehicle in enumerate(snapshot.vehicles):
-        put(vehicle.x, vehicle.y, _sign(i, vehicle.alive), _badge(i))
+        put(vehicle.x, vehicle.y, sign(i, vehicle.alive), badge(i))
 
 
 def _table(scene: Scene, snapshot: TrackSnapshot) -> Table:
@@ -110,20 +110,10 @@ def _table(scene: Scene, snapshot: TrackSnapshot) -> Table:
         table.add_column(title, no_wrap=True)
     for i, vehicle in enumerate(snapshot.vehicles):
         sees = " ".join(f"{_NAMES[t % len(_NAMES)]}:{scene.targets[t]}" for t in vehicle.seen)
-        sign = Text(f" {_sign(i, vehicle.alive)} ", _badge(i))
-        table.add_row(sign, scene.vehicles[i], scene.sensors[i], vehicle.state, sees)
+        mark = Text(f" {sign(i, vehicle.alive)} ", badge(i))
+        table.add_row(mark, scene.vehicles[i], scene.sensors[i], vehicle.state, sees)
     return table
-
-
-def _sign(index: int, alive: bool) -> str:
-    return _SIGNS[index % len(_SIGNS)] if alive else "×"
 
 
 def _ink(rgb: palette.Rgb) -> Style:
     return Style(color=Color.from_rgb(*rgb))
-
-
-def _badge(index: int) -> Style:
-    ground = palette.robot_colour(index)
-    ink = palette.text_on(ground)
-    return Style(color=Color.from_rgb(*ink), bgcolor=Color.from_rgb(*ground), bold=True)

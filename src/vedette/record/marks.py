@@ -1,0 +1,30 @@
+"""How robots and vehicles are marked in a terminal: a sign and its colours each."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from rich.color import Color
+from rich.style import Style
+
+from vedette.record import palette
+
+_SIGNS = "123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+LOST = "×"
+
+
+def sign(index: int, alive: bool) -> str:
+    """Return a robot's sign, one character."""
+    return _SIGNS[index % len(_SIGNS)] if alive else LOST
+
+
+def badge(index: int) -> Style:
+    """Return its style: its colour as the ground, under an ink that can be read on it."""
+    ground = palette.robot_colour(index)
+    return two_colours(palette.text_on(ground), ground, True)
+
+
+@lru_cache(maxsize=4096)
+def two_colours(ink: tuple[int, ...], ground: tuple[int, ...], bold: bool = False) -> Style:
+    """Return a style of two colours; making one is slow, and a map needs few different ones."""
+    return Style(color=Color.from_rgb(*ink), bgcolor=Color.from_rgb(*ground), bold=bold)
