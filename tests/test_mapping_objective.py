@@ -16,7 +16,8 @@ from vedette.domains.mapping.impact import NOTHING, Impact
 from vedette.domains.mapping.layers import TimeLayers
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.kernels import reference_coverage as reference
-from vedette.kernels.coverage import CERTAIN, LAYERS
+from vedette.kernels.coverage import LAYERS
+from vedette.kernels.misses import CERTAIN
 from vedette.testing import check_objective
 
 seeds = st.integers(0, 2**32 - 1)

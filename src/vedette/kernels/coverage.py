@@ -13,13 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette import _kernels
+from vedette.kernels.misses import Keys, Misses
 
 LAYERS: int = _kernels.LAYERS
-STEPS_PER_NAT = 16.0
-CERTAIN = 255
-
-Keys = NDArray[np.uint32]
-Misses = NDArray[np.uint8]
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,8 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.kernels.coverage import CERTAIN, LAYERS, STEPS_PER_NAT, Footprints, Keys, Misses
+from vedette.kernels.coverage import LAYERS, Footprints
+from vedette.kernels.misses import CERTAIN, STEPS_PER_NAT, Keys, Misses
 from vedette.kernels.reference_lidar import crossings
 
 FREE, OCCUPIED = 1, 2

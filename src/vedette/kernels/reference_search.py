@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.kernels.search import Keys, Misses, Paths, Stencil
-
-STEPS_PER_NAT = 16.0
+from vedette.kernels.misses import STEPS_PER_NAT, Keys, Misses
+from vedette.kernels.search import Paths, Stencil
 
 
 def propagate(mass: NDArray[np.float64], stencil: Stencil) -> NDArray[np.float64]:

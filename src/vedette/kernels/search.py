@@ -13,9 +13,7 @@ from numpy.typing import NDArray
 
 from vedette import _kernels
 from vedette.kernels._arrays import floats
-
-Keys = NDArray[np.uint32]
-Misses = NDArray[np.uint8]
+from vedette.kernels.misses import Keys, Misses
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,41 +3,20 @@
 from __future__ import annotations
 
 import zlib
-from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.kernels.coverage import CERTAIN, LAYERS, STEPS_PER_NAT, Keys, Misses
+from vedette.kernels.coverage import LAYERS
+from vedette.kernels.misses import CERTAIN, STEPS_PER_NAT, Misses, SparseMisses
 
 # Shares are rounded to eighths: neighbouring cells then mostly agree, and messages deflate well.
 _LEVELS = np.array([round(-np.log1p(-k / 8) * STEPS_PER_NAT) for k in range(8)] + [64], np.uint8)
 MIN_SHARE = 1 / 16  # a smaller share rounds to nothing
 
 
-@dataclass(frozen=True, eq=False)
-class Impact:
-    """Log-misses that start in a time layer; an absent entry is a miss probability of 1 (identity)."""
-
-    keys: Keys  # (M,) strictly increasing, planning cell * LAYERS + layer
-    misses: Misses  # (M,) log-miss in steps of 1/16 nat, 1..255
-
-    def __eq__(self, other: object) -> bool:
-        return (
-            isinstance(other, Impact)
-            and np.array_equal(self.keys, other.keys)
-            and np.array_equal(self.misses, other.misses)
-        )
-
-    def __hash__(self) -> int:
-        return hash((self.keys.tobytes(), self.misses.tobytes()))
-
-    @property
-    def sparse(self) -> tuple[Keys, Misses]:
-        """The two arrays, as the kernels take them."""
-        return self.keys, self.misses
-
-
+Impact: TypeAlias = SparseMisses
 NOTHING = Impact(np.empty(0, np.uint32), np.empty(0, np.uint8))
 
 

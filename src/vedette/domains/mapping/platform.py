@@ -12,7 +12,8 @@ from vedette.domains.mapping.impact import NOTHING, Impact
 from vedette.domains.mapping.sightings import SightingModel, beam_model, measured_model
 from vedette.domains.mapping.stops import CLEARANCES, Disc, Ground, Stops, find_stops, survey, unknown_near
 from vedette.kernels import coverage
-from vedette.kernels.coverage import CERTAIN, LAYERS
+from vedette.kernels.coverage import LAYERS
+from vedette.kernels.misses import CERTAIN
 from vedette.team import PlatformSpec
 
 LEAST_AREA = 0.08  # a stop must promise this much [m^2]

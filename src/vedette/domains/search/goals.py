@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 
 from vedette.domains.search.belief import SearchBelief
 from vedette.domains.search.flights import time_to
-from vedette.domains.search.impact import MOST, STEPS_PER_NAT
 from vedette.domains.search.worth import DELAYS
-from vedette.kernels.search import Misses
+from vedette.kernels.misses import CERTAIN, STEPS_PER_NAT, Misses
 
 MOST_GOALS = 16
 PROMISED = 1.0 - math.exp(-1.0)  # found by one horizon's effort in a block of the area that it sweeps
@@ -78,7 +77,7 @@ def promise(delay: NDArray[np.float64], duration: float) -> tuple[NDArray[np.int
     layer = np.searchsorted(DELAYS, delay / duration, side="right") - 1
     found = PROMISED * (1.0 + DELAYS[layer]) * share_left(delay, duration)
     levels = np.rint(-STEPS_PER_NAT * np.log1p(-found))
-    return layer, np.clip(levels, 1, MOST).astype(np.uint8)
+    return layer, np.clip(levels, 1, CERTAIN).astype(np.uint8)
 
 
 def _starts(n: int, side: int) -> NDArray[np.int64]:

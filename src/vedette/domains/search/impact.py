@@ -3,42 +3,16 @@
 from __future__ import annotations
 
 import zlib
-from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.kernels.search import Keys, Misses
+from vedette.kernels.misses import CERTAIN, STEPS_PER_NAT, Misses, SparseMisses
 from vedette.maps import GridFrame
 from vedette.problem import Reach
 
-STEPS_PER_NAT = 16.0
-MOST = 255  # a miss probability of exp(-255/16) = 1.2e-7 or less
-
-
-@dataclass(frozen=True, eq=False)
-class Impact:
-    """Log-misses of looks; an absent entry is a miss probability of 1 (identity); docs/search.md (V44)."""
-
-    keys: Keys  # (M,) strictly increasing, cell * layers + layer
-    misses: Misses  # (M,) log-miss in steps of 1/16 nat, 1..255
-
-    def __eq__(self, other: object) -> bool:
-        return (
-            isinstance(other, Impact)
-            and np.array_equal(self.keys, other.keys)
-            and np.array_equal(self.misses, other.misses)
-        )
-
-    def __hash__(self) -> int:
-        return hash((self.keys.tobytes(), self.misses.tobytes()))
-
-    @property
-    def sparse(self) -> tuple[Keys, Misses]:
-        """The two arrays, as the kernels take them."""
-        return self.keys, self.misses
-
-
+Impact: TypeAlias = SparseMisses  # docs/search.md (V44)
 NOTHING = Impact(np.empty(0, np.uint32), np.empty(0, np.uint8))
 
 
@@ -46,7 +20,7 @@ def quantise(probability: NDArray[np.float64]) -> Misses:
     """``-16 ln(1 - p)``, rounded once; a detection probability below 3 % rounds to nothing (0)."""
     with np.errstate(divide="ignore"):
         levels = -STEPS_PER_NAT * np.log(1.0 - np.asarray(probability, np.float64))
-    return np.minimum(levels + 0.5, MOST).astype(np.uint8)
+    return np.minimum(levels + 0.5, CERTAIN).astype(np.uint8)
 
 
 def clip(impact: Impact, frame: GridFrame, layers: int, reach: Reach) -> Impact:

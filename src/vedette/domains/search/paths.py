@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.domains.search.impact import Impact
-from vedette.kernels.search import Misses, Paths
+from vedette.kernels.misses import Misses
+from vedette.kernels.search import Paths
 
 
 def shared_paths(impacts: Sequence[Impact], layers: int) -> tuple[Paths, NDArray[np.int64]]:
