@@ -3,7 +3,18 @@
 from vedette.agent.agent import step
 from vedette.agent.flying import FlightBehaviour
 from vedette.agent.ground import GroundBehaviour
+from vedette.agent.networked import Datagram, NetworkedAgent
 from vedette.agent.pace import Pace
 from vedette.agent.state import Agent, Behaviour, State
 
-__all__ = ["Agent", "Behaviour", "FlightBehaviour", "GroundBehaviour", "Pace", "State", "step"]
+__all__ = [
+    "Agent",
+    "Behaviour",
+    "Datagram",
+    "FlightBehaviour",
+    "GroundBehaviour",
+    "NetworkedAgent",
+    "Pace",
+    "State",
+    "step",
+]

@@ -93,8 +93,9 @@ def _hear(agent: Agent, sender: int, message: messages.Wire, now: float) -> list
 
 def _go_on(agent: Agent, pose: Pose, now: float) -> list[Effect]:
     """Do what time and the latest decisions ask for."""
-    awake = agent.behaviour.wake(agent, pose, now) and not agent.finished
-    effects = agent.rounds.tick(now) if awake or agent.rounds.busy else []
+    agent.awake = agent.behaviour.wake(agent, pose, now)
+    takes_part = (agent.awake and not agent.finished) or agent.rounds.busy
+    effects = agent.rounds.tick(now) if takes_part else []
     news, agent.news = agent.news, False
     effects += agent.behaviour.follow(agent, pose, now, news)
     belief = agent.rounds.frozen

@@ -19,6 +19,7 @@ class Traffic(Enum):
     NEGOTIATION = "negotiation"
     FUSION = "fusion"
     BEACONS = "beacons"
+    OVERLAY = "overlay"  # hellos, acknowledgements, and what was sent again
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ HOME = 0.3  # from its start a robot is at home [m]
 HOME_AGAIN = 3.0  # a robot whose way home is blocked tries again after so long [s]
 HOME_TRIES = 10  # then it stays where it is
 LISTEN = 3.0  # a robot waits at most so long for its mates' first beacons before it maps [s]
+GATHER = 120.0  # and so long for mates that it was told to expect [s]
 LOOK_OUT_PERIOD = 0.5  # [s]
 CHECK_PERIOD = 1.0  # of the present goal's point [s]
 
@@ -29,6 +30,7 @@ class GroundBehaviour:
     mission: GroundMission
     driver: Driver
     return_home: bool = False
+    expected: int = 1  # robots, itself included, that it waits for before it begins
     state: State = State.WAITING
     home: tuple[float, float] | None = None
     home_tries: int = 0  # ways home that were blocked
@@ -40,8 +42,11 @@ class GroundBehaviour:
         self.home = self.home or (pose.x, pose.y)
         if not self.listening:
             return True
-        until = agent.due.setdefault("listen", now + LISTEN)
-        if len(agent.mates.all()) < agent.rounds.tree.size - 1 and now < until:
+        until = agent.due.setdefault("listen", now + (GATHER if self.expected > 1 else LISTEN))
+        tree = agent.rounds.tree
+        alone = tree.epoch == 0  # no tree yet
+        missing = len(agent.mates.all()) < max(tree.size, self.expected) - 1
+        if (alone or missing) and now < until:
             return False
         self.listening = False
         if self.held is not None:

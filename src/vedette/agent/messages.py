@@ -14,6 +14,7 @@ Notes = Annotated[tuple[Note, ...], Meta(max_length=512)]
 Metre = Annotated[int, Meta(ge=-(2**31), le=2**31)]
 Area = tuple[Metre, Metre, Metre, Metre]  # lowest x, lowest y, highest x, highest y
 Areas = Annotated[tuple[Area, ...], Meta(max_length=8)]
+Robots = Annotated[int, Meta(ge=1, le=2**16)]
 Offset = Annotated[int, Meta(ge=-2000, le=2000)]  # from the robot [cm]; its path's next metres are few
 
 
@@ -49,6 +50,7 @@ class Begin(msgspec.Struct, frozen=True, array_like=True, tag=3):
 
     epoch: Count
     sequence: Count
+    depth: Annotated[int, Meta(ge=0, le=2**16)]  # of the receiver: links to the root
 
 
 class Flushed(msgspec.Struct, frozen=True, array_like=True, tag=4):
@@ -56,6 +58,7 @@ class Flushed(msgspec.Struct, frozen=True, array_like=True, tag=4):
 
     epoch: Count
     sequence: Count
+    robots: Robots  # in this part of the tree
     notes: Notes = ()  # of this part of the tree
     reach: Areas | None = None  # of this part of the tree; None: anywhere
 
@@ -67,6 +70,7 @@ class Freeze(msgspec.Struct, frozen=True, array_like=True, tag=5):
     sequence: Count
     t0: Count  # the root's clock [ms]
     digest: int  # of the root's evidence
+    robots: Robots  # that take part, in all
     notes: Notes = ()  # of the whole team
     reach: Areas | None = None  # of all but the receiver's part of the tree; None: anywhere
 

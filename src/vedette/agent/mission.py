@@ -99,6 +99,12 @@ class Mission(Protocol):
     def clip(self, belief: Any, impact: Any, reach: Reach) -> Any:
         """Return what of an impact can matter to robots that make a difference only within ``reach``."""
 
+    def admit(self, belief: Any, impact: Any, robots: int) -> None:
+        """Raise ``ValueError`` if so many robots' sensors cannot make a combined impact that claims so much.
+
+        No impact that robots of the team do have may be refused.
+        """
+
     def nothing_left(self, value: float, now: float) -> bool:
         """Tell whether a decision worth ``value``, all knowing the same and unhindered, leaves nothing to do.
 

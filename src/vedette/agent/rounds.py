@@ -1,14 +1,16 @@
 """Rounds: the team brings its evidence together, freezes it, negotiates, and everybody has a new strategy.
 
 ``Begin`` goes down the tree; evidence flows up, each robot's news ahead of its ``Flushed``; from the root it
-flows down ahead of ``Freeze``. On links that lose nothing, everybody then holds the same belief. Whatever is
-lost, a round ends by its time-out and the robots keep their strategies.
+flows down ahead of ``Freeze``. On links that lose nothing, everybody then holds the same belief. A child that
+does not answer in time is cut from the round, which goes on without its part of the tree; a robot whose
+parent is silent gives the round up, and keeps its strategy.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 from msgspec import structs
@@ -21,17 +23,21 @@ from vedette.agent.mission import Mission
 from vedette.agent.pace import Pace
 from vedette.agent.participant import RoundParticipant
 from vedette.agent.reaches import reaches_to_tell
-from vedette.negotiation import JacobiNode, Negotiator, Outcome, TokenNode, messages
+from vedette.negotiation import Claims, JacobiNode, Negotiator, Outcome, TokenNode, messages
 from vedette.problem import Reach
 
 CALL_AGAIN = 1.0  # a call not answered is repeated after so long [s]
 MAX_SWEEPS = 12
 MOST_NOTES = 512  # in one message
+MOST_EARLY = 8  # negotiation messages of one neighbour that wait for this robot's preparation
 
 
-def patience(size: int) -> float:
-    """Return how long a robot of so many hears nothing of a round before it takes it for lost [s]."""
-    return 1.0 + 0.3 * size
+def patience(size: int, depth: int = 0) -> float:
+    """Return how long a robot, ``depth`` links below the root of so many, waits for a child's answer [s].
+
+    The lower a robot, the sooner it cuts a child off: before its own parent loses patience with it.
+    """
+    return 1.0 + 0.3 * max(size - depth, 1)
 
 
 @dataclass(frozen=True)
@@ -49,10 +55,13 @@ class _Round:
     """One round as this robot sees it."""
 
     sequence: int
+    tree: TreeChanged  # without who joined after it began, or was cut from it
+    depth: int  # links to the root
     heard: float  # when it last went on [s]
     waiting: set[int]  # children that have not flushed yet
     notes: set[Note] = field(default_factory=set)  # told by children
     reaches: dict[int, Reach | None] = field(default_factory=dict)  # beyond each neighbour, as it told
+    robots: dict[int, int] = field(default_factory=dict)  # behind each neighbour, as it told
     belief: Any = None
     approximate: bool = False
     preparing: bool = False
@@ -60,6 +69,32 @@ class _Round:
     participant: RoundParticipant | None = None
     negotiator: Negotiator[Any] | None = None
     early: list[tuple[int, Negotiate]] = field(default_factory=list)  # came before we were ready
+
+    @property
+    def children(self) -> list[int]:
+        """The neighbours further from the root."""
+        return [k for k in self.tree.neighbours if k != self.tree.parent]
+
+    @property
+    def awaited(self) -> set[int]:
+        """Whose answer this robot waits for; empty while it has to do something itself."""
+        if self.negotiator is not None:
+            return set(self.negotiator.waiting_for)
+        if self.belief is not None:
+            return set()
+        return self.waiting or ({self.tree.parent} if self.tree.parent is not None else set())
+
+    @property
+    def part(self) -> int:
+        """Count the robots from this one on away from the root."""
+        return 1 + sum(self.robots.get(child, 0) for child in self.children)
+
+    def cut(self, child: int) -> None:
+        """Go on without a child and all behind it."""
+        self.waiting.discard(child)
+        self.reaches.pop(child, None)
+        self.robots.pop(child, None)
+        self.tree = replace(self.tree, neighbours=tuple(k for k in self.tree.neighbours if k != child))
 
 
 @dataclass
@@ -73,6 +108,8 @@ class Rounds:
     tree: TreeChanged = field(default_factory=lambda: TreeChanged(0, None, (), 1))
     decisions: int = 0
     sweeps: int = 0
+    answers: int = 0  # negotiation messages answered
+    cuts: int = 0  # children that did not answer in time
     bound_ratios: list[float] = field(default_factory=list)
     impact: Any = None  # own impact of the last decision
     blocked: bool = False  # the robot could not go on: its mates count as obstacles in the next round
@@ -94,8 +131,14 @@ class Rounds:
         return self.tree.epoch, self._sequence
 
     def join(self, tree: TreeChanged) -> None:
-        """Take part on another tree; what went on on the old one is void."""
+        """Take part on another tree, where what went on on the old one is void.
+
+        In the same epoch neighbours are only added: they take part from the next round on.
+        """
+        same = tree.epoch == self.tree.epoch
         self.tree = tree
+        if same:
+            return
         self._round = None
         self._sequence = 0
         self._wanted = True
@@ -106,13 +149,38 @@ class Rounds:
         self._wanted = True
 
     def tick(self, now: float) -> list[Effect]:
-        """Do what is due: end a round that takes too long, call or begin one that is wanted."""
-        late = 1.0 if self.tree.parent is None else 1.5  # the root gives up first
-        if self._round and now > self._round.heard + late * patience(self.tree.size):
+        """Do what is due: go on without who does not answer, call or begin a round that is wanted."""
+        effects = self._hurry(now)
+        if self._round or now < self._ended + self.pace.interval:
+            return effects
+        return effects + self._ask(now)
+
+    def _hurry(self, now: float) -> list[Effect]:
+        """Cut children that do not answer in time from the round; give it up if it is the parent."""
+        round_ = self._round
+        if round_ is None or now <= round_.heard + patience(self.tree.size, round_.depth):
+            return []
+        parent = round_.tree.parent
+        effects: list[Effect] = []
+        for silent in sorted(round_.awaited - {parent}):
+            effects += self._cut(silent, now)
+        if not effects and now > round_.heard + 1.5 * patience(self.tree.size):
             self._end(now)
             self._wanted = True
-        if self._round or now < self._ended + self.pace.interval:
+        return effects
+
+    def _cut(self, child: int, now: float) -> list[Effect]:
+        round_ = self._round
+        if round_ is None:
             return []
+        self.cuts += 1
+        round_.heard = now
+        round_.cut(child)
+        if round_.negotiator is not None:
+            return self._send(round_.negotiator.cut(child), now)
+        return self._flush(now)
+
+    def _ask(self, now: float) -> list[Effect]:
         if self.tree.parent is None:
             wanted = self._wanted or now >= self._ended + self.pace.period
             return self._begin(now) if wanted and self.pace.on_beat(self._began, now) else []
@@ -131,7 +199,7 @@ class Rounds:
         return self.tick(now)
 
     def _begin(self, now: float) -> list[Effect]:
-        return self.begin(Begin(self.tree.epoch, self._sequence + 1), now)
+        return self.begin(Begin(self.tree.epoch, self._sequence + 1, 0), now)
 
     def begin(self, message: Begin, now: float) -> list[Effect]:
         """Enter a round: hand the word on, and flush what this robot knows once its children have."""
@@ -142,9 +210,11 @@ class Rounds:
         self._sequence = message.sequence
         self._began = now
         self._wanted = False
-        self._round = _Round(message.sequence, now, set(self._children))
+        self._round = _Round(message.sequence, self.tree, message.depth, now, set())
+        self._round.waiting.update(self._round.children)
         self.mission.publish(now)
-        effects: list[Effect] = [self._say(child, message) for child in self._children]
+        onwards = structs.replace(message, depth=message.depth + 1)
+        effects: list[Effect] = [self._say(child, onwards) for child in self._round.children]
         return effects + self._flush(now)
 
     def flushed(self, sender: int, message: Flushed, now: float) -> list[Effect]:
@@ -157,6 +227,7 @@ class Rounds:
         self._round.waiting.discard(sender)
         self._round.notes.update(message.notes)
         self._round.reaches[sender] = message.reach
+        self._round.robots[sender] = message.robots
         self._round.heard = now
         return self._flush(now)
 
@@ -168,10 +239,11 @@ class Rounds:
         if self.tree.parent is None:
             t0 = round(1000.0 * now)
             digest = self.mission.fusion.digest
-            return self._freeze(Freeze(self.tree.epoch, self._round.sequence, t0, digest, notes), now)
+            team = self._round.part
+            return self._freeze(Freeze(self.tree.epoch, self._round.sequence, t0, digest, team, notes), now)
         news = self.news(self.tree.parent, now)
         reach = self._reaches(now)[self.tree.parent]
-        flushed = Flushed(self.tree.epoch, self._round.sequence, notes, reach)
+        flushed = Flushed(self.tree.epoch, self._round.sequence, self._round.part, notes, reach)
         return [*news, self._say(self.tree.parent, flushed)]
 
     def freeze(self, message: Freeze, now: float) -> list[Effect]:
@@ -189,8 +261,9 @@ class Rounds:
         self._round.heard = now
         if self.tree.parent is not None:
             self._round.reaches[self.tree.parent] = message.reach
+            self._round.robots[self.tree.parent] = max(message.robots - self._round.part, 1)
         told = self._reaches(now)
-        for child in self._children:
+        for child in self._round.children:
             effects += self.news(child, now)
             effects.append(self._say(child, structs.replace(message, reach=told[child])))
         self._round.approximate = self.mission.fusion.digest != message.digest
@@ -200,7 +273,7 @@ class Rounds:
 
     def _reaches(self, now: float) -> dict[int, Areas | None]:
         assert self._round
-        return reaches_to_tell(self.mission.reach(now), self._round.reaches, self.tree.neighbours)
+        return reaches_to_tell(self.mission.reach(now), self._round.reaches, self._round.tree.neighbours)
 
     @property
     def frozen(self) -> Any | None:
@@ -226,12 +299,13 @@ class Rounds:
         assert round_
         round_.heard = now
         round_.participant = RoundParticipant(self.mission, round_.belief)
-        links, parent, own = self.tree.neighbours, self.tree.parent, round_.participant
+        links, parent, own = round_.tree.neighbours, round_.tree.parent, round_.participant
         bounded = {k: reach for k, reach in round_.reaches.items() if reach is not None}
+        claims = Claims(round_.robots, partial(self.mission.admit, round_.belief))
         round_.negotiator = (
-            TokenNode(links, parent, own, max_sweeps=MAX_SWEEPS, reaches=bounded)
+            TokenNode(links, parent, own, max_sweeps=MAX_SWEEPS, reaches=bounded, claims=claims)
             if self.scheme == "token"
-            else JacobiNode(links, parent, own, max_sweeps=MAX_SWEEPS)
+            else JacobiNode(links, parent, own, max_sweeps=MAX_SWEEPS, claims=claims)
         )
         return self._send(round_.negotiator.start(), now)
 
@@ -248,8 +322,10 @@ class Rounds:
             return []
         assert self._round
         if self._round.negotiator is None:
-            self._round.early.append((sender, message))
+            if sum(early == sender for early, _ in self._round.early) < MOST_EARLY:
+                self._round.early.append((sender, message))
             return []
+        self.answers += 1
         sends = self._round.negotiator.receive(sender, messages.decode(message.data, self.mission.codec))
         self._round.heard = now
         return self._send(sends, now)
@@ -286,10 +362,6 @@ class Rounds:
         self._ended = now
 
     # -- links --------------------------------------------------------------------------------------
-
-    @property
-    def _children(self) -> list[int]:
-        return [k for k in self.tree.neighbours if k != self.tree.parent]
 
     def _matches(self, epoch: int, sequence: int) -> bool:
         return self._round is not None and epoch == self.tree.epoch and sequence == self._round.sequence

@@ -90,6 +90,7 @@ class Agent:
     pace: Pace = field(default_factory=Pace)  # of rounds
     pose: Pose | None = None
     posed: float = 0.0  # when that came [s]
+    awake: bool = False  # it takes part in rounds
     dropped: int = 0  # messages that did not make sense
     mates: Mates = field(default_factory=Mates)
     rounds: Rounds = field(init=False)

@@ -7,7 +7,6 @@ from typing import NamedTuple
 Key = tuple[int, int]  # a stream of versions: (robot, nonce)
 
 MOST_STREAMS = 4096  # that one neighbour is taken to hold
-REMEMBERED_BOOTS = 16
 BOOT_BITS = 38
 
 
@@ -97,13 +96,9 @@ class Boots:
     """Which start of each robot is the latest: a payload of an earlier start, come late, is no news."""
 
     def __init__(self) -> None:
-        self._heard: dict[int, list[int]] = {}
+        self._latest: dict[int, int] = {}
 
     def is_stale(self, robot: int, boot: int) -> bool:
-        """Note ``boot`` as the robot's latest unless a later one was heard before."""
-        heard = self._heard.setdefault(robot, [])
-        if boot in heard:
-            return boot != heard[-1]
-        heard.append(boot)
-        del heard[:-REMEMBERED_BOOTS]
-        return False
+        """Tell whether a later start of the robot was heard before: boots grow from start to start."""
+        latest = self._latest[robot] = max(boot, self._latest.get(robot, boot))
+        return boot < latest

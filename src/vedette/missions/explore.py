@@ -12,7 +12,7 @@ from vedette.agent.effects import Route
 from vedette.agent.events import Pose, Scan
 from vedette.agent.mates import Mate
 from vedette.domains.mapping.belief import MapBelief, freeze, planning_factor
-from vedette.domains.mapping.impact import Impact, ImpactCodec
+from vedette.domains.mapping.impact import Impact, ImpactCodec, Most, check_claim
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.planners import Planner
 from vedette.domains.mapping.platform import (
@@ -24,7 +24,7 @@ from vedette.domains.mapping.platform import (
     Tour,
 )
 from vedette.domains.mapping.sightings import BIN, BINS, empty_counts
-from vedette.domains.mapping.stops import CLEARANCES, Disc, block, unknown_near
+from vedette.domains.mapping.stops import CLEARANCES, MOST_STOPS, Disc, block, unknown_near
 from vedette.fusion import Fusion
 from vedette.kernels import distance, frontier, lidar
 from vedette.maps import GridFrame
@@ -53,6 +53,7 @@ class Exploration:
     planner: Planner
     fusion: Fusion
     strategy: Tour = STAY
+    most: Most | None = None  # of any robot in the team; None: not known, so that no claim is too large
     objective: MappingObjective = field(default_factory=MappingObjective)
     codec: ImpactCodec = field(init=False)
     platform: MappingPlatform = field(init=False)
@@ -241,6 +242,12 @@ class Exploration:
     def clip(self, belief: MapBelief, impact: Impact, reach: Reach) -> Impact:
         """Leave nothing out."""
         return impact
+
+    def admit(self, belief: MapBelief, impact: Impact, robots: int) -> None:
+        """Refuse more than so many of the team's best robots can see."""
+        if self.most is not None:
+            side, edges = belief.planning.resolution, belief.layers.edges
+            check_claim(impact, robots, self.most, MOST_STOPS, side, edges)  # a tour has no stop twice
 
     # -- driving ------------------------------------------------------------------------------------
 

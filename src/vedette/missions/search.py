@@ -17,7 +17,7 @@ from vedette.domains.search.belief import SearchBelief, TargetPdf, freeze
 from vedette.domains.search.detectors import Report
 from vedette.domains.search.evidence import LEVELS_PER_NAT, Evidence, evidence_of_looks
 from vedette.domains.search.flights import Flight
-from vedette.domains.search.impact import Impact, ImpactCodec, clip
+from vedette.domains.search.impact import Impact, ImpactCodec, Most, check_claim, clip
 from vedette.domains.search.objective import SearchObjective
 from vedette.domains.search.platform import SearchPlatform
 from vedette.domains.search.worth import Worth
@@ -37,6 +37,7 @@ class SearchPlan:
     lead: float  # from freezing a round to the start of its plans, at least [s]
     threshold: float = 0.95  # posterior probability that a declared place must have within ``radius``
     radius: float = 100.0  # [m]
+    most: Most | None = None  # of any vehicle; None: not known, so that no claim is too large
 
     def step(self, time: float) -> int:
         """Return the step that a time [s] lies in; step k begins at ``k dt``."""
@@ -204,6 +205,12 @@ class Searching:
     def clip(self, belief: SearchBelief, impact: Impact, reach: Reach) -> Impact:
         """Leave out the cells outside of ``reach``."""
         return clip(impact, belief.frame, belief.layers, reach)
+
+    def admit(self, belief: SearchBelief, impact: Impact, robots: int) -> None:
+        """Refuse more than so many of the team's best vehicles can look at."""
+        if self.team.most is not None:
+            side, horizon = belief.frame.resolution, belief.horizon
+            check_claim(impact, robots, self.team.most, side, belief.layers, horizon, belief.dt)
 
     def nothing_left(self, value: float, now: float) -> bool:
         """A search goes on until the target is declared."""

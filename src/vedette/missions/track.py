@@ -18,7 +18,7 @@ from vedette.domains.tracking.belief import Tracks
 from vedette.domains.tracking.codec import ImpactCodec
 from vedette.domains.tracking.courses import Course
 from vedette.domains.tracking.filter import predict
-from vedette.domains.tracking.impact import Impact
+from vedette.domains.tracking.impact import Impact, check_claim
 from vedette.domains.tracking.models import TargetModel
 from vedette.domains.tracking.platform import TrackingPlatform
 from vedette.domains.tracking.sensing import evidence
@@ -44,7 +44,7 @@ class Plan:
 
 
 class Bounds(NamedTuple):
-    """Largest numbers that a likelihood may hold: fixed-point fusion takes no larger ones."""
+    """Largest numbers that anybody's likelihood may hold: fixed-point fusion takes no larger ones."""
 
     matrix: float  # [1/m^2]
     vector: float
@@ -186,6 +186,10 @@ class Tracking:
     def clip(self, belief: Tracks, impact: Impact, reach: Reach) -> Impact:
         """Leave out the targets that nobody who sees into ``reach`` can see."""
         return self.vehicle.objective.clip(belief, impact, reach)
+
+    def admit(self, belief: Tracks, impact: Impact, robots: int) -> None:
+        """Refuse more information than so many of the team's best sensors have."""
+        check_claim(impact, robots, self.bounds.matrix)
 
     def nothing_left(self, value: float, now: float) -> bool:
         """Targets move on: there is always something to gain."""

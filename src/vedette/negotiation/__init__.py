@@ -4,13 +4,14 @@ from vedette.negotiation.chooser import Chooser
 from vedette.negotiation.jacobi import JacobiNode
 from vedette.negotiation.messages import Message, Outcome, decode, encode
 from vedette.negotiation.negotiate import SCHEMES, Negotiation, Step, negotiate
-from vedette.negotiation.node import Negotiator, Participant, Send
+from vedette.negotiation.node import Claims, Negotiator, Participant, Send
 from vedette.negotiation.token import TokenNode
 from vedette.negotiation.tree import Tree
 
 __all__ = [
     "SCHEMES",
     "Chooser",
+    "Claims",
     "JacobiNode",
     "Message",
     "Negotiation",

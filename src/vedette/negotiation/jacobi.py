@@ -8,7 +8,7 @@ from typing import Generic
 
 from vedette.errors import InputError
 from vedette.negotiation.messages import Down, Message, Outcome, Stop, Up
-from vedette.negotiation.node import Links, Participant, Send
+from vedette.negotiation.node import Claims, Links, Participant, Send
 from vedette.problem.bound import tightest
 from vedette.problem.objective import ImpactT
 
@@ -18,7 +18,8 @@ class JacobiNode(Generic[ImpactT]):
 
     An iterate goes up the tree and comes down it, ``2 (n - 1)`` messages. Simultaneous replies may cycle:
     every iterate's strategies are remembered, a recurrence is proved by everybody's saying when they had
-    their present ones before, and the round ends at the best iterate.
+    their present ones before, and the round ends at the best iterate. Where a child is cut, iterates of the
+    larger team do not count: the next report says that nobody had his present strategy before.
     Source: paper, Table 1, eqs. (29)-(31); docs/theory.md (V13).
     """
 
@@ -31,6 +32,7 @@ class JacobiNode(Generic[ImpactT]):
         epsilon: float = 1e-9,
         max_sweeps: int = 50,
         remove: Callable[[ImpactT, ImpactT], ImpactT] | None = None,
+        claims: Claims[ImpactT] | None = None,
     ) -> None:
         """Join a round.
 
@@ -43,23 +45,37 @@ class JacobiNode(Generic[ImpactT]):
             remove: ``total * own^-1``. With it the team's total goes down the tree and everybody removes
                 its own impact (paper, Fig. 1); without it each gets the rest of the team, and no inverse
                 is needed.
+            claims: what each neighbour's side may claim; without it anything.
         """
         self.finished: Outcome | None = None
         self.values: list[float] = []  # at the root: the team's value at each iterate
         self._own = own
-        self._links = Links(own, neighbours)
+        self._links = Links(own, neighbours, claims=claims)
         self._parent = parent
         self._children = tuple(k for k in neighbours if k != parent)
         self._epsilon = epsilon
         self._max_sweeps = max_sweeps
         self._remove = remove
         self._started = False
+        self._told = False  # this iterate is reported to the parent
         self._strategies: list[Hashable] = []  # own, at each iterate
         self._reports: dict[int, Up[ImpactT]] = {}
         self._ceiling = math.inf  # own part of it
         self._slack = math.inf  # own, against the last iterate that came down
         self._slacks: list[float] = []  # at the root: the team's, at each iterate but the present
-        self._first = 0  # at the root: first iterate at which everybody had a strategy
+        self._first = 0  # at the root: first iterate that counts, everybody having a strategy
+        self._cut: set[int] = set()
+        self._lost: list[int] = []  # those cut that the iterate last reported still counts
+        self._fewer = -1  # the iterate first reported without those cut last
+
+    @property
+    def waiting_for(self) -> frozenset[int]:
+        """The children that have not reported this iterate, or the parent, who is to pass it down."""
+        if self.finished is not None:
+            return frozenset()
+        if self._told:
+            return frozenset(() if self._parent is None else (self._parent,))
+        return frozenset(self._children).difference(self._reports)
 
     def start(self) -> list[Send[ImpactT]]:
         """Begin, once the own impact is ready; messages may have arrived before."""
@@ -69,31 +85,49 @@ class JacobiNode(Generic[ImpactT]):
         return self._report()
 
     def receive(self, sender: int, message: Message[ImpactT]) -> list[Send[ImpactT]]:
-        """Take in a neighbour's message; ``InputError`` if it breaks the protocol."""
+        """Take in a neighbour's message; ``ValueError`` if it breaks the protocol or claims too much."""
         self._links.check(sender)
-        if self.finished is not None:
+        if self.finished is not None or sender in self._cut:
             return []
-        match message:
-            case Up(mu=mu) if sender in self._children and sender not in self._reports:
-                self._links.receive(sender, mu)
-                self._reports[sender] = message
-                return self._report()
-            case Down(mu=mu) if sender == self._parent and self._started:
-                if self._remove is None:
+        if sender in self.waiting_for:
+            match message:
+                case Up(mu=mu) if sender != self._parent:
                     self._links.receive(sender, mu)
-                return self._next_iterate(message)
-            case Stop() if sender == self._parent and self._started:
-                return self._end(message)
+                    self._reports[sender] = message
+                    return self._report()
+                case Down(mu=mu) if sender == self._parent:
+                    if self._remove is None:
+                        self._links.receive(sender, mu)
+                    return self._next_iterate(message)
+                case Stop() if sender == self._parent:
+                    return self._end(message)
         raise InputError(f"message {type(message).__name__} from {sender} is out of turn; drop it")
+
+    def cut(self, neighbour: int) -> list[Send[ImpactT]]:
+        """Go on without a child and all behind it; see `Negotiator`."""
+        self._links.check_child(neighbour, self._parent)
+        if self.finished is not None or neighbour in self._cut:
+            return []
+        self._cut.add(neighbour)
+        self._links.cut(neighbour)
+        self._children = tuple(k for k in self._children if k != neighbour)
+        self._reports.pop(neighbour, None)
+        if self._told:
+            self._lost.append(neighbour)
+            self._fewer = len(self._strategies)  # the next one
+            return []
+        self._fewer = max(0, len(self._strategies) - 1)
+        return self._report()
 
     def _report(self) -> list[Send[ImpactT]]:
         """Send this iterate up once all children have reported it; the root decides what comes down."""
-        if not self._started or len(self._reports) < len(self._children):
+        if not self._started or self.waiting_for:
             return []
+        self._told = self._parent is not None
+        self._lost.clear()
         reports = tuple(self._reports.values())
         self._reports.clear()
-        now = self._strategies[-1]
-        same = {m for m, then in enumerate(self._strategies) if then is not None and then == now}
+        same = self._same()
         summary: Up[ImpactT] = Up(
             mu=None if self._parent is None else self._links.outgoing(self._parent),
             ceiling=self._ceiling + sum(report.ceiling for report in reports),
@@ -102,22 +136,32 @@ class JacobiNode(Generic[ImpactT]):
         )
         return self._decide(summary) if self._parent is None else [Send(self._parent, summary)]
 
+    def _same(self) -> set[int]:
+        """Iterates of the present team at which this platform had its present strategy.
+
+        None at the first one of fewer: the root then knows that those before it are void.
+        """
+        last, now = len(self._strategies) - 1, self._strategies[-1]
+        if now is None or last == self._fewer:
+            return set()
+        return {m for m, then in enumerate(self._strategies) if m >= self._fewer and then == now}
+
     def _decide(self, summary: Up[ImpactT]) -> list[Send[ImpactT]]:
         """At the root: begin the next iterate, or stop at a fixed point, a cycle, the ceiling or the cap."""
         total = self._own.combine(self._links.others(), self._own.impact)
         self.values.append(self._own.value(total))
         now = len(self.values) - 1
-        complete = now in summary.same  # everybody has a strategy
-        if now == 0:
-            self._first = 0 if complete else 1
-        else:
+        complete = now in summary.same  # everybody has a strategy, nobody was cut
+        if not complete:
+            self._first = now + 1
+        if now > 0:
             self._slacks.append(summary.slack)
         before = max((m for m in summary.same if m < now), default=None)
         margin = self._epsilon * max(1.0, abs(self.values[now]))
         optimal = complete and self.values[now] >= summary.ceiling - margin
         if before is None and not optimal and now < self._max_sweeps:
             return self._next_iterate(Down(total))
-        best = max(range(self._first, now + 1), key=self.values.__getitem__)  # the first among equals
+        best = max(range(min(self._first, now), now + 1), key=self.values.__getitem__)  # first among equals
         settled = before == now - 1 and self.values[now] >= self.values[best] - margin
         if settled:
             best = now - 1  # the same strategies, and their slack is known
@@ -142,6 +186,7 @@ class JacobiNode(Generic[ImpactT]):
             others = self._remove(down.mu, self._own.impact)  # paper, eq. (31)
         else:
             raise InputError("negotiation message Down without the team's total; drop it")
+        self._told = False
         self._slack = self._own.slack(self._own.combine(others, self._own.impact))
         if self._own.reply(others):
             self._links.changed()
@@ -154,4 +199,4 @@ class JacobiNode(Generic[ImpactT]):
             raise InputError(f"negotiation message Stop at iterate {stop.iterate}, never reached; drop it")
         self._own.adopt(self._strategies[stop.iterate])
         self.finished = stop.outcome
-        return [Send(k, stop) for k in self._children]
+        return [Send(k, stop) for k in (*self._children, *self._lost)]

@@ -11,15 +11,18 @@ import msgspec
 from vedette.errors import InputError
 from vedette.problem.objective import Codec, ImpactT
 
-Count = Annotated[int, msgspec.Meta(ge=0)]
+Count = Annotated[int, msgspec.Meta(ge=0, le=2**53)]
+Size = Annotated[int, msgspec.Meta(ge=1, le=2**53)]  # of a part of the tree: somebody is in it
+Value = Annotated[float, msgspec.Meta(ge=-1e100, le=1e100)]  # sums of so many stay finite; never NaN
+Most = Annotated[float, msgspec.Meta(ge=-1e100)]  # infinite where nothing is known; never NaN
 
 
 class Outcome(msgspec.Struct, frozen=True, array_like=True):
-    """How a round ended; the same at every platform."""
+    """How a round ended; the same at every platform that it ended for."""
 
-    value: float  # of the team's choice, in the objective's unit
-    bound: float | None  # the optimum is no higher; None: nothing is known
-    sweeps: Count  # in which platforms replied
+    value: Value  # of the team's choice, in the objective's unit
+    bound: Value | None  # the optimum is no higher; None: nothing is known
+    sweeps: Count  # in which platforms replied, since the last cut
     converged: bool  # nobody can gain more than epsilon by changing alone
     cycle: Count = 0  # period of the cycle that Jacobi ran into, 0 if none
 
@@ -27,12 +30,12 @@ class Outcome(msgspec.Struct, frozen=True, array_like=True):
 class Tally(msgspec.Struct, frozen=True, array_like=True):
     """What the token counts on its way round; exact for the team's present choice."""
 
-    turns: Count  # taken so far, one a platform in every sweep
+    turns: Count  # taken so far, one a platform in every sweep; anew after a cut
     quiet: Count  # platforms in a row that are content with the present choice
-    value: float  # of the present choice
-    slack: float  # sum over those quiet platforms, docs/theory.md (V12)
-    size: Count  # of the team
-    ceiling: float  # optimum <= ceiling, known from the start, docs/theory.md (V12)
+    value: Value  # of the present choice
+    slack: Most  # sum over those quiet platforms, docs/theory.md (V12)
+    size: Size  # of the team
+    ceiling: Most  # optimum <= ceiling, known from the start, docs/theory.md (V12)
 
 
 # In every message, mu is the sender's part of the tree combined, docs/theory.md (V5);
@@ -43,9 +46,9 @@ class Gather(msgspec.Struct, Generic[ImpactT], frozen=True, array_like=True, tag
     """Towards the root, once, before the token starts."""
 
     mu: ImpactT | None
-    size: Count  # platforms combined in mu
-    ceiling: float  # their sum
-    value: float  # of those platforms' choice
+    size: Size  # platforms combined in mu
+    ceiling: Most  # their sum
+    value: Value  # of those platforms' choice
 
 
 class Token(msgspec.Struct, Generic[ImpactT], frozen=True, array_like=True, tag=1, eq=False):
@@ -59,8 +62,8 @@ class Up(msgspec.Struct, Generic[ImpactT], frozen=True, array_like=True, tag=2, 
     """Towards the root, once an iterate (paper, Fig. 1)."""
 
     mu: ImpactT | None
-    ceiling: float  # sum over the platforms combined in mu
-    slack: float  # likewise, against the team's previous iterate; infinite at the first
+    ceiling: Most  # sum over the platforms combined in mu
+    slack: Most  # likewise, against the team's previous iterate; infinite at the first
     same: tuple[Count, ...]  # iterates at which all of them had their present strategies, this one included
 
 

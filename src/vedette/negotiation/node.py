@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Generic, Protocol
 
@@ -54,12 +54,44 @@ class Send(Generic[ImpactT]):
     message: Message[ImpactT]
 
 
+@dataclass(frozen=True, eq=False)
+class Claims(Generic[ImpactT]):
+    """What a neighbour's side of the tree may claim: no more than so many platforms can achieve."""
+
+    platforms: Mapping[int, int]  # at most so many behind each neighbour
+    admit: Callable[[ImpactT, int], None]  # ValueError if so many platforms cannot have such an impact
+
+    def check_size(self, sender: int, size: int) -> None:
+        """Raise ``InputError`` if a neighbour speaks for more platforms than can be behind it."""
+        if size > self.platforms[sender]:
+            most = self.platforms[sender]
+            raise InputError(f"{sender} speaks for {size} platforms, at most {most} are behind it; drop it")
+
+
 class Negotiator(Protocol[ImpactT]):
-    """One platform's protocol in one round: no clock, no network; links are reliable and in order."""
+    """One platform's protocol in one round: no clock, no network; links are reliable and in order.
+
+    A child that does not answer in time can be cut from the round. The parent cannot: without it a round has
+    no end that everybody hears of, and is given up.
+    """
 
     @property
     def finished(self) -> Outcome | None:
         """How the round ended, ``None`` while it lasts."""
+
+    @property
+    def waiting_for(self) -> frozenset[int]:
+        """Neighbours without whose next message nothing goes on here; none once the round is over."""
+
+    def cut(self, neighbour: int) -> list[Send[ImpactT]]:
+        """Go on without a child and all behind it: they count as nothing, what the child says is void.
+
+        For a child that is waited for it holds at once, for another when this platform's turn comes. A round
+        that stops before that still counts the child in, and stops for it too.
+
+        Raises:
+            InputError: not a neighbour, or the parent.
+        """
 
     def start(self) -> list[Send[ImpactT]]:
         """Begin, once the own impact is ready; messages may have arrived before."""
@@ -81,9 +113,11 @@ class Links(Generic[ImpactT]):
         own: Participant[ImpactT],
         neighbours: Sequence[int],
         reaches: Mapping[int, Reach] | None = None,
+        claims: Claims[ImpactT] | None = None,
     ) -> None:
         """Hold nothing yet; ``reaches`` gives the joint reach of the platforms behind each neighbour."""
         self.neighbours = tuple(neighbours)
+        self._claims = claims
         self._reaches = reaches or {}
         self._own = own
         self._place = {k: place for place, k in enumerate(self.neighbours)}
@@ -95,13 +129,28 @@ class Links(Generic[ImpactT]):
         if sender not in self._place:
             raise InputError(f"negotiation message from {sender}, who is not a neighbour; drop it")
 
+    def check_child(self, neighbour: int, parent: int | None) -> None:
+        """Raise ``InputError`` if a neighbour cannot be cut from the round."""
+        self.check(neighbour)
+        if neighbour == parent:
+            raise InputError(f"{neighbour} is the parent, who cannot be cut; give the round up")
+
     def receive(self, sender: int, mu: ImpactT | None) -> None:
-        """Hold a neighbour's mu; ``None`` keeps the one held."""
+        """Hold a neighbour's mu; ``None`` keeps the one held. ``ValueError`` if it claims too much."""
         if mu is not None:
+            if self._claims is not None:
+                self._claims.admit(mu, self._claims.platforms[sender])
             self._held.put(self._place[sender], mu)
             self._stale.update(k for k in self.neighbours if k != sender)
         elif self._held[self._place[sender]] is None:
             raise InputError(f"negotiation message from {sender} refers to an impact never sent; drop it")
+
+    def cut(self, neighbour: int) -> None:
+        """Hold nothing of a neighbour, and count it as one no more."""
+        self.neighbours = tuple(k for k in self.neighbours if k != neighbour)
+        self._held.put(self._place[neighbour], self._own.nothing())
+        self._stale.discard(neighbour)
+        self._stale.update(self.neighbours)
 
     def held(self, sender: int) -> ImpactT:
         """Return the last mu from a neighbour that has sent one."""

@@ -10,7 +10,8 @@ import msgspec
 
 from vedette.errors import InputError
 from vedette.negotiation.messages import Gather, Message, Outcome, Stop, Tally, Token
-from vedette.negotiation.node import Links, Participant, Send
+from vedette.negotiation.node import Claims, Links, Participant, Send
+from vedette.negotiation.part import Part
 from vedette.problem.bound import tightest
 from vedette.problem.objective import ImpactT
 from vedette.problem.reach import Reach
@@ -22,7 +23,8 @@ class TokenNode(Generic[ImpactT]):
     Every impact is first gathered to the root, which starts the token. A platform replies when the token
     comes down to it; all messages that point to it are then fresh, so ``others`` is exact. The token stops
     where a whole team in a row was content, or where the value reaches its ceiling. A sweep takes
-    ``2 (n - 1)`` messages; gathering and stopping take ``n - 1`` each.
+    ``2 (n - 1)`` messages; gathering and stopping take ``n - 1`` each. Where a child that has the token is
+    cut, this node goes on with the tally as it handed it over, less what the child's part added to it.
     Source: docs/theory.md, section 3, (V6), (V9) to (V12).
     """
 
@@ -35,6 +37,7 @@ class TokenNode(Generic[ImpactT]):
         epsilon: float = 1e-9,
         max_sweeps: int = 50,
         reaches: Mapping[int, Reach] | None = None,
+        claims: Claims[ImpactT] | None = None,
     ) -> None:
         """Join a round.
 
@@ -46,18 +49,33 @@ class TokenNode(Generic[ImpactT]):
             max_sweeps: the round ends after so many.
             reaches: where the platforms behind each neighbour make a difference; without it messages hold
                 everything.
+            claims: what each neighbour's side may claim; without it anything.
         """
         self.finished: Outcome | None = None
         self.turns: list[tuple[int, float]] = []  # own: (number in the round, team value after it)
         self._own = own
-        self._links = Links(own, neighbours, reaches)
+        self._links = Links(own, neighbours, reaches, claims)
+        self._claims = claims
+        self._most = math.inf if claims is None else 1 + sum(claims.platforms[k] for k in neighbours)
         self._parent = parent
         self._children = tuple(k for k in neighbours if k != parent)
         self._epsilon = epsilon
         self._max_sweeps = max_sweeps
         self._started = False
-        self._expected: int | None = None  # where the token comes from next
-        self._gathered: dict[int, Gather[ImpactT]] = {}
+        self._expected: int | None = None  # where the token comes from next; None: still gathering
+        self._handed: Tally | None = None  # with the token, to the child that has it
+        self._parts: dict[int, Part[ImpactT]] = {}  # of the children that have gathered
+        self._cut: set[int] = set()
+        self._lost: list[int] = []  # those cut that the tally still counts
+
+    @property
+    def waiting_for(self) -> frozenset[int]:
+        """The children that have not gathered; after that, from where the token comes next."""
+        if self.finished is not None:
+            return frozenset()
+        if self._expected is None:
+            return frozenset(self._children).difference(self._parts, self._cut)
+        return frozenset((self._expected,))
 
     def start(self) -> list[Send[ImpactT]]:
         """Begin, once the own impact is ready; messages may have arrived before."""
@@ -65,31 +83,55 @@ class TokenNode(Generic[ImpactT]):
         return self._gather()
 
     def receive(self, sender: int, message: Message[ImpactT]) -> list[Send[ImpactT]]:
-        """Take in a neighbour's message; ``InputError`` if it breaks the protocol."""
+        """Take in a neighbour's message; ``ValueError`` if it breaks the protocol or claims too much."""
         self._links.check(sender)
-        if self.finished is not None:
+        if self.finished is not None or sender in self._cut:
             return []
-        match message:
-            case Gather(mu=mu) if sender in self._children and sender not in self._gathered:
-                self._links.receive(sender, mu)
-                self._gathered[sender] = message
-                return self._gather()
-            case Token(mu=mu, tally=tally) if sender == self._expected:
-                self._links.receive(sender, mu)
-                return self._turn(tally) if sender == self._parent else self._pass_on(tally, sender)
-            case Stop(outcome=outcome):
-                self.finished = outcome
-                return [Send(k, message) for k in self._links.neighbours if k != sender]
+        if sender in self.waiting_for:
+            match message:
+                case Gather() if self._expected is None:
+                    return self._hear(sender, message)
+                case Token() if self._expected == sender:
+                    return self._take(sender, message)
+                case Stop(outcome=outcome) if self._expected == sender:
+                    self.finished = outcome
+                    return [Send(k, message) for k in self._links.neighbours if k != sender]
         raise InputError(f"message {type(message).__name__} from {sender} is out of turn; drop it")
+
+    def cut(self, neighbour: int) -> list[Send[ImpactT]]:
+        """Go on without a child and all behind it; see `Negotiator`."""
+        self._links.check_child(neighbour, self._parent)
+        if self.finished is not None or neighbour in self._cut:
+            return []
+        self._cut.add(neighbour)
+        if self._expected is None:
+            self._parts.pop(neighbour, None)
+            self._links.cut(neighbour)
+            return self._gather()
+        self._lost.append(neighbour)
+        if self._expected != neighbour:
+            return []  # the token will come by, or the round stop first
+        assert self._handed is not None
+        return self._pass_on(self._less_the_lost(self._handed), neighbour)
+
+    def _hear(self, child: int, report: Gather[ImpactT]) -> list[Send[ImpactT]]:
+        """Hold what a child's part of the tree is and does."""
+        if self._claims is not None:
+            self._claims.check_size(child, report.size)
+        self._links.receive(child, report.mu)
+        nothing, mu = self._own.nothing(), self._links.held(child)
+        first = (report.value, nothing, nothing, mu)
+        self._parts[child] = Part(report.size, report.ceiling, report.value, nothing, [first])
+        return self._gather()
 
     def _gather(self) -> list[Send[ImpactT]]:
         """Report to the parent once all children have reported; the root starts the token."""
-        if not self._started or len(self._gathered) < len(self._children):
+        if not self._started or self.waiting_for:
             return []
-        reports = self._gathered.values()
-        size = 1 + sum(report.size for report in reports)
-        ceiling = self._own.slack(self._own.nothing()) + sum(report.ceiling for report in reports)
-        value = sum(report.value for report in reports) + self._interplay()
+        parts = self._parts.values()
+        size = 1 + sum(part.size for part in parts)
+        ceiling = self._own.slack(self._own.nothing()) + sum(part.ceiling for part in parts)
+        value = sum(part.value for part in parts) + self._interplay()
         if self._parent is not None:
             self._expected = self._parent
             return [Send(self._parent, Gather(self._links.outgoing(self._parent), size, ceiling, value))]
@@ -101,11 +143,46 @@ class TokenNode(Generic[ImpactT]):
         So values add up over the tree although messages leave out what does not interact.
         docs/theory.md (V15)
         """
-        if self._own.strategy is None and len(self._children) < 2:
+        if self._own.strategy is None and len(self._parts) < 2:
             return 0.0
-        parts = [self._links.held(child) for child in self._children]
-        together = self._own.value(self._own.combine(self._links.others(), self._own.impact))
+        parts = [self._links.held(child) for child in self._children if child in self._parts]
+        together = self._team_value()
         return together - sum(self._own.value(part) for part in parts)
+
+    def _team_value(self) -> float:
+        return self._own.value(self._own.combine(self._links.others(), self._own.impact))
+
+    def _take(self, sender: int, token: Token[ImpactT]) -> list[Send[ImpactT]]:
+        """Take the token: from the parent to reply, from a child to hand it on."""
+        if sender == self._parent:
+            self._check_size(token.tally, 1 + sum(part.size for part in self._parts.values()), math.inf)
+            self._links.receive(sender, token.mu)
+            return self._turn(self._less_the_lost(token.tally))
+        self._note_change(sender, token)
+        return self._pass_on(self._less_the_lost(token.tally), sender)
+
+    def _note_change(self, child: int, token: Token[ImpactT]) -> None:
+        """Hold what a child's part has become while it had the token."""
+        part, handed, before = self._parts[child], self._handed, self._links.held(child)
+        assert handed is not None
+        self._check_size(token.tally, handed.size - part.size + 1, handed.size)
+        self._links.receive(child, token.mu)
+        part.note(handed, token.tally, before, token.mu)
+
+    def _check_size(self, tally: Tally, least: int, most: float) -> None:
+        """Raise ``InputError`` for a team without those known to be in it, or with more than there can be."""
+        most = min(most, self._most)
+        if not least <= tally.size <= most:
+            raise InputError(f"token of a team of {tally.size}, not {least} to {most}; drop it")
+
+    def _less_the_lost(self, tally: Tally) -> Tally:
+        """Take the parts cut since the token was last here off the tally."""
+        while self._lost:
+            child = self._lost.pop()
+            with_it = self._team_value()
+            self._links.cut(child)
+            tally = self._parts.pop(child).taken_off(tally, self._own, with_it - self._team_value())
+        return tally
 
     def _turn(self, tally: Tally) -> list[Send[ImpactT]]:
         """Reply to the rest of the team (paper, eq. (30)); then stop or hand the token on."""
@@ -133,11 +210,17 @@ class TokenNode(Generic[ImpactT]):
     def _pass_on(self, tally: Tally, last: int | None) -> list[Send[ImpactT]]:
         """Hand the token to the child after ``last``, else to the parent; the root begins a new sweep."""
         position = 0 if last is None else self._children.index(last) + 1
-        onwards = self._children[position] if position < len(self._children) else self._parent
+        ahead = (child for child in self._children[position:] if child in self._parts)
+        onwards = next(ahead, self._parent)
         if onwards is None:
             return self._turn(tally)
+        mu = self._links.outgoing(onwards)
+        if onwards != self._parent:
+            self._handed = tally
+            if mu is not None:
+                self._parts[onwards].told = mu
         self._expected = onwards
-        return [Send(onwards, Token(self._links.outgoing(onwards), tally))]
+        return [Send(onwards, Token(mu, tally))]
 
     def _outcome(self, tally: Tally) -> Outcome | None:
         """Return how the round ends: all are content, or the value is optimal, or it took too long."""

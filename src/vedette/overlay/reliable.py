@@ -37,6 +37,7 @@ class ReliableLink:
         self.lost = False
         self.wake = float("inf")  # when ``poll`` next has something to do [s]
         self.resent = 0  # messages, since the link was made
+        self.carried = 0  # bytes of messages, each counted when it is first sent, since the link was made
         self._round_trip = RoundTrip()
         self._is_open = False
         self._reset(0.0)
@@ -138,7 +139,9 @@ class ReliableLink:
             self.resent += 1
         oldest = next(iter(self._flight), self._next)
         while self._queue and self._next < oldest + WINDOW:
-            self._flight[self._next] = _Sent(self._queue.popleft(), now, now + self._round_trip.timeout(1))
+            payload = self._queue.popleft()
+            self.carried += len(payload)
+            self._flight[self._next] = _Sent(payload, now, now + self._round_trip.timeout(1))
             due.append(self._next)
             self._next += 1
         return self._runs(due)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import zlib
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
@@ -10,6 +12,8 @@ from numpy.typing import NDArray
 
 from vedette.kernels.coverage import LAYERS
 from vedette.kernels.misses import CERTAIN, STEPS_PER_NAT, Misses, SparseMisses
+from vedette.maps.swept import most_cells_swept
+from vedette.team import PlatformSpec
 
 # Shares are rounded to eighths: neighbouring cells then mostly agree, and messages deflate well.
 _LEVELS = np.array([round(-np.log1p(-k / 8) * STEPS_PER_NAT) for k in range(8)] + [64], np.uint8)
@@ -31,6 +35,49 @@ def final_miss(impact: Impact, size: int) -> NDArray[np.float32]:
     """Miss probability of every planning cell after the last layer, shape (size,)."""
     total = np.bincount(impact.keys // LAYERS, impact.misses, minlength=size)
     return np.where(total >= CERTAIN, 0.0, np.exp(-total / STEPS_PER_NAT)).astype(np.float32)
+
+
+@dataclass(frozen=True)
+class Most:
+    """What no robot of the team exceeds."""
+
+    range: float  # of the lidar [m]
+    speed: float  # [m/s]
+
+    @classmethod
+    def of(cls, specs: Sequence[PlatformSpec]) -> Most:
+        """Return the limits of a team."""
+        return cls(max(spec.range for spec in specs), max(spec.speed for spec in specs))
+
+
+def check_claim(
+    impact: Impact, robots: int, most: Most, stops: int, side: float, edges: NDArray[np.float64]
+) -> None:
+    """Raise ``ValueError`` for what so many robots cannot see, wherever they are and whatever the map.
+
+    By the edge t of a layer a robot has seen what comes within its range on a way of ``speed t``, and at most
+    one disc a stop. A stop counts a planning cell once, at most as surely as a share of 1 does.
+
+    Args:
+        impact: of so many robots, combined.
+        robots: how many.
+        most: the team's limits.
+        stops: in a tour, at most.
+        side: of a planning cell [m].
+        edges: (LAYERS,) upper edge of each layer [s]; the last takes all later arrivals.
+    """
+    cell, layer = np.divmod(impact.keys, np.uint32(LAYERS))
+    first = np.flatnonzero(np.diff(cell.astype(np.int64), prepend=-1))  # of each cell: its earliest layer
+    claimed = np.cumsum(np.bincount(layer[first], minlength=LAYERS))
+    discs = stops * most_cells_swept(most.range, 0.0, side)
+    seen = np.minimum(most_cells_swept(most.range, most.speed * edges, side), discs)
+    seen[-1] = discs
+    if np.any(claimed > robots * seen):
+        late = int(np.argmax(claimed > robots * seen))
+        limit = f"{robots} robots see {seen[late]:.0f} each"
+        raise ValueError(f"impact claims {claimed[late]} cells by {edges[late]:g} s; {limit}")
+    if impact.misses.sum(dtype=np.int64) > robots * discs * int(_LEVELS[-1]):
+        raise ValueError(f"impact claims to see more surely than {robots} robots can")
 
 
 class ImpactCodec:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import zlib
+from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
@@ -10,6 +12,7 @@ from numpy.typing import NDArray
 
 from vedette.kernels.misses import CERTAIN, STEPS_PER_NAT, Misses, SparseMisses
 from vedette.maps import GridFrame
+from vedette.maps.swept import most_cells_swept
 from vedette.problem import Reach
 
 Impact: TypeAlias = SparseMisses  # docs/search.md (V44)
@@ -40,6 +43,40 @@ def clip(impact: Impact, frame: GridFrame, layers: int, reach: Reach) -> Impact:
         first, last = frame.cell(x0, y0), frame.cell(x1, y1)
         keep |= (row >= first[0]) & (row <= last[0]) & (col >= first[1]) & (col <= last[1])
     return Impact(impact.keys[keep], impact.misses[keep])
+
+
+@dataclass(frozen=True)
+class Most:
+    """What no vehicle of the team exceeds."""
+
+    range: float  # of the detector [m]
+    speed: float  # [m/s]
+
+
+def check_claim(
+    impact: Impact, robots: int, most: Most, side: float, layers: int, horizon: int, dt: float
+) -> None:
+    """Raise ``ValueError`` for what so many vehicles cannot look at, wherever they are.
+
+    In a step each looks at what comes within its range on a way of ``speed dt``; after the horizon each
+    promises one block, of at most the area ``2 range speed horizon dt`` that it sweeps meanwhile.
+
+    Args:
+        impact: of so many vehicles, combined.
+        robots: how many.
+        most: the team's limits.
+        side: of a cell [m].
+        layers, horizon, dt: the belief's; the first ``horizon`` layers are steps, the others promises.
+    """
+    looked = np.bincount(impact.keys % np.uint32(layers), minlength=layers)
+    step = float(most_cells_swept(most.range, most.speed * dt, side))
+    block = (math.sqrt(2.0 * most.range * most.speed * horizon * dt) / side + 1.0) ** 2
+    if looked[:horizon].max() > robots * step:
+        raise ValueError(
+            f"impact claims {looked[:horizon].max()} cells in a step; {robots} vehicles see fewer"
+        )
+    if looked[horizon:].sum() > robots * block:
+        raise ValueError(f"impact promises {looked[horizon:].sum()} cells; {robots} vehicles search fewer")
 
 
 class ImpactCodec:

@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from vedette.kernels.tracking import Sparse
 from vedette.problem import Reach
 
+_ROUNDING = 1e-9  # of a sum, as a share of it
+
 
 @dataclass(frozen=True, eq=False)
 class Impact:
@@ -75,6 +77,17 @@ def clip(impact: Impact, predicted_means: NDArray[np.float64], reach: Reach) -> 
     x0, y0, x1, y1 = np.array(reach, np.float64).reshape(-1, 4).T
     inside = ((x0 <= x) & (x <= x1) & (y0 <= y) & (y <= y1)).any(axis=(0, 2))
     return impact if inside.all() else Impact(impact.targets[inside], impact.blocks[inside])
+
+
+def check_claim(impact: Impact, robots: int, most: float) -> None:
+    """Raise ``ValueError`` for more information than so many sensors have of a target in a step.
+
+    No direction of one look's ``I`` holds more than ``most`` [1/m^2], so no entry of the sum's diagonal holds
+    more than so many times as much.
+    """
+    largest = float(impact.blocks[..., ::2].max(initial=0.0))
+    if largest > robots * most * (1.0 + _ROUNDING):
+        raise ValueError(f"impact claims {largest:g} / m^2 in a step; {robots} sensors have {most:g} each")
 
 
 @dataclass(frozen=True, eq=False)

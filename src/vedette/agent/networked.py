@@ -1,0 +1,186 @@
+"""An agent on a network: the overlay gives it a tree, and reliable links carry what it says to neighbours.
+
+Sans-I/O as its parts are: the simulator and the network process hand it what happens, and send what it wants
+sent. A datagram may be lost, repeated, late or out of order; what it says is checked wherever it is read.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from vedette.agent.agent import step
+from vedette.agent.effects import Job, Motion, Send, Traffic
+from vedette.agent.events import Event, JobDone, Message, TreeChanged
+from vedette.agent.state import Agent
+from vedette.overlay import Overlay, Place, ReliableLink, Stamp
+
+HELLO, PACKET, BEACON = b"H", b"P", b"B"  # a datagram's first byte
+ALONE_AT_FIRST = 2.0  # a robot waits so long to be taken in by others before it begins on its own [s]
+MOST_WAITING = 4096  # events that wait for a job to end
+
+
+@dataclass(frozen=True)
+class Datagram:
+    """Send bytes to a robot that the transport reaches; they may get lost."""
+
+    to: int
+    payload: bytes
+
+
+Output: TypeAlias = Datagram | Motion | Job
+
+
+class NetworkedAgent:
+    """One robot's agent, overlay and links; no I/O, no clock, no randomness.
+
+    Every method takes the transport's time ``now`` [s], a clock that never goes back, and returns what is to
+    be done, in order. ``step`` is to be called whenever ``wake`` has come.
+
+    While a job runs (``hold``) the agent is told nothing, since the job works on its state; what happens
+    waits. The overlay and the links go on, so that heavy computing never looks like a failure.
+    """
+
+    def __init__(
+        self,
+        agent: Agent,
+        now: float,
+        *,
+        lease: float = 3.0,
+        mission_time: Callable[[float], float] = lambda now: now,
+    ) -> None:
+        """Start alone.
+
+        Args:
+            agent: a fresh one.
+            now: [s].
+            lease: after which a silent neighbour is given up [s].
+            mission_time: what the agent's clock shows when the transport's shows ``now`` [s].
+        """
+        self.agent = agent
+        self.overlay = Overlay(agent.robot, agent.boot, now, lease)
+        self.hold = False
+        self.malformed = 0  # datagrams that did not make sense
+        self.messages_sent: Counter[Traffic] = Counter()
+        self.bytes_sent: Counter[Traffic] = Counter()
+        self._mission_time = mission_time
+        self._lease = lease
+        self._alone_until = now + ALONE_AT_FIRST
+        self._told: Place | None = None  # the place on the tree that the agent knows of
+        self._links: dict[int, ReliableLink] = {}
+        self._sessions: dict[int, tuple[int, int]] = {}  # boot and epoch that each link is open to
+        self._waiting: list[Event] = []
+
+    @property
+    def wake(self) -> float:
+        """Return when ``step`` next has something to do, if nothing happens before [s]."""
+        times = [self.overlay.wake, *(link.wake for link in self._links.values())]
+        if self._told is None:
+            times.append(self._alone_until)
+        return min(times)
+
+    # -- what happens --------------------------------------------------------------------------------
+
+    def peers(self, robots: Iterable[int], now: float) -> list[Output]:
+        """Take these as the robots that the transport reaches."""
+        self.overlay.peers(robots, now)
+        return self.step((), now)
+
+    def lost(self, robot: int, now: float) -> list[Output]:
+        """Note that the transport has lost a robot."""
+        self.overlay.lost(robot, now)
+        return self.step((), now)
+
+    def hear(self, sender: int, datagram: bytes, now: float) -> list[Output]:
+        """Take in a datagram; one that makes no sense is counted and dropped."""
+        try:
+            events = self._take(sender, datagram[:1], datagram[1:], now)
+        except ValueError:
+            self.malformed += 1
+            events = []
+        return self.step(events, now)
+
+    def step(self, events: Iterable[Event], now: float) -> list[Output]:
+        """Let the agent take in what its robot senses, or just the time."""
+        effects: list[Output] = []
+        self._waiting += events
+        for to, hello in self.overlay.tick(now):
+            effects.append(self._datagram(to, HELLO + hello))
+        self._follow_overlay(now)
+        # Until it has a place, alone or not, the robot waits: it would begin on its own, and map its mates.
+        if self._waiting and self._told is not None and not self.hold:
+            happened, self._waiting = self._waiting, []
+            effects += self._agree(happened, now)
+        del self._waiting[:-MOST_WAITING]
+        return effects + self._poll(now)
+
+    def leave(self, now: float) -> list[Datagram]:
+        """Return the goodbyes to send; the robot is on nobody's tree from then on."""
+        return [self._datagram(to, HELLO + goodbye) for to, goodbye in self.overlay.leave(now)]
+
+    # -- hearing -------------------------------------------------------------------------------------
+
+    def _take(self, sender: int, kind: bytes, data: bytes, now: float) -> list[Event]:
+        if kind == HELLO:
+            self.overlay.hear(sender, data, now)
+            return []
+        if kind == PACKET:
+            link = self._links.get(sender)
+            return [] if link is None else [Message(sender, payload) for payload in link.hear(data, now)]
+        if kind == BEACON:
+            return [Message(sender, data)]
+        raise ValueError(f"datagram of unknown kind {kind!r}")
+
+    def _follow_overlay(self, now: float) -> None:
+        """Open links to new neighbours on the tree, close the others, and tell the agent of its new place."""
+        place = self.overlay.place
+        for k in self._sessions.keys() - set(place.neighbours):
+            self._links.pop(k).close()
+            del self._sessions[k]
+        for k in place.neighbours:
+            session = self.overlay.boot_of(k), place.epoch
+            if self._sessions.get(k) != session:
+                link = self._links.setdefault(k, ReliableLink(self.agent.boot, 2 * self._lease))
+                link.open(*session, now)
+                self._sessions[k] = session
+        if place != self._told and (self._told or place.neighbours or now >= self._alone_until):
+            self._told = place
+            self._waiting.append(TreeChanged(place.epoch, place.parent, place.neighbours, place.size))
+
+    # -- speaking ------------------------------------------------------------------------------------
+
+    def _agree(self, events: Iterable[Event], now: float) -> list[Output]:
+        """Run the agent, and give its messages to the links."""
+        effects: list[Output] = []
+        for effect in step(self.agent, events, self._mission_time(now)):
+            if not isinstance(effect, Send):
+                effects.append(effect)
+                continue
+            if effect.to not in self._links:  # no longer a neighbour; the agent is yet to be told
+                continue
+            self.messages_sent[effect.traffic] += 1
+            self.bytes_sent[effect.traffic] += len(effect.payload)
+            if effect.traffic is Traffic.BEACONS:  # the next one is worth more than this one again
+                effects.append(self._datagram(effect.to, BEACON + effect.payload, len(effect.payload)))
+            else:
+                self._links[effect.to].send(effect.payload, now)
+        return effects
+
+    def _poll(self, now: float) -> list[Output]:
+        datagrams: list[Output] = []
+        for to, link in self._links.items():
+            carried = link.carried
+            packets = link.poll(now)
+            datagrams += [self._datagram(to, PACKET + packet) for packet in packets]
+            self.bytes_sent[Traffic.OVERLAY] -= link.carried - carried
+            if link.lost:
+                self.overlay.lost(to, now)
+        return datagrams
+
+    def _datagram(self, to: int, payload: bytes, carried: int = 0) -> Datagram:
+        """Count what a datagram adds to the messages that it carries."""
+        self.bytes_sent[Traffic.OVERLAY] += len(payload) - carried
+        self.messages_sent[Traffic.OVERLAY] += 1
+        return Datagram(to, payload)
