@@ -18,6 +18,7 @@ from vedette.fusion import ReplicatedEvidence
 from vedette.negotiation import Chooser
 from vedette.problem import Coverage, Reach
 from vedette.record.summary import Outcome
+from vedette.sim.planted import PlantedTree
 from vedette.sim.simulation import Setup, Simulation
 from vedette.sim.vehicles import Vehicles
 from vedette.team import PlatformSpec
@@ -142,6 +143,9 @@ class Spreading:
         """Leave nothing out."""
         return impact
 
+    def admit(self, belief: Belief, impact: Float, robots: int) -> None:
+        """As many points as there are can be claimed."""
+
     def nothing_left(self, value: float, now: float) -> bool:
         """When the time is up."""
         self.values.append(value)
@@ -186,6 +190,12 @@ class FlightTeam:
         """To the end."""
         return self.simulation.run(lambda: None)
 
+    def fall_silent(self) -> None:
+        """From now on no message arrives, though all are on one tree."""
+        network = self.simulation.network
+        assert isinstance(network, PlantedTree)
+        network.wires.delay = np.inf
+
     def behaviour(self, i: int) -> FlightBehaviour:
         """Of a vehicle."""
         behaviour = self.simulation.agents[i].behaviour
@@ -212,5 +222,5 @@ def flight_team(
     flown = Flown()
     poses = [(float(i), 0.0, 0.5 * i) for i in range(n)]
     vehicles = Vehicles(poses, SPEED, TURN_RATE, STEP, flown, over)
-    simulation = Simulation(agents, vehicles, Setup(**{"max_time": 30.0, **setup}))
+    simulation = Simulation(lambda i, boot: agents[i], vehicles, Setup(**{"max_time": 30.0, **setup}))
     return FlightTeam(simulation, vehicles, missions, flown)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator, Sequence
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
+from vedette.record.links import Link
 from vedette.record.log import RobotSample, RunLog, Sink, Snapshot
 from vedette.team import PlatformSpec
 
@@ -55,8 +57,12 @@ def mission(
     period: float = 1.0,
     limit: float = 200.0,
     kill: tuple[int, float] | None = None,
+    radio: float | None = None,
 ) -> Iterator[Snapshot]:
-    """Yield a snapshot every ``period`` seconds until all is seen; robot ``kill[0]`` dies at ``kill[1]``."""
+    """Yield a snapshot every ``period`` seconds until all is seen; robot ``kill[0]`` dies at ``kill[1]``.
+
+    ``radio``: robots within so many metres are linked; None: the network is ideal.
+    """
     frame, planning = frames(solid, resolution, origin)
     classes = np.zeros(solid.shape, np.uint8)
     truth = np.where(solid, OCCUPIED, FREE).astype(np.uint8)
@@ -90,7 +96,8 @@ def mission(
             for i, spec in enumerate(specs)
         )
         entropy = float((~known).sum() * np.log(2.0))
-        yield Snapshot(t, robots, coverage, float(known.mean()), entropy, classes, impact)
+        links = None if radio is None else tuple(linked(robots, radio))
+        yield Snapshot(t, robots, coverage, float(known.mean()), entropy, classes, impact, links)
         if over or t >= limit:
             return
         t += period
@@ -111,14 +118,29 @@ def recorded(
     limit: float = 200.0,
     period: float = 1.0,
     reach: float = 8.0,
+    radio: float | None = None,
 ) -> RunLog:
     """Return the log of a pretended mission."""
     specs = [PlatformSpec(name=f"robot-{i + 1}", range=reach) for i in range(robots)]
     log = RunLog("rooms", *frames(solid, resolution, origin), specs, sinks)
     rng = np.random.default_rng(seed)
-    for snapshot in mission(solid, specs, rng, start, resolution, origin, period, limit, kill):
+    for snapshot in mission(solid, specs, rng, start, resolution, origin, period, limit, kill, radio):
         log.add(snapshot)
     return log
+
+
+def linked(robots: Sequence[RobotSample], radio: float) -> Iterator[Link]:
+    """Yield the links of living robots within ``radio`` [m]; the shortest ones make the trees."""
+    living = [i for i, robot in enumerate(robots) if robot.alive]
+    part = dict(zip(living, living, strict=True))
+    pairs = [
+        (float(np.hypot(robots[a].x - robots[b].x, robots[a].y - robots[b].y)), a, b)
+        for a, b in combinations(living, 2)
+    ]
+    for distance, a, b in sorted(pair for pair in pairs if pair[0] <= radio):
+        yield Link(a, b, part[a] != part[b], loss=(distance / radio) ** 2)
+        joined = part[b]
+        part.update({i: part[a] for i in living if part[i] == joined})
 
 
 def frames(solid: NDArray[np.bool_], resolution: float, origin: Point) -> tuple[GridFrame, GridFrame]:

@@ -127,8 +127,8 @@ def test_a_robot_that_is_no_neighbour_is_ignored() -> None:
     for message in (
         BEACON,
         messages.Call(1),
-        messages.Begin(1, 99),
-        messages.Freeze(1, 99, 0, 0),
+        messages.Begin(1, 99, 1),
+        messages.Freeze(1, 99, 0, 0, 2),
         messages.Evidence(b"x"),
     ):
         team.tell(0, Message(2, messages.encode(message)))
@@ -137,7 +137,7 @@ def test_a_robot_that_is_no_neighbour_is_ignored() -> None:
     assert [p for p in team.log[before[0] :] if p.traffic is not Traffic.BEACONS and p.sender == 0] == []
 
 
-@pytest.mark.parametrize("message", [messages.Begin(1, 99), messages.Freeze(1, 1, 0, 0)])
+@pytest.mark.parametrize("message", [messages.Begin(1, 99, 1), messages.Freeze(1, 1, 0, 0, 2)])
 def test_only_the_parent_begins_and_freezes_a_round(message: messages.Wire) -> None:
     team, _, _ = toy_team(Tree.chain(3))
     team.run_round()
@@ -157,7 +157,7 @@ def test_a_repeated_freeze_does_not_change_the_belief_of_the_round() -> None:
     assert before is not None
     belief = before.belief
     toy(child).belief = belief + 1.0
-    team.tell(1, Message(0, messages.encode(messages.Freeze(*child.rounds.stamp, 0, 12345))))
+    team.tell(1, Message(0, messages.encode(messages.Freeze(*child.rounds.stamp, 0, 12345, 2))))
     assert child.rounds._round is before
     assert before.belief is belief
     assert toy(child).prepared == 1

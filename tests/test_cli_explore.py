@@ -125,7 +125,7 @@ def test_json_prints_the_summary_alone(vedette: Command, world: Path) -> None:
     ran = vedette("explore", world / "map.yaml", "--robots", 1, "--out", "out", "--json")
     assert (ran.status, ran.err) == (0, "")
     assert ran.out == (Path("out") / "summary.json").read_text()
-    assert json.loads(ran.out)["schema_version"] == 1
+    assert json.loads(ran.out)["schema_version"] == 2
 
 
 def test_a_mission_that_runs_out_of_time_has_status_1_and_all_files(vedette: Command, world: Path) -> None:

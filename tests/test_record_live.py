@@ -11,8 +11,9 @@ import pytest
 from rich.console import Console
 
 from record_mission import frames, mission, rooms
-from vedette.record import Snapshot
+from vedette.record import Link, Snapshot
 from vedette.record.live import LiveView
+from vedette.record.marks import together
 from vedette.record.screen import screen
 from vedette.team import PlatformSpec
 
@@ -60,6 +61,29 @@ def test_without_a_terminal_there_is_a_line_every_ten_seconds_and_at_last(
     assert "bob dead" in lines[3]
 
 
+def _with_links(snapshot: Snapshot, *links: Link) -> Snapshot:
+    return Snapshot(**(vars(snapshot) | {"links": links}))
+
+
+def test_a_team_is_named_by_its_parts() -> None:
+    assert together(((0, 1, 2),)) == together(()) == "together"
+    assert together(((0, 1), (2,), (9, 10))) == "apart: {1,2} {3} {A,B}"
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_the_view_says_whether_the_team_is_together_where_links_are_simulated(
+    snapshots: list[Snapshot], terminal: bool
+) -> None:
+    ideal, alone = snapshots[0], _with_links(snapshots[0])
+    linked, beside = (_with_links(snapshots[0], Link(0, 1, on_tree, 0.0)) for on_tree in (True, False))
+    for snapshot, team in ((ideal, None), (linked, "together"), (beside, "apart"), (alone, "apart")):
+        console = _terminal() if terminal else Console(file=io.StringIO(), width=200)
+        with LiveView("rooms", FRAME, PLANNING, console=console) as view:
+            view.update(snapshot)
+        said = re.findall(r"together|apart: \{1\} \{2\}|apart", _text(console))
+        assert set(said) == ({team.replace("apart", "apart: {1} {2}")} if team else set())
+
+
 @pytest.mark.parametrize("terminal", [True, False])
 def test_a_quiet_view_prints_nothing(snapshots: list[Snapshot], terminal: bool) -> None:
     console = Console(file=io.StringIO(), force_terminal=terminal)
@@ -101,7 +125,7 @@ def test_an_interruption_leaves_the_last_picture_and_the_cursor(snapshots: list[
 def test_the_picture_never_exceeds_the_terminal_width_and_shows_every_robot(
     snapshots: list[Snapshot], size: tuple[int, int]
 ) -> None:
-    lines = _picture(_terminal(*size), snapshots[-1])
+    lines = _picture(_terminal(*size), _with_links(snapshots[-1]))
     assert max(len(line) for line in lines) <= size[0]
     if size[0] >= 60:
         text = "\n".join(lines)

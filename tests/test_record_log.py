@@ -18,11 +18,8 @@ SPECS = [PlatformSpec(name="robot-1"), PlatformSpec(name="robot-2")]
 
 def _snapshots(limit: float = 40.0) -> list[Snapshot]:
     """Return a mission's snapshots with grids of their own."""
-    run = mission(SOLID, SPECS, np.random.default_rng(4), (3.0, 3.0), limit=limit)
-    return [
-        Snapshot(s.t, s.robots, s.coverage, s.known_fraction, s.entropy, s.classes.copy(), s.impact)
-        for s in run
-    ]
+    run = mission(SOLID, SPECS, np.random.default_rng(4), (3.0, 3.0), limit=limit, radio=1.0)
+    return [Snapshot(**(vars(s) | {"classes": s.classes.copy()})) for s in run]
 
 
 @pytest.fixture(scope="module")
@@ -43,6 +40,7 @@ def test_stored_snapshots_come_back_as_they_were(snapshots: list[Snapshot]) -> N
     for was, now in zip(snapshots, back, strict=True):
         assert now.t == was.t
         assert now.robots == was.robots
+        assert now.links == was.links
         np.testing.assert_array_equal(now.classes, was.classes)
         assert was.impact is not None
         assert now.impact is not None
@@ -67,6 +65,8 @@ def test_curves_and_path_lengths_hold_every_snapshot(snapshots: list[Snapshot]) 
     assert log.coverage.tolist() == [s.coverage for s in snapshots]
     assert log.entropy.tolist() == [s.entropy for s in snapshots]
     assert log.known_fraction.tolist() == [s.known_fraction for s in snapshots]
+    assert log.apart.tolist() == [not s.links for s in snapshots]
+    assert 0 < log.apart.sum() < len(snapshots)
     total = 0.0
     for before, after in pairwise(snapshots):
         total += np.hypot(after.robots[1].x - before.robots[1].x, after.robots[1].y - before.robots[1].y)

@@ -15,7 +15,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from record_mission import frames, mission, rooms
 from vedette.errors import InputError
 from vedette.maps import FREE, OCCUPIED
-from vedette.record import Snapshot
+from vedette.record import Link, Snapshot
 from vedette.record.mcap import McapWriter
 from vedette.record.ros import corners, ros_names
 from vedette.team import PlatformSpec
@@ -30,7 +30,7 @@ FRAME, PLANNING = frames(SOLID, 0.1, ORIGIN)
 def snapshots() -> list[Snapshot]:
     specs = [PlatformSpec(name=name, range=2.5) for name in NAMES]
     rng = np.random.default_rng(4)
-    run = mission(SOLID, specs, rng, (1.0, 4.0), origin=ORIGIN, limit=23.0, kill=(1, 12.0))
+    run = mission(SOLID, specs, rng, (1.0, 4.0), origin=ORIGIN, limit=23.0, kill=(1, 12.0), radio=2.0)
     return [Snapshot(**(vars(s) | {"classes": s.classes.copy()})) for s in run]
 
 
@@ -126,6 +126,37 @@ def test_metrics_hold_every_snapshot(topics: dict[str, list[Any]], snapshots: li
         assert [message.data for _, message in topics[f"/metrics/{name}"]] == [
             getattr(s, name) for s in snapshots
         ]
+
+
+def test_links_are_lines_between_robots_those_of_the_tree_apart(
+    topics: dict[str, list[Any]], snapshots: list[Snapshot]
+) -> None:
+    assert [t for t, _ in topics["/links"]] == [s.t for s in snapshots]
+    assert 0 < sum(bool(s.links) for s in snapshots) < len(snapshots)
+    for (_, message), snapshot in zip(topics["/links"], snapshots, strict=True):
+        tree, other = message.markers
+        assert (tree.ns, other.ns) == ("tree", "other")
+        assert (tree.header.frame_id, tree.type, tree.pose.orientation.w) == ("map", tree.LINE_LIST, 1.0)
+        assert tree.action == (tree.ADD if snapshot.links else tree.DELETE)
+        assert other.action == other.DELETE
+        places = [(robot.x, robot.y) for robot in snapshot.robots] if snapshot.links else []
+        assert [(point.x, point.y) for point in tree.points] == places
+        assert len(tree.colors) == len(places)
+
+
+def test_the_more_a_link_loses_the_paler_is_its_line(tmp_path: Path, snapshots: list[Snapshot]) -> None:
+    links = Link(0, 1, True, 0.0), Link(0, 1, False, 0.0), Link(0, 1, False, 1.0)
+    linked = Snapshot(**(vars(snapshots[0]) | {"links": links}))
+    _, message = _read(_write(tmp_path / "run.mcap", [linked]))["/links"][0]
+    tree, other = message.markers
+    alphas = [colour.a for colour in (*tree.colors, *other.colors)]
+    assert alphas[::2] == alphas[1::2]
+    assert alphas[0] == 1.0 > alphas[2] > alphas[4] > 0.0
+
+
+def test_an_ideal_network_has_no_links_to_show(tmp_path: Path, snapshots: list[Snapshot]) -> None:
+    ideal = Snapshot(**(vars(snapshots[0]) | {"links": None}))
+    assert "/links" not in _read(_write(tmp_path / "run.mcap", [ideal]))
 
 
 def test_the_documentation_lists_exactly_the_topics(topics: dict[str, list[Any]]) -> None:

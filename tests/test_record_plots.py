@@ -12,7 +12,7 @@ from PIL import Image
 
 from record_mission import recorded, rooms
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
-from vedette.record import Outcome, RobotSample, RunLog, Snapshot, Summary, Traffic, palette
+from vedette.record import Link, Outcome, RobotSample, RunLog, Snapshot, Summary, Traffic, palette
 from vedette.record.animate import animate_gif
 from vedette.record.curves import curves_png
 from vedette.record.progress import progress_png
@@ -30,7 +30,8 @@ def _summary(log: RunLog, **changes: object) -> Summary:
     traffic = {name: Traffic() for name in names}
     figures: dict[str, object] = {
         "completed": True, "outcome": Outcome.COMPLETE, "seed": 3, "robots": len(names), "planner": "tours",
-        "scheme": "token", "fusion": "evidence", "world": log.world, "time_s": float(log.times[-1]),
+        "scheme": "token", "fusion": "evidence", "world": log.world, "radio": None, "faults": None,
+        "apart_s": 0.0, "time_s": float(log.times[-1]),
         "t50_s": 5.0, "t90_s": 12.0, "t95_s": 15.0, "t99_s": None, "auc_s": 12.0, "coverage": 0.98,
         "map_errors": 0, "map_error_share": 0.0, "path_m": dict.fromkeys(names, 1.0), "overlap": 0.2,
         "collisions": 0, "min_clearance_m": 0.06, "rounds": 12, "sweeps": 30, "bound_ratio": None,
@@ -143,6 +144,63 @@ def test_odd_shapes_and_an_unknown_world_are_drawn(rows: int, cols: int, robots:
     for file in tmp_path.iterdir():
         with Image.open(file) as image:
             assert max(image.size) <= 2400
+
+
+def _linked(links: tuple[Link, ...] | None) -> RunLog:
+    """Return a log of three robots far from each other in the dark."""
+    frame = GridFrame(0.1, 60, 90)
+    places = ((1.0, 1.0), (8.0, 1.0), (4.5, 5.0))
+    log = RunLog("dark", frame, frame.coarse(2), [PlatformSpec(name=f"robot-{i}") for i in range(3)])
+    team = tuple(
+        RobotSample(spec.name, *place, 0.0, "idle", None, np.empty((0, 2)), True)
+        for spec, place in zip(log.specs, places, strict=True)
+    )
+    for t in (0.0, 1.0, 2.0):
+        log.add(Snapshot(t, team, 0.0, 0.0, 1.0, np.full(frame.shape, FREE, np.uint8), None, links))
+    return log
+
+
+def _darkness(path: Path, links: tuple[Link, ...] | None) -> tuple[float, tuple[int, int]]:
+    """Return how dark progress.png is in all, and its size."""
+    progress_png(_linked(links), path)
+    with Image.open(path) as image:
+        return float((255 - np.asarray(image.convert("L")).astype(float)).sum()), image.size
+
+
+def test_links_on_the_tree_are_drawn_dark_and_others_faint_and_the_legend_explains_them(
+    tmp_path: Path,
+) -> None:
+    path = tmp_path / "progress.png"
+    _, ideal = _darkness(path, None)
+    alone, size = _darkness(path, ())
+    faint, _ = _darkness(path, (Link(0, 1, False, 0.0),))
+    dark, _ = _darkness(path, (Link(0, 1, True, 0.0),))
+    assert alone < alone + 1e4 < faint < dark
+    assert size[0] == ideal[0]
+    assert size[1] > ideal[1]  # by a line of the legend
+
+
+def test_a_film_shows_links(tmp_path: Path) -> None:
+    frames = []
+    for name, links in (("without", None), ("with", (Link(0, 1, True, 0.0), Link(1, 2, False, 0.0)))):
+        animate_gif(_linked(links), tmp_path / f"{name}.gif")
+        with Image.open(tmp_path / f"{name}.gif") as film:
+            frames.append(np.asarray(film.convert("RGB")).astype(int))
+    changed = np.abs(frames[0] - frames[1]).max(axis=2) > 30
+    rows, cols = np.nonzero(changed)
+    assert rows.max() - rows.min() > 0.5 * changed.shape[0]
+    assert cols.max() - cols.min() > 0.7 * changed.shape[1]
+
+
+def test_times_apart_are_shaded_in_the_curves(tmp_path: Path) -> None:
+    shares = []
+    for links in (None, ()):
+        log = _linked(links)
+        curves_png(log, _summary(log, apart_s=2.0), tmp_path / "curves.png")
+        with Image.open(tmp_path / "curves.png") as image:
+            red, _, blue = np.moveaxis(np.asarray(image.convert("RGB")).astype(int), -1, 0)
+            shares.append(float((red > blue + 20).mean()))
+    assert shares[0] < 0.2 < shares[1]
 
 
 def test_the_film_is_short_small_and_ends_slowly(log: RunLog, tmp_path: Path) -> None:

@@ -70,7 +70,7 @@ def test_loss_delays_evidence_and_loses_none() -> None:
 
 def test_without_coordination_nothing_is_sent() -> None:
     simulation = blind(case(), coordination="none")
-    assert sum(map(sum, simulation.links.messages_sent.values())) == 0
+    assert sum(map(sum, simulation.network.messages_sent.values())) == 0
     alone = central(simulation, 20)
     assert not np.allclose(simulation.missions[0].pdf(20).mass, alone.mass, rtol=1e-3)
 
@@ -134,7 +134,7 @@ def test_messages_clipped_to_what_their_receivers_can_reach_change_no_flight(
     for one, other in zip(clipped.vehicles.looks, whole.vehicles.looks, strict=True):
         assert one.keys() == other.keys()
         assert all(np.array_equal(one[k], other[k]) for k in one)
-    sent, unclipped = (sum(each.links.bytes_sent[Traffic.NEGOTIATION]) for each in (clipped, whole))
+    sent, unclipped = (sum(each.network.bytes_sent[Traffic.NEGOTIATION]) for each in (clipped, whole))
     assert sent < 0.8 * unclipped
 
 

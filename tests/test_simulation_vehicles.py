@@ -116,25 +116,27 @@ def test_whatever_is_lost_every_vehicle_flies_within_its_limits(loss: float) -> 
         assert [rate for rate, _ in pose] == [rate for rate, _ in team.vehicles.flight(i).held(60.0, 61.0)]
 
 
-def test_a_vehicle_whose_plan_has_run_out_circles() -> None:
+def test_alone_a_vehicle_still_plans() -> None:
     team = flown(2, max_time=10.0, kills=((0, 3.3),))
-    state_before = team.behaviour(1).state
-    assert state_before is State.FLYING  # alone it still plans
-    cut = flight_team(2, link_loss=1.0 - 1e-12, max_time=25.0)
+    assert team.behaviour(1).state is State.FLYING
+
+
+def test_a_vehicle_that_hears_nobody_circles_where_its_plan_has_left_it_and_the_root_goes_on() -> None:
+    cut = flight_team(2, max_time=25.0)
+    cut.fall_silent()
     cut.run()
-    assert [agent.state for agent in cut.simulation.agents] == [State.WAITING, State.WAITING]
-    places = np.array([cut.flown.poses[0, step][:2] for step in range(25)])
+    assert [agent.state for agent in cut.simulation.agents] == [State.FLYING, State.WAITING]
+    places = np.array([cut.flown.poses[1, step][:2] for step in range(25)])
     assert np.ptp(places, axis=0).max() <= 2.0 * SPEED / TURN_RATE + 1e-9
     late = flight_team(2, max_time=25.0)
-    late.simulation.links.loss = 0.0
 
     def look() -> None:
         if late.simulation.now >= 5.0:
-            late.simulation.links.loss = 1.0 - 1e-12
+            late.fall_silent()
 
     late.simulation.run(look, TICK)
-    assert [agent.state for agent in late.simulation.agents] == [State.CIRCLING, State.CIRCLING]
-    places = np.array([late.flown.poses[0, step][:2] for step in range(12, 25)])
+    assert [agent.state for agent in late.simulation.agents] == [State.FLYING, State.CIRCLING]
+    places = np.array([late.flown.poses[1, step][:2] for step in range(12, 25)])
     assert np.ptp(places, axis=0).max() <= 2.0 * SPEED / TURN_RATE + 1e-9
 
 
@@ -165,7 +167,7 @@ def test_a_team_of_vehicles_that_dies_is_lost() -> None:
 def test_the_same_seed_gives_the_same_flight_and_another_seed_another() -> None:
     first, second, other = (flown(3, link_loss=0.1, seed=seed) for seed in (1, 1, 2))
     assert first.vehicles.poses.tobytes() == second.vehicles.poses.tobytes()
-    assert first.simulation.links.bytes_sent == second.simulation.links.bytes_sent
+    assert first.simulation.network.bytes_sent == second.simulation.network.bytes_sent
     assert first.vehicles.poses.tobytes() != other.vehicles.poses.tobytes()
 
 

@@ -41,8 +41,8 @@ def test_every_field_of_the_summary_is_documented_in_its_order(report: TrackRepo
     section = text.partition("### `summary.json` of `vedette track`")[2].partition("\n## ")[0]
     documented = re.findall(r"^\| `(\w+)` \|", section, flags=re.MULTILINE)
     assert documented[: len(figures)] == list(figures)
-    assert figures["schema_version"] == 1
-    assert set(figures["messages"]["vehicle-1"]) == {"negotiation", "fusion", "beacons"}
+    assert figures["schema_version"] == 2
+    assert set(figures["messages"]["vehicle-1"]) == {"negotiation", "fusion", "beacons", "overlay"}
     assert 0.0 < figures["bound_ratio"] <= 1.0
 
 

@@ -4,28 +4,40 @@ from __future__ import annotations
 
 import os
 import sys
+from importlib import import_module
 
 import click
 
-from vedette.cli.explore import explore
-from vedette.cli.search import search
-from vedette.cli.track import track
-from vedette.cli.world import world
 from vedette.errors import InputError
 
 BAD_INPUT, INTERRUPTED = 2, 130
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110})
+COMMANDS = ("agent", "explore", "keys", "search", "status", "team", "track", "world")
+
+
+class _Commands(click.Group):
+    """Imports a command when it is asked for: none waits for what only others need."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the names of all commands."""
+        return list(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Return a command, which is named as its module is."""
+        if cmd_name not in COMMANDS:
+            return None
+        module = import_module(f"vedette.cli.{cmd_name}")
+        command: click.Command = getattr(module, cmd_name)
+        return command
+
+
+@click.command(
+    cls=_Commands, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110}
+)
 @click.version_option(package_name="vedette")
 def commands() -> None:
     """A team of robots gathers information together, with no central computer."""
-
-
-commands.add_command(explore)
-commands.add_command(search)
-commands.add_command(track)
-commands.add_command(world)
 
 
 def main() -> None:

@@ -15,6 +15,9 @@ import click
 
 from vedette.errors import InputError, nearest_name
 from vedette.record.summary import Outcome
+from vedette.sim.faults import Schedule, load_faults
+from vedette.sim.faults.kinds import Skew
+from vedette.sim.radio import Radio, parse_radio
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 
@@ -82,10 +85,28 @@ def seed_option(of: str) -> Callable[[CommandT], CommandT]:
     return click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help=f"Of {of}.")
 
 
+class RadioModel(click.ParamType[Radio]):
+    """``RANGE[,WALL_DB]``."""
+
+    name = "RANGE[,WALL_DB]"
+
+    def convert(self, value: str | Radio, param: click.Parameter | None, ctx: click.Context | None) -> Radio:
+        """Return the radio, or refuse it."""
+        return value if isinstance(value, Radio) else parse_radio(value)
+
+
 def fault_options(command: CommandT) -> CommandT:
-    """``--link-delay``, ``--link-loss`` and ``--kill``."""
-    return _with(
+    """``--radio``, ``--faults``, ``--link-delay``, ``--link-loss`` and ``--kill``."""
+    return with_options(
         command,
+        click.option(
+            "--radio", type=RadioModel(), metavar="RANGE[,WALL_DB]",
+            help="Robots reach each other over RANGE m at most, less through walls, of which each takes "
+            "WALL_DB.  [default: everywhere]",
+        ),
+        click.option(
+            "--faults", metavar="FILE|SEED", help="What befalls robots and links: a schedule or its seed."
+        ),
         click.option(
             "--link-delay", type=Positive("s", most=0.3), default=0.02, show_default=True,
             help="Of a message on a link [s].",
@@ -102,7 +123,7 @@ def fault_options(command: CommandT) -> CommandT:
 
 def output_options(command: CommandT) -> CommandT:
     """``--out``, ``--force``, ``--json`` and ``--animate``."""
-    return _with(
+    return with_options(
         command,
         click.option(
             "--out", type=Path, metavar="DIR",
@@ -123,6 +144,23 @@ def parse_kills(texts: Sequence[str], robots: int) -> tuple[tuple[int, float], .
     return tuple(_kill(text, robots) for text in texts)
 
 
+def parse_faults(text: str | None, robots: int, clocks: bool = True) -> Schedule | None:
+    """Return the schedule of ``--faults FILE|SEED`` for a team; ``clocks``: they may go wrong.
+
+    Raises:
+        InputError: as :func:`vedette.sim.faults.load_faults`, or clocks go wrong that may not.
+    """
+    if text is None:
+        return None
+    schedule = load_faults(text, robots)
+    right = [fault for fault in schedule.faults if not isinstance(fault, Skew)]
+    if clocks or len(right) == len(schedule.faults):
+        return schedule
+    if text.strip().isdecimal():  # a seed asks for chance, within what can be
+        return Schedule(tuple(right))
+    raise InputError(f"{text}: fault skew: vehicles plan by a common clock; leave it out")
+
+
 @contextmanager
 def ending_on_ctrl_c(stop: Callable[[], None]) -> Iterator[None]:
     """Let the first Ctrl-C call ``stop``, which ends the mission in good order; a second one aborts."""
@@ -141,7 +179,7 @@ def ending_on_ctrl_c(stop: Callable[[], None]) -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
 
 
-def _with(command: CommandT, *options: Callable[[CommandT], CommandT]) -> CommandT:
+def with_options(command: CommandT, *options: Callable[[CommandT], CommandT]) -> CommandT:
     """Add options, in the order in which the help shows them."""
     for option in reversed(options):
         command = option(command)

@@ -13,6 +13,7 @@ from vedette.cli.options import (
     ending_on_ctrl_c,
     fault_options,
     output_options,
+    parse_faults,
     parse_kills,
     seed_option,
 )
@@ -24,6 +25,7 @@ from vedette.record.search.live import search_display
 from vedette.record.search.mcap import SearchMcapWriter
 from vedette.record.search.stages import pdf_png
 from vedette.record.search.summary import SearchOutcome, SearchSummary
+from vedette.sim.radio import Radio
 from vedette.sim.search.case import default_case, read_case
 from vedette.sim.search.run import SearchReport, scene_of
 from vedette.sim.search.run import search as run_search
@@ -73,6 +75,8 @@ def search(
     scheme: str,
     fusion: str,
     max_time: float | None,
+    radio: Radio | None,
+    faults: str | None,
     link_delay: float,
     link_loss: float,
     kills: tuple[str, ...],
@@ -99,6 +103,9 @@ def search(
         link_delay=link_delay,
         link_loss=link_loss,
         kills=parse_kills(kills, len(case.names)),
+        radio=radio,
+        faults=parse_faults(faults, len(case.names), clocks=False),
+        faults_from=faults,
     )
     # Everything that can be wrong with the input is found before the folder is made.
     simulation = SearchSimulation(case, setup)

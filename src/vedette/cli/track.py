@@ -15,6 +15,7 @@ from vedette.cli.options import (
     ending_on_ctrl_c,
     fault_options,
     output_options,
+    parse_faults,
     parse_kills,
     seed_option,
 )
@@ -29,6 +30,7 @@ from vedette.record.track.log import Scene
 from vedette.record.track.mcap import TrackMcapWriter
 from vedette.record.track.summary import TrackSummary
 from vedette.record.track.tracks import tracks_png
+from vedette.sim.radio import Radio
 from vedette.sim.track.run import TrackReport, compared, scene_of
 from vedette.sim.track.run import track as run_mission
 from vedette.sim.track.scenario import default_scenario, read_scenario
@@ -76,6 +78,8 @@ def track(
     objective: str | None,
     continuous: bool,
     max_time: float | None,
+    radio: Radio | None,
+    faults: str | None,
     link_delay: float,
     link_loss: float,
     kills: tuple[str, ...],
@@ -100,6 +104,9 @@ def track(
         link_delay=link_delay,
         link_loss=link_loss,
         kills=parse_kills(kills, len(scenario.vehicles)),
+        radio=radio,
+        faults=parse_faults(faults, len(scenario.vehicles), clocks=False),
+        faults_from=faults,
         coordination=coordination,
         fusion=fusion,
         objective=objective,

@@ -21,6 +21,7 @@ _CAPTION = 30  # height of the caption [px]
 _FRAME_MS = 100
 _LAST_MS = 2500  # the last frame stays
 _DISC = 9.0  # radius of a robot's sign [px]
+_FAINT = 180, 180, 180  # a link that is not on the tree
 _FINE = 4  # sub-pixels a side of a pixel of a robot's sign
 
 
@@ -85,6 +86,7 @@ class _Film:
         draw = ImageDraw.Draw(image)
         caption = f"{snapshot.t:.0f} s    {100 * snapshot.coverage:.1f} % covered"
         draw.text((8, _CAPTION / 2), caption, palette.INK, self._fonts[0], anchor="lm")
+        self._draw_links(draw, snapshot)
         so_far = int(np.searchsorted(self._times, snapshot.t, side="right"))
         for i, robot in enumerate(snapshot.robots):
             colour = palette.robot_colour(i)
@@ -98,6 +100,15 @@ class _Film:
             x, y = self._pixels(np.array((robot.x, robot.y)))
             image.paste(sign, (round(x - sign.width / 2), round(y - sign.height / 2)), sign)
         return image
+
+    def _draw_links(self, draw: ImageDraw.ImageDraw, snapshot: Snapshot) -> None:
+        """Draw lines between robots: on the team's tree dark, other links faint."""
+        places = self._pixels(np.array([(robot.x, robot.y) for robot in snapshot.robots]))
+        for link in sorted(snapshot.links or (), key=lambda link: link.on_tree):
+            ends = places[[link.a, link.b]]
+            if link.on_tree:
+                _line(draw, ends, (255, 255, 255), 5)  # to be seen on walls
+            _line(draw, ends, palette.INK if link.on_tree else _FAINT, 2)
 
     def _sign(self, index: int, robot: RobotSample) -> Image.Image:
         """Draw a robot's disc with its number and a nose ahead, or a cross if it is lost."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,7 @@ from vedette.record.summary import Summary
 _SIZE = 8.0, 6.6  # [inch]
 _COVERAGE = palette.unit((0, 114, 178))
 _ENTROPY = palette.unit((140, 90, 0))
+_APART = palette.unit((213, 94, 0))
 _FAINT = palette.unit((200, 203, 207))
 _DASHES = ((), (6, 2), (2, 1.5), (6, 2, 2, 2), (1, 1))  # a robot's line differs in more than its colour
 
@@ -30,6 +32,7 @@ def curves_png(log: RunLog, summary: Summary, path: Path | str) -> None:
         )
         coverage = figure.add_subplot(grid[0])
         entropy, distance = (figure.add_subplot(grid[i], sharex=coverage) for i in (1, 2))
+        _apart((coverage, entropy, distance), log, summary)
         _coverage(coverage, log, summary)
         entropy.plot(log.times, log.entropy, color=_ENTROPY, lw=1.8)
         entropy.fill_between(log.times, log.entropy, color=_ENTROPY, alpha=0.1, lw=0)
@@ -83,6 +86,17 @@ def _distance(axes: Axes, log: RunLog) -> None:
     top = max(1.0, float(log.path_length.max()))
     axes.set(ylabel="travelled [m]", xlabel="time [s]", ylim=(0, 1.05 * top))
     axes.legend(loc="upper left", frameon=False, ncols=2 if len(log.specs) > 3 else 1, labelspacing=0.3)
+
+
+def _apart(shared: Sequence[Axes], log: RunLog, summary: Summary) -> None:
+    """Shade the times at which the team was not together, on axes that share the time; label them once."""
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], log.apart, [0]))))
+    label = f"team apart = {summary.apart_s:.1f} s"
+    for first, end in edges.reshape(-1, 2).tolist():
+        begin, over = log.times[first], log.times[min(end, len(log) - 1)]
+        for axes in shared:
+            axes.axvspan(begin, over, color=_APART, alpha=0.14, lw=0, zorder=0, label=label)
+            label = "_"
 
 
 def _tidy(axes: Axes, last: bool) -> None:

@@ -11,6 +11,7 @@ from rich.console import Console, RenderableType
 from vedette.maps import GridFrame
 from vedette.record.display import Display
 from vedette.record.log import Snapshot
+from vedette.record.marks import together
 from vedette.record.screen import screen
 
 
@@ -48,4 +49,5 @@ def _line(snapshot: Snapshot) -> str:
     robots = "  ".join(f"{robot.name} {robot.state}" for robot in snapshot.robots)
     known, covered = 100 * snapshot.known_fraction, 100 * snapshot.coverage
     entropy = f"entropy {snapshot.entropy:.0f} nat"
-    return f"{snapshot.t:7.1f} s  known {known:5.1f} %  covered {covered:5.1f} %  {entropy}  {robots}"
+    team = "" if snapshot.links is None else f"  {together(snapshot.parts)}"
+    return f"{snapshot.t:7.1f} s  known {known:5.1f} %  covered {covered:5.1f} %  {entropy}  {robots}{team}"

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.maps import GridFrame
+from vedette.record.links import Link, parts
 from vedette.team import PlatformSpec
 
 _FULL = 255  # impacts are kept as whole 255ths
@@ -43,6 +44,12 @@ class Snapshot:
     impact: (
         NDArray[np.float32] | None
     )  # (r, c) probability that the present strategies observe a planning cell
+    links: tuple[Link, ...] | None = None  # None: the network is ideal
+
+    @property
+    def parts(self) -> tuple[tuple[int, ...], ...]:
+        """The living robots in groups, each on a tree of its own; more than one: the team is apart."""
+        return parts([robot.alive for robot in self.robots], self.links)
 
 
 class Sink(Protocol):
@@ -89,7 +96,7 @@ class RunLog:
         self.specs = tuple(specs)
         self._sinks = tuple(sinks)
         self._budget = budget
-        self._curves: list[tuple[float, float, float, float]] = []
+        self._curves: list[tuple[float, float, float, float, float]] = []
         self._poses: list[list[tuple[float, float, float]]] = []
         self._stored: list[_Packed] = []  # every `_stride`-th snapshot
         self._stored_bytes = 0
@@ -106,7 +113,15 @@ class RunLog:
         if len(self._curves) % self._stride == 0:
             self._store(packed)
         self._last = packed
-        self._curves.append((snapshot.t, snapshot.coverage, snapshot.known_fraction, snapshot.entropy))
+        self._curves.append(
+            (
+                snapshot.t,
+                snapshot.coverage,
+                snapshot.known_fraction,
+                snapshot.entropy,
+                len(snapshot.parts) > 1,
+            )
+        )
         self._poses.append([(robot.x, robot.y, robot.heading) for robot in snapshot.robots])
         for sink in self._sinks:
             sink.update(snapshot)
@@ -134,6 +149,11 @@ class RunLog:
     def entropy(self) -> NDArray[np.float64]:
         """``(T,)`` entropy of the team map of all snapshots [nat]."""
         return self._curve(3)
+
+    @property
+    def apart(self) -> NDArray[np.bool_]:
+        """``(T,)`` whether the living robots were on more than one tree, of all snapshots."""
+        return self._curve(4) > 0
 
     @property
     def poses(self) -> NDArray[np.float64]:
@@ -198,7 +218,7 @@ class RunLog:
         return [*self._stored, self._last]
 
     def _curve(self, column: int) -> NDArray[np.float64]:
-        return np.array(self._curves, dtype=np.float64).reshape(-1, 4)[:, column]
+        return np.array(self._curves, dtype=np.float64).reshape(-1, 5)[:, column]
 
     def _unpack(self, packed: _Packed) -> Snapshot:
         classes = np.frombuffer(zlib.decompress(packed.classes), np.uint8).reshape(self.frame.shape)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 
 from rich.color import Color
@@ -22,6 +23,13 @@ def badge(index: int) -> Style:
     """Return its style: its colour as the ground, under an ink that can be read on it."""
     ground = palette.robot_colour(index)
     return two_colours(palette.text_on(ground), ground, True)
+
+
+def together(parts: Sequence[Sequence[int]]) -> str:
+    """Say whether a team is together, or which robots are, by their signs: ``apart: {1,2} {3}``."""
+    if len(parts) < 2:
+        return "together"
+    return "apart: " + " ".join("{" + ",".join(sign(i, True) for i in part) + "}" for part in parts)
 
 
 @lru_cache(maxsize=4096)

@@ -17,12 +17,13 @@ import numpy as np
 
 from vedette.maps import GridFrame
 from vedette.record.log import RobotSample, Snapshot
-from vedette.record.ros import RosMessages, ros_names
+from vedette.record.markers import LinkMessages
+from vedette.record.ros import ros_names
 from vedette.record.topics import Topics, atomic_stream
 
 
 class McapWriter:
-    """Write each snapshot's poses, plans and metrics; the grids every ``grid_period`` seconds and at the end.
+    """Write each snapshot's poses, plans, links, metrics; grids every ``grid_period`` seconds and at the end.
 
     A context manager, and a `vedette.record.log.Sink`. The topics are listed in ``docs/outputs.md``.
     """
@@ -45,7 +46,7 @@ class McapWriter:
         self._names = dict(zip(robots, ros_names(robots), strict=True))
         self._plans: dict[str, tuple[bytes, tuple[float, float] | None]] = {}
         self._states: dict[str, str] = {}
-        self._ros = RosMessages()
+        self._ros = LinkMessages()
         self._closed = False
         self._files = ExitStack()
         stream = self._files.enter_context(atomic_stream(path))
@@ -67,6 +68,8 @@ class McapWriter:
             self._write_intent(stamp, robot)
         for metric in ("coverage", "known_fraction", "entropy"):
             self._topics.write(f"/metrics/{metric}", stamp, self._ros.number(getattr(snapshot, metric)))
+        if snapshot.links is not None:
+            self._topics.write("/links", stamp, self._ros.links(stamp, snapshot))
         if snapshot.t >= self._next_grids:
             self._write_grids(snapshot)
             self._next_grids = snapshot.t + self._period

@@ -20,7 +20,7 @@ from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save
 from vedette.record.log import RobotSample, RunLog, Snapshot
 from vedette.record.raster import Window, enlarge, known_window, paint
-from vedette.record.signs import DASHES, badge, legend_line, scale_bar
+from vedette.record.signs import DASHES, badge, draw_links, legend_line, link_signs, scale_bar
 
 _GAP, _MARGIN, _TOP = 0.14, 0.2, 0.72  # [inch]
 _LINE = 0.25  # of the legend [inch]
@@ -41,7 +41,7 @@ def progress_png(log: RunLog, path: Path | str) -> None:
     """Draw map, team impact, robots, paths and goals at three stages of a log that is not empty."""
     stages = log.stages()
     window = known_window(log.frame, stages[-1].classes)
-    layout = _layout(window.frame.cols / window.frame.rows, len(stages), stages[-1].robots)
+    layout = _layout(window.frame.cols / window.frame.rows, len(stages), stages[-1])
     with picture():
         figure = Figure(figsize=(layout.width, layout.height), dpi=DPI)
         for corner, stage in zip(layout.corners, stages, strict=True):
@@ -50,18 +50,18 @@ def progress_png(log: RunLog, path: Path | str) -> None:
         lowest = min(corner[1] for corner in layout.corners)
         metres = window.frame.cols * window.frame.resolution
         scale_bar(figure, layout.corners[0][0], lowest - 0.16, metres, layout.panel[0])
-        _legend(figure, layout, stages[-1].robots)
+        _legend(figure, layout, stages[-1])
         save(figure, path)
 
 
-def _layout(aspect: float, panels: int, robots: Sequence[RobotSample]) -> _Layout:
+def _layout(aspect: float, panels: int, last: Snapshot) -> _Layout:
     """Fit the panels: side by side, or one above the other where the map is far wider than high."""
     stacked = aspect > 2.2
     panel_width = 9.0 if stacked else max(0.3, min(4.2, 6.5 * aspect))
     panel = panel_width, max(0.2, min(6.5, panel_width / aspect))
     across = 1 if stacked else panels
     width = max(_NARROW, across * panel_width + (across - 1) * _GAP + 2 * _MARGIN)
-    bottom = 0.42 + _LINE * (-(-len(robots) // _robots_a_row(width, robots)) + (1 if width >= _WIDE else 2))
+    bottom = 0.42 + _LINE * _legend_lines(width, last)
     if stacked:
         step = panel[1] + 0.3
         corners = tuple((_MARGIN, bottom + step * (panels - 1 - i)) for i in range(panels))
@@ -91,6 +91,7 @@ def _panel(
     trails = log.poses[:so_far, :, :2]
     for i, robot in enumerate(stage.robots):
         _ways(axes, palette.unit(palette.robot_colour(i)), trails[:, i], robot)
+    draw_links(axes, stage.robots, stage.links or ())
     for i, robot in enumerate(stage.robots):
         _robot(axes, i, robot)
 
@@ -137,8 +138,9 @@ def _heading(figure: Figure, layout: _Layout, log: RunLog) -> None:
     figure.text(*at, f"{log.world}: {robots}", fontsize=12, fontweight="bold", va="top")
 
 
-def _legend(figure: Figure, layout: _Layout, robots: Sequence[RobotSample]) -> None:
-    """Explain robots, ways, cell classes and the impact's colour under the panels."""
+def _legend(figure: Figure, layout: _Layout, last: Snapshot) -> None:
+    """Explain robots, links, ways, cell classes and the impact's colour under the panels."""
+    robots = last.robots
     team = [badge(i, robot.alive) for i, robot in enumerate(robots)]
     labels = [robot.name + ("" if robot.alive else " (lost)") for robot in robots]
     per_row = _robots_a_row(layout.width, robots)
@@ -147,9 +149,22 @@ def _legend(figure: Figure, layout: _Layout, robots: Sequence[RobotSample]) -> N
         some = slice(first, first + per_row)
         legend_line(figure, _MARGIN, y, team[some], labels[some])
         y -= _LINE
-    signs = _signs()
-    legend_line(figure, _MARGIN, y, signs, [str(sign.get_label()) for sign in signs])
+    if last.links is not None:
+        _explain(figure, y, link_signs())
+        y -= _LINE
+    _explain(figure, y, _signs())
     _impact_ramp(figure, layout, y if layout.width >= _WIDE else y - _LINE)
+
+
+def _explain(figure: Figure, y: float, signs: Sequence[Line2D | Patch]) -> None:
+    """Write a line of the legend at ``y`` [inch] from signs that have labels."""
+    legend_line(figure, _MARGIN, y, signs, [str(sign.get_label()) for sign in signs])
+
+
+def _legend_lines(width: float, last: Snapshot) -> int:
+    """Count the lines of the legend: robots, links if they are simulated, all else."""
+    robots = -(-len(last.robots) // _robots_a_row(width, last.robots))
+    return robots + (last.links is not None) + (1 if width >= _WIDE else 2)
 
 
 def _robots_a_row(width: float, robots: Sequence[RobotSample]) -> int:

@@ -19,7 +19,7 @@ from rich.text import Text
 from vedette.maps import FREE, OCCUPIED, GridFrame
 from vedette.record import palette
 from vedette.record.log import RobotSample, Snapshot
-from vedette.record.marks import badge, sign, two_colours
+from vedette.record.marks import badge, sign, together, two_colours
 from vedette.record.raster import Window, fit, paint, pool
 
 _MAP = 24, 70  # most lines and columns of the map
@@ -38,12 +38,15 @@ def screen(
 
     The table of robots goes below the map or beside it, whichever leaves the map more room.
     """
-    below = console.height - 8 - len(snapshot.robots), console.width - 4
-    left = console.height - 6, console.width - 4 - _TABLE
+    head: list[RenderableType] = [_figures(snapshot), _bar(snapshot)]
+    if snapshot.links is not None:
+        head.append(_team(snapshot))
+    below = console.height - 6 - len(head) - len(snapshot.robots), console.width - 4
+    left = console.height - 4 - len(head), console.width - 4 - _TABLE
     rooms = [(min(_MAP[0], lines), min(_MAP[1], columns)) for lines, columns in (below, left)]
     sizes = [_size(frame, room) if min(room) >= 4 else (0, 0) for room in rooms]
     table = _robots(snapshot.robots, travelled)
-    parts: list[RenderableType] = [_figures(snapshot), _bar(snapshot)]
+    parts = list(head)
     if sizes[1][0] and sizes[1] >= sizes[0]:
         body = Table.grid(padding=(0, 3))
         body.add_row(HalfBlocks.of(console, frame, planning, snapshot, sizes[1]), table)
@@ -76,6 +79,13 @@ def _bar(snapshot: Snapshot) -> Table:
     bar = ProgressBar(total=1.0, completed=snapshot.coverage, width=40, complete_style="green")
     grid.add_row(Text("covered", "dim"), bar, Text(f"{100 * snapshot.coverage:.1f} %", "bold"))
     return grid
+
+
+def _team(snapshot: Snapshot) -> Text:
+    style = "bold" if len(snapshot.parts) < 2 else "bold yellow"
+    return Text.assemble(
+        ("team    ", "dim"), (together(snapshot.parts), style), no_wrap=True, overflow="ellipsis"
+    )
 
 
 def _robots(robots: Sequence[RobotSample], travelled: Sequence[float]) -> Table:

@@ -15,15 +15,18 @@ from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
 from vedette.record import palette
+from vedette.record.links import Link
 
 INK = palette.unit(palette.INK)
 FAINT = palette.unit((110, 113, 117))
 DASHES = (0, (3, 1.6))
+_TREE: Any = {"color": INK, "lw": 1.2}
+_OTHER: Any = {"color": INK, "lw": 0.9, "alpha": 0.3}
 _ROUND = (0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000, 50_000, 100_000)
 
 
-class Sample(Protocol):
-    """A vehicle at one moment."""
+class Placed(Protocol):
+    """What is somewhere at one moment."""
 
     @property
     def x(self) -> float:
@@ -32,6 +35,10 @@ class Sample(Protocol):
     @property
     def y(self) -> float:
         """[m]."""
+
+
+class Sample(Placed, Protocol):
+    """A vehicle at one moment."""
 
     @property
     def heading(self) -> float:
@@ -67,6 +74,23 @@ def draw_vehicle(axes: Axes, index: int, vehicle: Sample) -> None:
         str(index + 1), (vehicle.x, vehicle.y), (0, -0.3), textcoords="offset points", ha="center",
         va="center", fontsize=6.5, fontweight="bold", color=palette.unit(palette.text_on(rgb)), zorder=8,
     )  # fmt: skip
+
+
+def draw_links(axes: Axes, robots: Sequence[Placed], links: Sequence[Link]) -> None:
+    """Draw lines between robots, under their discs: on the tree solid, other links faint."""
+    for link in sorted(links, key=lambda link: link.on_tree):
+        x, y = zip(*((robots[i].x, robots[i].y) for i in (link.a, link.b)), strict=True)
+        if link.on_tree:
+            axes.plot(x, y, color="white", lw=2.8, alpha=0.8, zorder=5.2)  # to be seen on walls
+        axes.plot(x, y, zorder=5.4, **(_TREE if link.on_tree else _OTHER))
+
+
+def link_signs() -> list[Line2D]:
+    """Return the signs of links in a legend, with their labels."""
+    return [
+        Line2D((), (), label="link on the team's tree", **_TREE),
+        Line2D((), (), label="other link", **_OTHER),
+    ]
 
 
 def badge(index: int, alive: bool) -> tuple[Line2D, ...]:

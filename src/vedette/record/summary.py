@@ -12,7 +12,7 @@ import numpy as np
 from vedette.record.files import write_text
 from vedette.record.plain import json_text, plain
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 
 
 class Outcome(StrEnum):
@@ -27,11 +27,12 @@ class Outcome(StrEnum):
 
 @dataclass(frozen=True)
 class Traffic:
-    """Messages or bytes that one robot sent, by kind."""
+    """Messages or bytes that one robot sent, by kind: a field for each `vedette.agent.effects.Traffic`."""
 
     negotiation: int = 0
     fusion: int = 0
     beacons: int = 0
+    overlay: int = 0  # hellos, acknowledgements, and what was sent again
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,8 @@ class Summary:
     scheme: str
     fusion: str
     world: str
+    radio: str | None
+    faults: str | None
     time_s: float
     t50_s: float | None
     t90_s: float | None
@@ -62,6 +65,7 @@ class Summary:
     rounds: int
     sweeps: int
     bound_ratio: float | None
+    apart_s: float
     messages: Mapping[str, Traffic]
     bytes: Mapping[str, Traffic]
     schema_version: int = field(default=SCHEMA_VERSION, init=False)
@@ -98,6 +102,7 @@ class Timing:
 
     planning_ms: Spread | None  # all CPU time that one robot spends on one replan, all sweeps
     answer_ms: Spread | None  # CPU time to answer the token, a visit
+    round_ms: Spread | None  # wall time of a round from end to end; None: rounds were simulated
     real_time_factor: float  # simulated / wall seconds
     wall_s: float
 

@@ -55,8 +55,9 @@ class Bodies:
     velocities: NDArray[np.float64] = field(init=False)  # (n, 2) vx, vy [m/s]
     travelled: NDArray[np.float64] = field(init=False)  # (n,) [m]
     alive: NDArray[np.bool_] = field(init=False)  # (n,)
-    collisions: int = field(init=False, default=0)  # steps in which a contact stopped a robot
-    min_clearance: float = field(init=False, default=CLEARANCE_RANGE)  # to walls and other discs so far [m]
+    radii: NDArray[np.float64] = field(init=False)  # (n,) [m]
+    collisions: NDArray[np.int64] = field(init=False)  # (n,) steps in which a contact stopped each robot
+    min_clearance: NDArray[np.float64] = field(init=False)  # (n,) to walls and other discs so far [m]
     _tasks: list[_Task | None] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -66,8 +67,10 @@ class Bodies:
         self.velocities = np.zeros((n, 2))
         self.travelled = np.zeros(n)
         self.alive = np.ones(n, dtype=np.bool_)
+        self.collisions = np.zeros(n, dtype=np.int64)
+        self.min_clearance = np.full(n, CLEARANCE_RANGE)
         self._tasks = [None] * n
-        self._radii = np.array([spec.radius for spec in self.specs])
+        self.radii = np.array([spec.radius for spec in self.specs])
         index = np.arange(n)
         earlier = index[None, :] < index[:, None]
         self._courtesy = np.where(earlier, COURTESY_TO_EARLIER, COURTESY_TO_LATER)
@@ -110,7 +113,7 @@ class Bodies:
         away = math.hypot(x - end[0], y - end[1])
         if away > ARRIVAL_IF_TAKEN or away <= ARRIVAL:
             return away <= ARRIVAL
-        others = np.hypot(*(self.poses[:, :2] - end).T) < self._radii + self.specs[i].radius
+        others = np.hypot(*(self.poses[:, :2] - end).T) < self.radii + self.specs[i].radius
         others[i] = False
         return bool(others.any())
 
@@ -120,7 +123,7 @@ class Bodies:
         return 0.0 if task is None or self.arrived(i) else task.idle
 
     def kill(self, i: int) -> None:
-        """Stop robot ``i`` for ever; its body stays as an obstacle."""
+        """Stop robot ``i``; its body stays as an obstacle."""
         self.alive[i] = False
         self.velocities[i] = 0.0
         self._tasks[i] = None
@@ -163,20 +166,20 @@ class Bodies:
         near[i] = False
         rows = np.empty((int(near.sum()), 6))
         rows[:, :2], rows[:, 2:4] = self.poses[near, :2], self.velocities[near]
-        rows[:, 4], rows[:, 5] = self._radii[near], self._courtesy[i, near]
+        rows[:, 4], rows[:, 5] = self.radii[near], self._courtesy[i, near]
         return rows
 
     def _admit(self, i: int, x: float, y: float) -> bool:
         """Physics: record the clearance at a new place, and refuse the place on contact."""
-        reach = self._radii[i] + CLEARANCE_RANGE
-        gap = motion.clearance(self.solid, self.resolution, x, y, reach) - self._radii[i]
-        apart = np.hypot(self.poses[:, 0] - x, self.poses[:, 1] - y) - self._radii - self._radii[i]
+        reach = self.radii[i] + CLEARANCE_RANGE
+        gap = motion.clearance(self.solid, self.resolution, x, y, reach) - self.radii[i]
+        apart = np.hypot(self.poses[:, 0] - x, self.poses[:, 1] - y) - self.radii - self.radii[i]
         apart[i] = np.inf
         gap = min(gap, float(apart.min()))
         if gap < 0.0:
-            self.collisions += 1
+            self.collisions[i] += 1
             return False
-        self.min_clearance = min(self.min_clearance, gap)
+        self.min_clearance[i] = min(self.min_clearance[i], gap)
         return True
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Protocol, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,10 +13,12 @@ from vedette.agent import Agent, GroundBehaviour
 from vedette.agent.driving import Driver
 from vedette.domains.mapping.planners import planner
 from vedette.domains.mapping.sightings import BINS
+from vedette.errors import InputError, nearest_name
 from vedette.fusion import ChannelFilter, Fusion, ReplicatedEvidence
+from vedette.maps import GridFrame
 from vedette.missions.explore import Exploration
 from vedette.sim.robots import Robots
-from vedette.sim.simulation import BOOT, Setup, Simulation, random_streams
+from vedette.sim.simulation import Setup, Simulation, random_streams
 from vedette.sim.world import World
 from vedette.team import PlatformSpec
 
@@ -23,6 +26,26 @@ FUSIONS: Mapping[str, type[ReplicatedEvidence] | type[ChannelFilter]] = {
     "replicated": ReplicatedEvidence,
     "channel": ChannelFilter,
 }
+
+
+class Exploring(Protocol):
+    """How a team explores."""
+
+    @property
+    def planner(self) -> str:
+        """A name of `vedette.domains.mapping.planners`."""
+
+    @property
+    def scheme(self) -> str:
+        """Of negotiation."""
+
+    @property
+    def fusion(self) -> str:
+        """A name of ``FUSIONS``."""
+
+    @property
+    def return_home(self) -> bool:
+        """Robots drive back to their starts in the end."""
 
 
 @dataclass(frozen=True)
@@ -51,19 +74,58 @@ class ExploreSimulation(Simulation):
         Raises:
             InputError: the planner is unknown.
         """
+        self.setup = setup
         self.world, self.specs, self.starts = world, tuple(specs), starts
         self.robots = Robots(world, self.specs, starts, random_streams(setup.seed, len(specs)))
-        self.missions = [_mission(world, spec, i, setup) for i, spec in enumerate(self.specs)]
-        self.drivers = [Driver(i, spec, world.frame) for i, spec in enumerate(self.specs)]
-        agents = [
-            Agent(i, BOOT, spec, GroundBehaviour(mission, driver, setup.return_home), setup.scheme)
-            for i, (spec, mission, driver) in enumerate(
-                zip(self.specs, self.missions, self.drivers, strict=True)
-            )
-        ]
-        super().__init__(agents, self.robots, setup)
+        super().__init__(self._explorer, self.robots, setup, world)
+
+    def _explorer(self, robot: int, boot: int) -> Agent:
+        robots = len(self.specs)
+        return explorer(self.world.frame, self.specs[robot], self.setup, robot, boot, robots=robots)
+
+    @property
+    def missions(self) -> list[Exploration]:
+        """Everybody's share of the mission, by index."""
+        return [cast(Exploration, agent.mission) for agent in self.network.agents]
+
+    @property
+    def drivers(self) -> list[Driver]:
+        """Everybody's driver, by index."""
+        return [cast(GroundBehaviour, agent.behaviour).driver for agent in self.network.agents]
 
 
-def _mission(world: World, spec: PlatformSpec, robot: int, setup: ExploreSetup) -> Exploration:
-    fusion: Fusion = FUSIONS[setup.fusion](robot, BOOT, world.frame.shape, 4 * BINS)
-    return Exploration(world.frame, spec, planner(setup.planner), fusion)
+def explorer(
+    frame: GridFrame,
+    spec: PlatformSpec,
+    how: Exploring,
+    robot: int,
+    boot: int,
+    *,
+    robots: int,
+    waits_for: int = 1,
+) -> Agent:
+    """Return a fresh agent of a team.
+
+    Args:
+        frame: of the map.
+        spec: its body.
+        how: it explores.
+        robot: its number.
+        boot: of its start.
+        robots: in the team.
+        waits_for: so many robots, itself included, before it begins; for a while.
+
+    Raises:
+        InputError: the planner or the way of fusing is unknown, or cannot serve such a team.
+    """
+    if how.fusion not in FUSIONS:
+        raise InputError(f"unknown fusion {how.fusion!r}; {nearest_name(how.fusion, FUSIONS)}")
+    fusion: Fusion = FUSIONS[how.fusion](robot, boot, frame.shape, 4 * BINS)
+    mission = Exploration(frame, spec, planner(how.planner, robots), fusion)
+    behaviour = GroundBehaviour(mission, Driver(robot, spec, frame), how.return_home, waits_for)
+    return Agent(robot, boot, spec, behaviour, scheme_of(how))
+
+
+def scheme_of(how: Exploring) -> str:
+    """Return how the team negotiates: as its planner has it, if that is part of the planner."""
+    return planner(how.planner).scheme or how.scheme

@@ -32,7 +32,10 @@ class Field(Protocol):
         """Move everybody through the tick of ``dt`` that ends now [s]."""
 
     def kill(self, i: int) -> None:
-        """Stop a robot for ever."""
+        """Stop a robot where it is."""
+
+    def revive(self, i: int, now: float) -> None:
+        """Let a robot go on from where it stands, without a plan."""
 
     def over(self, now: float) -> Outcome | None:
         """Return how the mission ends now, for reasons that lie in the world; None: it goes on."""

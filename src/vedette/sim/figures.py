@@ -5,11 +5,26 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from vedette.agent.effects import Traffic as Kind
-from vedette.record.summary import Spread, Timing, Traffic
+from vedette.agent.rounds import Rounds
+from vedette.record.summary import Timing, Traffic
 from vedette.sim.simulation import Simulation
+
+
+@dataclass(frozen=True)
+class RoundFigures:
+    """How the rounds of one robot went."""
+
+    rounds: int = 0  # that it has ended with a decision
+    sweeps: int = 0  # in these
+    bounded: int = 0  # those whose value had a bound
+    bound_ratios: float = 0.0  # value over bound, summed over these
+
+    @classmethod
+    def of(cls, rounds: Rounds) -> RoundFigures:
+        """Return the figures of an agent's rounds."""
+        ratios = rounds.bound_ratios
+        return cls(rounds.decisions, rounds.sweeps, len(ratios), float(sum(ratios)))
 
 
 @dataclass(frozen=True)
@@ -20,21 +35,28 @@ class Negotiated:
     sweeps: int  # in these
     bound_ratio: float | None  # mean value over bound, all robots' decisions; None: no decision had a bound
 
+    @classmethod
+    def by(cls, team: Sequence[RoundFigures]) -> Negotiated:
+        """Return how the rounds of a team went."""
+        leader = max(team, key=lambda each: each.rounds)
+        bounded = sum(each.bounded for each in team)
+        mean = sum(each.bound_ratios for each in team) / bounded if bounded else None
+        return cls(leader.rounds, leader.sweeps, mean)
+
 
 def negotiated(simulation: Simulation) -> Negotiated:
     """Return how the rounds of a mission went."""
-    rounds = [agent.rounds for agent in simulation.agents]
-    ratios = [ratio for each in rounds for ratio in each.bound_ratios]
-    leader = max(rounds, key=lambda each: each.decisions)
-    return Negotiated(leader.decisions, leader.sweeps, float(np.mean(ratios)) if ratios else None)
+    return Negotiated.by([RoundFigures.of(agent.rounds) for agent in simulation.agents])
+
+
+def traffic_of(sent: Mapping[Kind, Sequence[int]], robot: int) -> Traffic:
+    """Return what one robot sent of each kind (``Links.messages_sent``, ``.bytes_sent``)."""
+    return Traffic(**{kind.value: counts[robot] for kind, counts in sent.items()})
 
 
 def traffic(names: Sequence[str], sent: Mapping[Kind, Sequence[int]]) -> dict[str, Traffic]:
     """Return messages or bytes sent (``Links.messages_sent``, ``.bytes_sent``) by name and kind."""
-    return {
-        name: Traffic(sent[Kind.NEGOTIATION][i], sent[Kind.FUSION][i], sent[Kind.BEACONS][i])
-        for i, name in enumerate(names)
-    }
+    return {name: traffic_of(sent, i) for i, name in enumerate(names)}
 
 
 def timing(simulation: Simulation) -> Timing:
@@ -42,8 +64,9 @@ def timing(simulation: Simulation) -> Timing:
     clock = simulation.clock
     wall = clock.elapsed()
     return Timing(
-        planning_ms=Spread.of([1e3 * took for took in clock.planning.values()]),
-        answer_ms=Spread.of([1e3 * took for took in clock.answers]),
+        planning_ms=clock.planning_ms,
+        answer_ms=clock.answer_ms,
+        round_ms=None,
         real_time_factor=simulation.now / wall if wall > 0 else 0.0,
         wall_s=wall,
     )

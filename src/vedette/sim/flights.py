@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from vedette.agent.events import TreeChanged
-from vedette.sim.simulation import JOB_TIME, Setup, Simulation
+from vedette.sim.simulation import JOB_TIME, Setup
 
 _SWEEPS = 3  # of the token that a round mostly takes, at most
 _MARGIN = 0.1  # [s]
@@ -18,24 +17,14 @@ class FlightSetup(Setup):
 
     coordination: str = "negotiated"  # "none": nobody tells anybody anything
 
+    @property
+    def apart(self) -> bool:
+        """Without coordination each vehicle is a team of one."""
+        return self.coordination == "none"
+
     def team(self, vehicles: int) -> int:
         """Return how many vehicles plan together."""
-        return 1 if self.coordination == "none" else vehicles
-
-
-class FlightSimulation(Simulation):
-    """A team of vehicles, or without coordination so many teams of one."""
-
-    setup: FlightSetup
-
-    def _plant_tree(self) -> None:
-        """Give the living a tree; without coordination, each a tree of its own."""
-        if self.setup.coordination != "none":
-            super()._plant_tree()
-            return
-        self._epoch += 1
-        for i in self.living:
-            self._step(i, [TreeChanged(self._epoch, None, (), 1)])
+        return 1 if self.apart else vehicles
 
 
 def lead(vehicles: int, delay: float) -> float:

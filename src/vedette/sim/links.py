@@ -1,4 +1,4 @@
-"""The simulated links of the tree: messages arrive in order, after a delay, or not at all."""
+"""The ideal links of a planted tree: every message arrives, in order, after a delay."""
 
 from __future__ import annotations
 
@@ -6,19 +6,15 @@ import heapq
 from collections import defaultdict
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from vedette.agent.effects import Send, Traffic
 
 
 @dataclass
 class Links:
-    """Links with a delay and a loss, and a count of what was sent over them."""
+    """Links with a delay, and a count of what was sent over them."""
 
     robots: int
     delay: float  # one way [s]
-    loss: float  # probability that a message is lost
-    rng: np.random.Generator
     messages_sent: dict[Traffic, list[int]] = field(init=False)  # by kind and robot
     bytes_sent: dict[Traffic, list[int]] = field(init=False)
     _queue: list[tuple[float, int, int, int, bytes]] = field(default_factory=list)
@@ -33,8 +29,6 @@ class Links:
         """Put a message on its link."""
         self.messages_sent[send.traffic][sender] += 1
         self.bytes_sent[send.traffic][sender] += len(send.payload)
-        if self.loss > 0 and self.rng.random() < self.loss:
-            return
         link = sender, send.to
         self._last[link] = max(self._last[link], now + self.delay)
         self._sent += 1

@@ -36,7 +36,6 @@ class Robots:
         local = starts.copy()
         local[:, :2] -= self._corner
         self.bodies = Bodies(world.solid, world.frame.resolution, specs, local)
-        self._radii = np.array([spec.radius for spec in specs])
         self._beams = [
             np.radians(spec.view) * ((np.arange(spec.beams) + 0.5) / spec.beams - 0.5) for spec in specs
         ]
@@ -53,7 +52,7 @@ class Robots:
     def pose(self, i: int) -> tuple[float, float, float]:
         """Return x, y [m] and heading [rad] of a robot, team frame."""
         x, y, heading = self.bodies.poses[i].tolist()
-        return x + self._corner[0], y + self._corner[1], heading
+        return x + float(self._corner[0]), y + float(self._corner[1]), heading
 
     def sense(self, i: int, now: float) -> list[Event]:
         """Return pose, scan, and whether the robot has arrived or is stuck."""
@@ -76,7 +75,9 @@ class Robots:
     def _scan(self, i: int, heading: float) -> Scan:
         spec = self._specs[i]
         angles = heading + self._beams[i]
-        discs = np.column_stack((self.bodies.poses[:, :2], self._radii))[np.arange(len(self._specs)) != i]
+        discs = np.column_stack((self.bodies.poses[:, :2], self.bodies.radii))[
+            np.arange(len(self._specs)) != i
+        ]
         local = self.bodies.poses[i]
         ranges = cast_rays(
             self._world.solid, self._world.frame.resolution, local[0], local[1], angles, spec.range, discs
@@ -100,8 +101,13 @@ class Robots:
         self.bodies.step(dt)
 
     def kill(self, i: int) -> None:
-        """Stop a robot for ever; its body stays as an obstacle."""
+        """Stop a robot; its body stays as an obstacle."""
         self.bodies.kill(i)
+
+    def revive(self, i: int, now: float) -> None:
+        """Let a robot go on from where it stands."""
+        self.bodies.alive[i] = True
+        self._told_arrival[i] = True
 
     def over(self, now: float) -> Outcome | None:
         """Give up when no robot has got a new route for long."""

@@ -7,25 +7,33 @@ randomness seeded: the same arguments give the same mission, event for event.
 from __future__ import annotations
 
 import heapq
-import time as wall
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
-from vedette.agent import Agent, step
-from vedette.agent.effects import Effect, Job, Send
-from vedette.agent.events import Event, JobDone, Message, TreeChanged
-from vedette.agent.messages import Negotiate, decode
-from vedette.negotiation import Tree
+from vedette.agent import Agent
+from vedette.agent.effects import Drive, Fly, Job
+from vedette.agent.events import JobDone
+from vedette.maps import GridFrame
 from vedette.record.summary import Outcome
+from vedette.sim.clock import Clock
+from vedette.sim.datagrams import Datagrams
+from vedette.sim.faults import Schedule, Timeline
 from vedette.sim.field import Field
 from vedette.sim.links import Links
+from vedette.sim.network import Act, Network, Spawn
+from vedette.sim.overlaid import OverlaidNetwork
+from vedette.sim.planted import PlantedTree
+from vedette.sim.radio import Radio
+from vedette.sim.world import World
 
-BOOT = 1  # simulated robots start once
 TICK = 0.1  # of bodies and poses [s]
+OPEN = World(GridFrame(1.0, 1, 1), np.zeros((1, 1), np.bool_), "open")  # no walls at all
 JOB_TIME = 0.03  # charged for preparing a round [s]
-NOTICED_AFTER = 1.0  # a dead robot is missed, and the tree made anew, after so long [s]
 
 
 @dataclass(frozen=True)
@@ -38,23 +46,19 @@ class Setup:
     link_delay: float = 0.02  # [s]
     link_loss: float = 0.0
     kills: tuple[tuple[int, float], ...] = ()  # robot index, time [s]
+    radio: Radio | None = None  # None: everybody reaches everybody
+    faults: Schedule | None = None
+    faults_from: str | None = None  # the schedule's file or seed
 
+    @property
+    def ideal(self) -> bool:
+        """Links neither fail nor lose anything, so that nobody has to look after them."""
+        return self.radio is None and self.faults is None and self.link_loss == 0.0
 
-@dataclass
-class Clock:
-    """Wall-clock figures of a run, apart from all that is simulated; on an idle core also its CPU time."""
-
-    started: float = 0.0
-    planning: dict[tuple[int, int, int], float] = field(default_factory=dict)  # robot, epoch, round: [s]
-    answers: list[float] = field(default_factory=list)  # a negotiation message, each [s]
-
-    def start(self) -> None:
-        """Begin counting."""
-        self.started = wall.perf_counter()
-
-    def elapsed(self) -> float:
-        """Return the wall time since the start [s]."""
-        return wall.perf_counter() - self.started
+    @property
+    def apart(self) -> bool:
+        """Nobody tells anybody anything: each robot is a team of one."""
+        return False
 
 
 def random_streams(seed: int, robots: int) -> list[np.random.Generator]:
@@ -65,18 +69,42 @@ def random_streams(seed: int, robots: int) -> list[np.random.Generator]:
 class Simulation:
     """One mission; ``run`` steps it to its end."""
 
-    def __init__(self, agents: Sequence[Agent], field: Field, setup: Setup) -> None:
-        """Bring agents, by index the robots of the field, to life."""
-        n = len(agents)
-        self.agents, self.field, self.setup = list(agents), field, setup
-        self.links = Links(n, setup.link_delay, setup.link_loss, random_streams(setup.seed, n)[n])
+    def __init__(self, spawn: Spawn, field: Field, setup: Setup, walls: World | None = None) -> None:
+        """Bring the robots of the field to life; ``walls``: what weakens their radios."""
+        self.field, self.setup = field, setup
+        self.network: Network = self._planted(spawn) if setup.ideal else self._overlaid(spawn, walls)
         self.clock = Clock()
         self.now = 0.0
-        self._jobs: list[tuple[float, int, Job]] = []
-        self._tree_due = [0.0]
-        self._epoch = 0
+        self._jobs: list[tuple[float, int, int, Job]] = []  # when done, number, robot
+        self._job_numbers = itertools.count()
         self._kills = sorted(setup.kills, key=lambda kill: kill[1])
         self._stopped = False
+
+    def _planted(self, spawn: Spawn) -> Network:
+        wires = Links(len(self.field.alive), self.setup.link_delay)
+        return PlantedTree(spawn, lambda: self.field.alive, wires, self.setup.apart)
+
+    def _overlaid(self, spawn: Spawn, walls: World | None) -> Network:
+        n, setup = len(self.field.alive), self.setup
+        datagrams = Datagrams(n, random_streams(setup.seed, n)[n], (setup.link_delay, setup.link_delay))
+        datagrams.set_links(np.full((n, n), 1.0 if setup.apart else setup.link_loss))
+        timeline = None if setup.faults is None else Timeline(setup.faults, n)
+        losses = None
+        if setup.radio is not None and not setup.apart:
+            losses = partial(self._losses, setup.radio, walls or OPEN)
+        return OverlaidNetwork(spawn, self.field, datagrams, timeline=timeline, losses=losses)
+
+    def _losses(self, radio: Radio, walls: World) -> NDArray[np.float64]:
+        """Return the ``(n, n)`` share of datagrams lost between robots where they are now."""
+        corner = walls.frame.origin_x, walls.frame.origin_y
+        places = np.array([self.field.pose(i)[:2] for i in range(len(self.field.alive))]) - corner
+        lost = radio.quality(walls.solid, walls.frame.resolution, places)
+        return 1.0 - (1.0 - lost) * (1.0 - self.setup.link_loss)
+
+    @property
+    def agents(self) -> list[Agent]:
+        """Everybody's agent, by index."""
+        return list(self.network.agents)
 
     @property
     def living(self) -> list[int]:
@@ -113,9 +141,11 @@ class Simulation:
         self._stopped = True
 
     def _over(self) -> Outcome | None:
-        if not self.living:
+        living = self.living
+        if not living:
             return Outcome.TEAM_LOST
-        if all(self.agents[i].done for i in self.living):
+        agents = self.network.agents
+        if all(agents[i].done for i in living):
             return Outcome.COMPLETE
         if self._stopped:
             return Outcome.INTERRUPTED
@@ -129,71 +159,37 @@ class Simulation:
         while self._kills and self._kills[0][1] <= self.now:
             robot, _ = self._kills.pop(0)
             self.field.kill(robot)
-            self._tree_due.append(self.now + NOTICED_AFTER)
-        if self._tree_due and self._tree_due[0] <= self.now:
-            self._tree_due.pop(0)
-            self._plant_tree()
+            self.network.killed(robot, self.now)
+        for i, act in self.network.tick(self.now):
+            self._let(i, act)
         for i in self.living:
-            self._step(i, self.field.sense(i, self.now))
-
-    def _plant_tree(self) -> None:
-        """Give the living robots a balanced tree."""
-        living = self.living
-        if not living:
-            return
-        tree = Tree.balanced(len(living))
-        self._epoch += 1
-        for place, i in enumerate(living):
-            parent = tree.parents(0)[place]
-            neighbours = tuple(living[k] for k in tree.neighbours(place))
-            event = TreeChanged(
-                self._epoch, None if parent is None else living[parent], neighbours, len(living)
-            )
-            self._step(i, [event])
+            self._let(i, self.network.tell(i, self.field.sense(i, self.now), self.now))
 
     def _deliver_until(self, time: float) -> None:
         """Deliver messages and finished jobs in order of time."""
         while True:
             job_due = self._jobs[0][0] if self._jobs else float("inf")
-            message_due = self.links.next_arrival()
-            if min(job_due, message_due) >= time:
+            if min(job_due, self.network.due()) >= time:
                 return
-            if job_due <= message_due:
-                self.now, robot, job = heapq.heappop(self._jobs)
-                if self.field.alive[robot]:
-                    self._step(robot, [JobDone(job.key)])
+            if job_due <= self.network.due():
+                self.now, _, robot, job = heapq.heappop(self._jobs)
+                act = self.network.tell(robot, [JobDone(job.key)], self.now)
             else:
-                self.now, sender, receiver, payload = self.links.arrive()
-                if self.field.alive[receiver]:
-                    self._step(receiver, [Message(sender, payload)])
+                self.now, robot, act = self.network.happen()
+            if self.field.alive[robot]:
+                self._let(robot, act)
 
-    def _step(self, i: int, events: list[Event]) -> None:
-        agent = self.agents[i]
-        began = wall.perf_counter()
-        before = agent.rounds.decisions
-        effects = step(agent, events, self.now)
-        took = wall.perf_counter() - began
-        if agent.rounds.busy or agent.rounds.decisions != before:
-            key = i, *agent.rounds.stamp
-            self.clock.planning[key] = self.clock.planning.get(key, 0.0) + took
-            if agent.rounds.decisions == before and _negotiates(events[0]):
-                self.clock.answers.append(took)
-        for effect in effects:
-            self._carry_out(i, effect)
+    def _let(self, i: int, act: Act) -> None:
+        """Let a robot do something, and carry out what comes of it."""
+        for effect in self.clock.measured(i, self.network.agents[i].rounds, act):
+            match effect:
+                case Job():
+                    self._run(i, effect)
+                case Drive() | Fly():
+                    self.field.carry_out(i, effect, self.now)
+                case _:
+                    self.network.send(i, effect, self.now)
 
-    def _carry_out(self, i: int, effect: Effect) -> None:
-        match effect:
-            case Send():
-                self.links.send(i, effect, self.now)
-            case Job():
-                began = wall.perf_counter()
-                effect.run()
-                key = i, *effect.key
-                self.clock.planning[key] = self.clock.planning.get(key, 0.0) + wall.perf_counter() - began
-                heapq.heappush(self._jobs, (self.now + JOB_TIME, i, effect))
-            case motion:
-                self.field.carry_out(i, motion, self.now)
-
-
-def _negotiates(event: Event) -> bool:
-    return isinstance(event, Message) and isinstance(decode(event.payload), Negotiate)
+    def _run(self, i: int, job: Job) -> None:
+        self.clock.run(i, job)
+        heapq.heappush(self._jobs, (self.now + JOB_TIME, next(self._job_numbers), i, job))

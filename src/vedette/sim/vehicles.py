@@ -55,6 +55,7 @@ class Vehicles:
         self._step, self._look, self._over = step, look, over
         self._alive = np.ones(n, np.bool_)
         self._flights = [Flight(rate) for rate in self._turn_rates.tolist()]
+        self._stood = np.zeros(n)  # time of that in which each was not alive [s]
         self._flown = np.zeros(n)  # time up to which each pose has been worked out [s]
         self._looks = np.zeros(n, np.int64)
 
@@ -66,7 +67,7 @@ class Vehicles:
     @property
     def travelled(self) -> NDArray[np.float64]:
         """``(n,)`` way flown so far [m]."""
-        return self._speeds * self._flown
+        return self._speeds * (self._flown - self._stood)
 
     def pose(self, i: int) -> tuple[float, float, float]:
         """Return x, y [m] and heading [rad, not wrapped] of a vehicle, team frame."""
@@ -105,6 +106,13 @@ class Vehicles:
     def kill(self, i: int) -> None:
         """Stop a vehicle where it is."""
         self._alive[i] = False
+
+    def revive(self, i: int, now: float) -> None:
+        """Let a vehicle circle on from where it is."""
+        self._alive[i] = True
+        self._stood[i] += now - self._flown[i]
+        self._flown[i] = now
+        self._flights[i] = Flight(float(self._turn_rates[i]))
 
     def over(self, now: float) -> Outcome | None:
         """Return what the mission's world says."""

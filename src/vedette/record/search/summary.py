@@ -15,7 +15,7 @@ from vedette.record.files import write_text
 from vedette.record.plain import json_text, plain
 from vedette.record.summary import Traffic
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 
 
 class SearchOutcome(StrEnum):
@@ -87,6 +87,8 @@ class SearchSummary:
     scheme: str
     fusion: str
     worth: str
+    radio: str | None
+    faults: str | None
     vehicles: int
     time_s: float
     found_s: float | None

@@ -15,7 +15,7 @@ from vedette.record.plain import json_text, plain
 from vedette.record.summary import Outcome, Traffic
 from vedette.record.track.log import TrackLog
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 
 
 @dataclass(frozen=True)
@@ -57,6 +57,8 @@ class TrackSummary:
     fusion: str
     objective: str
     continuous: bool
+    radio: str | None
+    faults: str | None
     vehicles: int
     targets: int
     time_s: float

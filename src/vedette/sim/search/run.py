@@ -129,6 +129,8 @@ class Observer:
             scheme=setup.scheme,
             fusion=setup.fusion,
             worth=simulation.case.scenario.worth,
+            radio=None if setup.radio is None else str(setup.radio),
+            faults=setup.faults_from,
             vehicles=len(names),
             time_s=simulation.now,
             found_s=found[1].time if right and found else None,
@@ -146,8 +148,8 @@ class Observer:
             rounds=rounds.rounds,
             sweeps=rounds.sweeps,
             bound_ratio=rounds.bound_ratio,
-            messages=traffic(names, simulation.links.messages_sent),
-            bytes=traffic(names, simulation.links.bytes_sent),
+            messages=traffic(names, simulation.network.messages_sent),
+            bytes=traffic(names, simulation.network.bytes_sent),
             comparison={},
         )
 

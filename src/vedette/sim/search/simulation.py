@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from math import ceil, floor
+from typing import cast
 
 import numpy as np
 
@@ -12,10 +14,10 @@ from vedette.errors import InputError
 from vedette.fusion.steps import ReplicatedSteps, Sparse, SparseIntegers, StepEvidence, StepSums
 from vedette.missions.search import Declared, Searching, SearchPlan, SharedBeliefSearching
 from vedette.record.summary import Outcome
-from vedette.sim.flights import FlightSetup, FlightSimulation, lead
+from vedette.sim.flights import FlightSetup, lead
 from vedette.sim.search.case import SearchCase
 from vedette.sim.search.hidden import Hidden, Searchers
-from vedette.sim.simulation import BOOT, random_streams
+from vedette.sim.simulation import Simulation, random_streams
 
 COORDINATIONS = ("none", "shared", "negotiated")
 FUSIONS = ("replicated", "sums")
@@ -30,7 +32,7 @@ class SearchSetup(FlightSetup):
     blind: bool = False  # nobody ever reports anything: the run that plans are made for
 
 
-class SearchSimulation(FlightSimulation):
+class SearchSimulation(Simulation):
     """A team of vehicles that look for a target; ``run`` lets it, until one declares it found."""
 
     setup: SearchSetup
@@ -43,19 +45,7 @@ class SearchSimulation(FlightSimulation):
         """
         self.case, self.names = case, case.names
         self.plan = self._plan(case, setup)
-        self.missions = [self._mission(i, setup) for i in range(len(self.names))]
         vehicles, step = case.scenario.vehicles, case.scenario.step
-        agents = [
-            Agent(
-                i,
-                BOOT,
-                vehicle,
-                FlightBehaviour(mission, vehicle.speed, vehicle.turn_rate),
-                setup.scheme,
-                Pace.each(case.scenario.replan * step),
-            )
-            for i, (vehicle, mission) in enumerate(zip(vehicles, self.missions, strict=True))
-        ]
         streams = random_streams(setup.seed, len(self.names))
         rng = np.random.default_rng([setup.seed, 3])
         self.hidden = Hidden(case.pdf, case.scenario.target.start, case.detectors, rng, streams[:-1])
@@ -68,7 +58,18 @@ class SearchSimulation(FlightSimulation):
             None if setup.blind else self.hidden,
             lambda now: None if self.declared is None else Outcome.COMPLETE,
         )
-        super().__init__(agents, self.vehicles, setup)
+        super().__init__(partial(self._searcher, setup), self.vehicles, setup)
+
+    @property
+    def missions(self) -> list[Searching]:
+        """Everybody's share of the mission, by index."""
+        return [cast(Searching, agent.mission) for agent in self.network.agents]
+
+    def _searcher(self, setup: SearchSetup, robot: int, boot: int) -> Agent:
+        vehicle, scenario = self.case.scenario.vehicles[robot], self.case.scenario
+        behaviour = FlightBehaviour(self._mission(robot, boot, setup), vehicle.speed, vehicle.turn_rate)
+        pace = Pace.each(scenario.replan * scenario.step)
+        return Agent(robot, boot, vehicle, behaviour, setup.scheme, pace)
 
     @property
     def steps(self) -> int:
@@ -96,12 +97,12 @@ class SearchSimulation(FlightSimulation):
         declare = scenario.declare
         return SearchPlan(case.pdf, scenario.weights, ahead, declare.probability, declare.radius)
 
-    def _mission(self, i: int, setup: SearchSetup) -> Searching:
+    def _mission(self, i: int, boot: int, setup: SearchSetup) -> Searching:
         kind = SharedBeliefSearching if setup.coordination == "shared" else Searching
-        return kind(self.case.platform(i), self.plan, self._fusion(i, setup.fusion))
+        return kind(self.case.platform(i), self.plan, self._fusion(i, boot, setup.fusion))
 
-    def _fusion(self, i: int, name: str) -> StepEvidence[Sparse]:
+    def _fusion(self, i: int, boot: int, name: str) -> StepEvidence[Sparse]:
         elements = SparseIntegers(self.case.pdf.frame.size)
         if name == "sums":
-            return StepSums(i, BOOT, elements, window=ceil(_WINDOW / self.case.scenario.step))
-        return ReplicatedSteps(i, BOOT, elements)
+            return StepSums(i, boot, elements, window=ceil(_WINDOW / self.case.scenario.step))
+        return ReplicatedSteps(i, boot, elements)

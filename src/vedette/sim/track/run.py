@@ -171,6 +171,8 @@ class Observer:
             fusion=setup.fusion,
             objective=setup.objective or simulation.scenario.objective,
             continuous=setup.continuous,
+            radio=None if setup.radio is None else str(setup.radio),
+            faults=setup.faults_from,
             vehicles=len(names),
             targets=len(self.log.scene.targets),
             time_s=simulation.now,
@@ -183,8 +185,8 @@ class Observer:
             sweeps=rounds.sweeps,
             bound_ratio=rounds.bound_ratio,
             skipped=sum(mission.skipped for mission in simulation.missions),
-            messages=traffic(names, simulation.links.messages_sent),
-            bytes=traffic(names, simulation.links.bytes_sent),
+            messages=traffic(names, simulation.network.messages_sent),
+            bytes=traffic(names, simulation.network.bytes_sent),
             comparison={},
         )
 

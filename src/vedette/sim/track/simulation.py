@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
+from typing import cast
 
 import numpy as np
 
@@ -15,8 +17,8 @@ from vedette.errors import InputError
 from vedette.fusion.gaussian import Information, Motion, track_fusion
 from vedette.missions.track import Bounds, Plan, SharedBeliefTracking, Tracking
 from vedette.record.summary import Outcome
-from vedette.sim.flights import FlightSetup, FlightSimulation, lead
-from vedette.sim.simulation import BOOT, random_streams
+from vedette.sim.flights import FlightSetup, lead
+from vedette.sim.simulation import Simulation, random_streams
 from vedette.sim.track.oracle import MOST_JOINT, DictatedTracking, Oracle, joint_choices
 from vedette.sim.track.scenario import TrackScenario
 from vedette.sim.track.targets import Targets
@@ -35,7 +37,7 @@ class TrackSetup(FlightSetup):
     continuous: bool = False
 
 
-class TrackSimulation(FlightSimulation):
+class TrackSimulation(Simulation):
     """A team of vehicles that follow targets; ``run`` lets it."""
 
     setup: TrackSetup
@@ -52,19 +54,6 @@ class TrackSimulation(FlightSimulation):
         if setup.coordination == "optimum":
             check_optimum(scenario, setup)
         self._oracle = Oracle()
-        self.missions = [self._mission(i, setup) for i in range(len(self.names))]
-        self._oracle.missions = self.missions
-        agents = [
-            Agent(
-                i,
-                BOOT,
-                vehicle,
-                FlightBehaviour(mission, vehicle.speed, vehicle.turn_rate),
-                setup.scheme,
-                Pace.each(scenario.step),
-            )
-            for i, (vehicle, mission) in enumerate(zip(scenario.vehicles, self.missions, strict=True))
-        ]
         rng = np.random.default_rng([setup.seed, 2])
         start = scenario.draw(rng)
         streams = random_streams(setup.seed, len(self.names))
@@ -77,12 +66,23 @@ class TrackSimulation(FlightSimulation):
             self.targets.look,
             self._over_at_the_end,
         )
-        super().__init__(agents, self.vehicles, setup)
+        super().__init__(partial(self._tracker, setup), self.vehicles, setup)
+        self._oracle.missions = self.missions
+
+    @property
+    def missions(self) -> list[Tracking]:
+        """Everybody's share of the mission, by index."""
+        return [cast(Tracking, agent.mission) for agent in self.network.agents]
+
+    def _tracker(self, setup: TrackSetup, robot: int, boot: int) -> Agent:
+        vehicle = self.scenario.vehicles[robot]
+        behaviour = FlightBehaviour(self._mission(robot, boot, setup), vehicle.speed, vehicle.turn_rate)
+        return Agent(robot, boot, vehicle, behaviour, setup.scheme, Pace.each(self.scenario.step))
 
     def _over_at_the_end(self, now: float) -> Outcome | None:
         return Outcome.COMPLETE if now >= self.scenario.duration - 1e-9 else None
 
-    def _mission(self, i: int, setup: TrackSetup) -> Tracking:
+    def _mission(self, i: int, boot: int, setup: TrackSetup) -> Tracking:
         scenario, prior = self.scenario, self.prior
         body = scenario.vehicles[i]
         vehicle = TrackingPlatform(
@@ -97,7 +97,7 @@ class TrackSimulation(FlightSimulation):
         fusion = track_fusion(
             setup.fusion,
             i,
-            BOOT,
+            boot,
             Information(prior.Y, prior.y),
             motion_of(prior),
             0,

@@ -1,0 +1,58 @@
+"""``vedette agent``: one robot's process."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import click
+
+from vedette.cli.options import Positive
+from vedette.net.config import load_config
+from vedette.net.start import agent_process
+
+WATCH_PERIOD = 1.0  # [s]
+
+
+@click.command()
+@click.argument("config_path", metavar="CONFIG.yaml", type=Path)
+@click.option(
+    "--speed",
+    type=Positive("times real time", most=50.0),
+    default=1.0,
+    show_default=True,
+    help="Of the simulated body and the mission, in seconds a second; the same for the whole team.",
+)
+@click.option("--starter", type=int, hidden=True, help="Stop when this process, the parent, ends.")
+def agent(config_path: Path, speed: float, starter: int | None) -> None:
+    """Run the robot that CONFIG.yaml describes, with the neighbours it names, until SIGTERM or Ctrl-C.
+
+    docs/how-to/network.md explains the file. Exit status: 0 stopped, 2 bad input.
+    """
+    config = load_config(config_path)
+    process = agent_process(config, config_path.resolve().parent, speed)
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda *_: process.stop())
+    if starter is not None:
+        threading.Thread(target=_outlive, args=(starter, process.stop), daemon=True).start()
+    if config.links.insecure:
+        click.echo("vedette: links are plain TCP: whoever reaches the port can read and write", err=True)
+    links = config.links
+    click.echo(
+        f"robot {config.robot} of team {config.team}: listens on {', '.join(links.listen) or 'nothing'}, "
+        f"connects to {', '.join(links.connect) or 'nobody'}; stop it with Ctrl-C"
+    )
+    with process.transport:
+        process.run()
+    click.echo(f"robot {config.robot}: stopped")
+
+
+def _outlive(starter: int, stop: Callable[[], None]) -> None:
+    """Wait for the process that started this one to end, however it does; then stop."""
+    while os.getppid() == starter:
+        time.sleep(WATCH_PERIOD)
+    stop()

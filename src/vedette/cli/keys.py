@@ -1,0 +1,46 @@
+"""``vedette keys``: make the certificates that admit robots to a team."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from pathlib import Path
+
+import click
+
+from vedette.errors import InputError
+from vedette.net.keys import CA_KEY, DAYS, add_robots, issue_team
+from vedette.net.names import OPERATOR
+
+
+@click.command()
+@click.argument("team")
+@click.argument("folder", metavar="DIR", type=Path)
+@click.option("--robots", type=int, metavar="N", help="Make DIR, with the keys of a new team of N robots.")
+@click.option("--add", type=int, metavar="K", help="Add keys for K more robots to the team in DIR.")
+@click.option("--days", type=int, default=DAYS, show_default=True, help="For how long they are valid.")
+def keys(team: str, folder: Path, robots: int | None, add: int | None, days: int) -> None:
+    """Make the keys of TEAM in DIR: an authority of its own, a certificate a robot, one for the operator.
+
+    TEAM is letters, digits, '-' and '_'. Nothing that exists is ever overwritten.
+    """
+    now = datetime.now(UTC)
+    if robots is not None and add is None:
+        made = issue_team(team, folder, robots, now, days)
+    elif add is not None and robots is None:
+        made = add_robots(team, folder, add, now, days)
+    else:
+        raise InputError(
+            "give either --robots N for a new team, or --add K for more robots of one that exists"
+        )
+    click.echo(_what_goes_where(folder, made))
+
+
+def _what_goes_where(folder: Path, made: list[Path]) -> str:
+    to_robots = [path.name for path in made if path.name != OPERATOR]
+    first, last = to_robots[0], to_robots[-1]
+    which = first if first == last else f"{first} to {last}"
+    lines = [f"{folder}/{which}: copy each whole folder to its robot, and nothing else"]
+    if len(to_robots) < len(made):
+        lines.append(f"{folder}/{OPERATOR}: for 'vedette status' on the operator's machine")
+    lines.append(f"{folder / CA_KEY}: keep it here, away from all robots: it admits any new one")
+    return "\n".join(lines)

@@ -1,0 +1,54 @@
+"""``vedette status``: how the agents of a team are."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from pathlib import Path
+
+import click
+from rich.console import Console
+
+from vedette.cli.options import Positive
+from vedette.errors import InputError
+from vedette.net.access import Access
+from vedette.net.config import ADMITTED, load_config
+from vedette.net.credentials import credentials
+from vedette.net.status import ask, status_json, status_table
+from vedette.net.transport import Operator
+
+
+@click.command()
+@click.argument("config_paths", metavar="CONFIG.yaml...", nargs=-1, required=True, type=Path)
+@click.option("--keys", type=Path, metavar="DIR", help="The operator's folder of `vedette keys`.")
+@click.option(
+    "--wait",
+    type=Positive("s", most=60.0),
+    default=2.0,
+    show_default=True,
+    help="For agents to be reached and to answer [s].",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print what they say as JSON.")
+def status(config_paths: tuple[Path, ...], keys: Path | None, wait: float, as_json: bool) -> None:
+    """List the agents that listen where the CONFIG.yaml files say: tree, links, agreement, refused messages.
+
+    Exit status: 0 all of them answered and hold the same map, 1 not so, 2 bad input.
+    """
+    configs = [load_config(path) for path in config_paths]
+    if len({config.team for config in configs}) > 1:
+        raise InputError("the files are of different teams; ask for one team at a time")
+    insecure = configs[0].links.insecure
+    if keys is None and not insecure:
+        raise InputError("--keys is missing: the team's links are secured; give the operator's folder")
+    operator = None if keys is None else credentials(keys, datetime.now(UTC))
+    connect = tuple(dict.fromkeys(endpoint for config in configs for endpoint in config.links.reached_at))
+    robots = max(ADMITTED, *(config.robot for config in configs))
+    access = Access(configs[0].team, (), connect, operator, insecure, robots)
+    with Operator(access) as session:
+        told = ask(session, [config.robot - 1 for config in configs], wait)
+    if as_json:
+        click.echo(status_json(told), nl=False)
+    else:
+        Console().print(status_table(told))
+    answered = [condition for condition in told.values() if condition is not None]
+    agreed = len({condition.digest for condition in answered}) <= 1
+    raise SystemExit(0 if agreed and len(answered) == len(told) else 1)

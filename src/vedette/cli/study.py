@@ -1,0 +1,72 @@
+"""``vedette study``: compare planners on many worlds."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import sys
+from datetime import datetime
+from pathlib import Path
+from typing import cast
+
+import click
+from rich.console import Console
+
+from vedette.cli.options import OneOf
+from vedette.study.combinations import runs_of
+from vedette.study.conduct import Conducted, conduct
+from vedette.study.outputs import write_outputs
+from vedette.study.provenance import provenance
+from vedette.study.spec import find_spec, load_spec
+from vedette.study.store import Store
+from vedette.study.workers import BACKENDS, Backend, Workers, require
+
+INCOMPLETE, INTERRUPTED = 1, 130
+
+
+@click.command()
+@click.argument("spec_name", metavar="SPEC")
+@click.option("--out", type=Path, metavar="DIR", help="Folder of the study.  [default: runs/study-SPEC]")
+@click.option(
+    "--jobs", type=click.IntRange(1, 1024), metavar="N", help="Processes.  [default: one for each core]"
+)
+@click.option(
+    "--backend", type=OneOf(BACKENDS), default="loky", show_default=True,
+    help="Where the runs are carried out: on this machine, or on a Dask cluster.",
+)  # fmt: skip
+def study(spec_name: str, out: Path | None, jobs: int | None, backend: str) -> None:
+    """Compare planners on many worlds: SPEC is a YAML file, or the name of a study that comes with Vedette:
+    ten-minutes, hundred-minutes.
+
+    A study that was stopped goes on when it is called again. Exit status: 0 all runs came to an end, 1 some
+    broke, 2 bad input, 130 interrupted.
+    """
+    path = find_spec(spec_name)
+    spec = load_spec(path)
+    runs = runs_of(spec, path)
+    chosen = cast(Backend, backend)
+    require(chosen)
+    command = shlex.join(["vedette", *sys.argv[1:]])
+    made = provenance(command, datetime.now().astimezone().isoformat(" ", "seconds"))
+    folder = Path("runs") / f"study-{path.stem}" if out is None else out
+    store = Store.open(folder, made.code)
+    console = Console()
+    conducted = conduct(runs, store, Workers(jobs or os.cpu_count() or 1, chosen), console)
+    if conducted.results:
+        write_outputs(conducted, path, spec.reference or spec.planners[0], folder, made)
+        click.echo(_closing(conducted, folder))
+    if conducted.missing:
+        raise SystemExit(INTERRUPTED)
+    raise SystemExit(INCOMPLETE if conducted.broken else 0)
+
+
+def _closing(conducted: Conducted, folder: Path) -> str:
+    """Say in a few lines what there is, and where."""
+    complete = sum(result.figures["completed"] is True for result in conducted.results.values())
+    count = len(conducted.results)
+    missing = f", {len(conducted.missing)} runs to go" if conducted.missing else ""
+    broke = f", {conducted.broken} broke" if conducted.broken else ""
+    return (
+        f"{count} runs, {complete} of them complete{broke}{missing}\n"
+        f"report: {folder / 'report.html'}; tables and pictures beside it"
+    )

@@ -1,0 +1,135 @@
+"""``vedette team``: a team of agent processes on this host."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from types import FrameType
+
+import click
+import numpy as np
+
+from vedette.cli.exploring import closing, exploring_options, team_of, world_of, write_outputs
+from vedette.cli.options import STATUS, Positive, ending_on_ctrl_c, output_options
+from vedette.net.launch import TeamPlan, TeamProcesses
+from vedette.net.names import robot_name
+from vedette.net.team import TeamWatch
+from vedette.net.transport import Operator
+from vedette.record.files import new_directory, output_directory
+from vedette.record.live import LiveView
+from vedette.record.mcap import McapWriter
+from vedette.sim.exploration import ExploreSetup, scheme_of
+from vedette.sim.observer import Setting, planning_frame
+from vedette.sim.starts import choose_starts
+
+SPEED = 3.0
+KEPT_UP = 0.8  # of the speed asked for; less is worth a remark
+_ENDINGS = (signal.SIGTERM, signal.SIGHUP)
+
+
+@click.group()
+def team() -> None:
+    """Start a team of agent processes on this host and watch it."""
+
+
+@team.command()
+@exploring_options
+@click.option(
+    "--speed",
+    type=Positive("times real time", most=50.0),
+    default=SPEED,
+    show_default=True,
+    help="Of the mission, in seconds a second; too much for this host makes robots think slowly.",
+)
+@click.option(
+    "--lease",
+    type=Positive("s", most=60.0),
+    default=3.0,
+    show_default=True,
+    help="A neighbour silent for so long is given up [s of real time].",
+)
+@output_options
+def explore(
+    map_path: Path | None,
+    resolution: float | None,
+    robots: int | None,
+    team: Path | None,
+    starts: str | None,
+    seed: int,
+    planner: str,
+    scheme: str,
+    fusion: str,
+    max_time: float,
+    return_home: bool,
+    speed: float,
+    lease: float,
+    out: Path | None,
+    force: bool,
+    as_json: bool,
+    animate: bool,
+) -> None:
+    """Let a team of agent processes explore MAP: one process a robot, linked by mutual TLS here.
+
+    Keys are made for the occasion. MAP and the outputs are as for `vedette explore`. Every robot simulates
+    its own body. Exit status: 0 complete, 1 incomplete, 2 bad input, 130 interrupted.
+    """
+    world = world_of(map_path, resolution, seed)
+    specs = team_of(team, robots, starts)
+    places = choose_starts(world, specs, np.random.default_rng([seed, 1]))
+    how = ExploreSetup(planner=planner, scheme=scheme, fusion=fusion, return_home=return_home)
+    plan = TeamPlan(world, specs, places, how, seed, speed, lease)
+    folder = new_directory("runs", world.name) if out is None else output_directory(out, force)
+    planning = planning_frame(world)
+    with ExitStack() as stack:
+        stack.enter_context(_ending_on_any_signal())
+        secrets = stack.enter_context(TemporaryDirectory(prefix="vedette-team-"))
+        processes = stack.enter_context(TeamProcesses(plan, Path(secrets), folder / "agents"))
+        operator = stack.enter_context(Operator(processes.operator))
+        live = stack.enter_context(LiveView(world.name, world.frame, planning, quiet=as_json))
+        names = [spec.name for spec in specs]
+        mcap = stack.enter_context(McapWriter(folder / "run.mcap", world.name, world.frame, planning, names))
+        setting = Setting(seed, planner, scheme_of(how), fusion)
+        watch = TeamWatch(plan, processes, operator, setting, max_time, (live, mcap))
+        stack.enter_context(ending_on_ctrl_c(watch.stop))
+        report = watch.run()
+    write_outputs(report, world, folder, animate)
+    for line in _remarks(watch, report.timing.real_time_factor, speed):
+        click.echo(f"vedette: {line}", err=True)
+    click.echo(report.summary.to_json() if as_json else closing(report.summary, folder), nl=not as_json)
+    raise SystemExit(STATUS.get(report.summary.outcome, 1))
+
+
+def _remarks(watch: TeamWatch, pace: float, speed: float) -> Iterator[str]:
+    """Say what else whoever started the team should know."""
+    for robot, said in watch.failures.items():
+        yield f"{robot_name(robot)} failed: {said}; see {watch.team.log_of(robot)}"
+    if 0 < pace < KEPT_UP * speed:
+        yield f"this host kept up {pace:.1f} times real time; robots think better at a --speed below"
+
+
+@contextmanager
+def _ending_on_any_signal() -> Iterator[None]:
+    """Let what ends a process do what Ctrl-C does, so that no agent is left behind."""
+
+    def end(number: int, frame: FrameType | None) -> None:
+        on_ctrl_c = signal.getsignal(signal.SIGINT)
+        if not callable(on_ctrl_c):  # ignored: the shell has put us in the background
+            raise KeyboardInterrupt
+        on_ctrl_c(number, frame)
+
+    if threading.current_thread() is not threading.main_thread():  # only the main one may handle signals
+        yield
+        return
+    before = {number: signal.getsignal(number) for number in _ENDINGS}
+    for number, handler in before.items():
+        if handler is not signal.SIG_IGN:  # as nohup has it
+            signal.signal(number, end)
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -1,0 +1,63 @@
+"""Wall-clock figures, apart from all that is simulated: what planning costs."""
+
+from __future__ import annotations
+
+import time as wall
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TypeVar
+
+from vedette.agent.effects import Job
+from vedette.agent.rounds import Rounds
+from vedette.record.summary import Spread
+
+T = TypeVar("T")
+
+
+@dataclass
+class Clock:
+    """Wall time of a run, and what its robots spend on planning; on an idle core also its CPU time."""
+
+    started: float = 0.0
+    planning: dict[tuple[int, int, int], float] = field(default_factory=dict)  # robot, epoch, round: [s]
+    answers: list[float] = field(default_factory=list)  # a negotiation message, each [s]
+
+    def start(self) -> None:
+        """Begin counting."""
+        self.started = wall.perf_counter()
+
+    def elapsed(self) -> float:
+        """Return the wall time since the start [s]."""
+        return wall.perf_counter() - self.started
+
+    def measured(self, robot: int, rounds: Rounds, act: Callable[[], T]) -> T:
+        """Let a robot's agent do something, and count it if it is part of a round."""
+        decisions, answers = rounds.decisions, rounds.answers
+        began = wall.perf_counter()
+        result = act()
+        took = wall.perf_counter() - began
+        if rounds.busy or rounds.decisions != decisions:
+            self._plans(robot, rounds.stamp, took)
+            if rounds.decisions == decisions and rounds.answers != answers:
+                self.answers.append(took)
+        return result
+
+    def run(self, robot: int, job: Job) -> None:
+        """Run a robot's job."""
+        began = wall.perf_counter()
+        job.run()
+        self._plans(robot, job.key, wall.perf_counter() - began)
+
+    @property
+    def planning_ms(self) -> Spread | None:
+        """What one robot spends on one replan, all sweeps."""
+        return Spread.of([1e3 * took for took in self.planning.values()])
+
+    @property
+    def answer_ms(self) -> Spread | None:
+        """What it takes to answer the token, a visit."""
+        return Spread.of([1e3 * took for took in self.answers])
+
+    def _plans(self, robot: int, stamp: tuple[int, int], took: float) -> None:
+        key = robot, *stamp
+        self.planning[key] = self.planning.get(key, 0.0) + took

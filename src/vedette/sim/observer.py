@@ -1,0 +1,212 @@
+"""What is seen of an exploring team from outside: its robots from time to time, measured against the truth.
+
+Where the views come from makes no difference: from robots simulated in this process, or from what robots on a
+network report.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.domains.mapping.belief import LN2, planning_factor
+from vedette.domains.mapping.impact import Impact, final_miss
+from vedette.maps import UNKNOWN, GridFrame
+from vedette.record.links import Link, parts
+from vedette.record.log import RobotSample, RunLog, Sink, Snapshot
+from vedette.record.summary import Outcome, Summary, Traffic
+from vedette.sim.figures import Negotiated, RoundFigures
+from vedette.sim.score import Progress, Reference, coverage, map_errors, overlap
+from vedette.sim.world import World
+from vedette.team import PlatformSpec
+
+LARGE = 1_000_000  # cells from which a map is looked at less often
+LOOK_PERIOD, LOOK_PERIOD_IF_LARGE = 0.5, 2.0  # [s]
+
+
+@dataclass(frozen=True)
+class RobotFigures:
+    """What one robot has counted up to now."""
+
+    travelled_m: float = 0.0
+    collisions: int = 0  # steps in which a contact stopped it
+    min_clearance_m: float = np.inf  # from its edge to a wall or to another robot, so far
+    rounds: RoundFigures = field(default_factory=RoundFigures)
+    messages: Traffic = field(default_factory=Traffic)  # sent
+    bytes: Traffic = field(default_factory=Traffic)
+
+
+@dataclass(frozen=True, eq=False)
+class RobotView:
+    """All that can be told of one robot from outside; nothing in it changes after it is made."""
+
+    sample: RobotSample  # where it is, what it does, where it goes
+    classes: NDArray[np.uint8]  # (R, C) the map as it holds it, its own cells included: see ``held_map``
+    seen: NDArray[np.bool_]  # (R, C) what its own sensor has observed
+    impact: Impact | None  # of its last decision, over planning cells; None: it has not decided yet
+    figures: RobotFigures
+
+
+@dataclass(frozen=True)
+class Setting:
+    """How a mission was set up, as ``summary.json`` tells it."""
+
+    seed: int
+    planner: str
+    scheme: str
+    fusion: str
+    radio: str | None = None  # RANGE[,WALL_DB]; None: everybody hears everybody
+    faults: str | None = None  # a file's name, or the seed of a schedule
+
+
+def planning_frame(world: World) -> GridFrame:
+    """Return the frame of the planning cells over a world."""
+    return world.frame.coarse(planning_factor(world.frame.resolution))
+
+
+def held_map(fused: NDArray[np.uint8], own: NDArray[np.int8]) -> NDArray[np.uint8]:
+    """Return a robot's fused ``(R, C)`` classes, and where they are unknown the class of its own log-odds.
+
+    The log-odds differ from the map until the robot publishes them.
+    """
+    held: NDArray[np.uint8] = (own != 0).astype(np.uint8)  # UNKNOWN, FREE, OCCUPIED are 0, 1, 2
+    held += own > 0
+    held *= fused == UNKNOWN
+    held += fused
+    return held
+
+
+def union_map(views: Sequence[RobotView]) -> NDArray[np.uint8]:
+    """Return ``(R, C)``: what the living robots hold together, told or not; if none lives, what all held.
+
+    Where they differ, occupied wins over free, and free over unknown.
+    """
+    living = [view for view in views if view.sample.alive] or views
+    union = living[0].classes.copy()
+    for view in living[1:]:
+        np.maximum(union, view.classes, out=union)  # UNKNOWN < FREE < OCCUPIED
+    return union
+
+
+class Observer:
+    """Measures a mission from views of its robots: it knows the truth, the agents do not."""
+
+    def __init__(
+        self,
+        world: World,
+        specs: Sequence[PlatformSpec],
+        starts: NDArray[np.float64],
+        setting: Setting,
+        sinks: Sequence[Sink] = (),
+    ) -> None:
+        """Prepare to observe a team that starts at ``starts``, (n, 3) x, y, heading [m, m, rad].
+
+        The ``sinks`` follow the mission while it goes on.
+        """
+        self._world, self._setting = world, setting
+        self._reference = Reference(world, specs, starts)
+        self._progress = Progress()
+        self.period = LOOK_PERIOD if world.frame.size <= LARGE else LOOK_PERIOD_IF_LARGE  # of looking [s]
+        self.log = RunLog(world.name, world.frame, planning_frame(world), specs, sinks)
+        self.apart_s = 0.0  # time during which the living robots were not all on one tree
+        self._apart = False  # since the last look
+        self._views: tuple[RobotView, ...] = ()  # of the last look
+        self._looks = 0
+        self._logged = -1.0  # time of the last snapshot [s]
+
+    def look(self, now: float, views: Sequence[RobotView], links: Sequence[Link] | None) -> None:
+        """Measure the mission at a time [s], not before the last look's, and log every second look.
+
+        ``views`` of all robots in the order of the team; ``links`` None: the network is ideal.
+        """
+        self._measure(now, views, links, log=self._looks % 2 == 0)
+        self._looks += 1
+
+    def finish(self, now: float, views: Sequence[RobotView], links: Sequence[Link] | None) -> None:
+        """Measure and log how the mission ended; as ``look``."""
+        self._measure(now, views, links, log=True)
+
+    def _measure(
+        self, now: float, views: Sequence[RobotView], links: Sequence[Link] | None, log: bool
+    ) -> None:
+        classes = union_map(views)
+        share = coverage(self._reference, classes)
+        if self._apart:
+            self.apart_s += now - self._progress.times[-1]
+        self._progress.add(now, share)
+        self._views = tuple(views)
+        self._apart = len(parts([view.sample.alive for view in views], links)) > 1
+        if log and now > self._logged:
+            self.log.add(self._snapshot(now, classes, share, links))
+            self._logged = now
+
+    def _snapshot(
+        self, now: float, classes: NDArray[np.uint8], share: float, links: Sequence[Link] | None
+    ) -> Snapshot:
+        unknown = int(np.count_nonzero(classes == UNKNOWN))
+        return Snapshot(
+            t=now,
+            robots=tuple(view.sample for view in self._views),
+            coverage=share,
+            known_fraction=1.0 - unknown / classes.size,
+            entropy=unknown * LN2,
+            classes=classes,
+            impact=self._team_impact(),
+            links=None if links is None else tuple(links),
+        )
+
+    def _team_impact(self) -> NDArray[np.float32]:
+        """Probability that the strategies decided on last will observe each planning cell."""
+        frame = self.log.planning
+        miss = np.ones(frame.size, np.float32)
+        for view in self._views:
+            if view.sample.alive and view.impact is not None and len(view.impact.keys):
+                miss *= final_miss(view.impact, frame.size)
+        return (1.0 - miss).reshape(frame.shape)
+
+    def delivered_map(self) -> NDArray[np.uint8]:
+        """Return the map of the living robot that knows most; if none lives, what all held."""
+        living = [view.classes for view in self._views if view.sample.alive]
+        return max(living, key=np.count_nonzero).copy() if living else union_map(self._views)
+
+    def summary(self, outcome: Outcome) -> Summary:
+        """Return the figures of the mission, in simulated time; not before the first look."""
+        progress, setting = self._progress, self._setting
+        time = progress.times[-1]
+        team = {view.sample.name: view.figures for view in self._views}
+        rounds = Negotiated.by([each.rounds for each in team.values()])
+        wrong, known = map_errors(self._world, self.delivered_map())
+        return Summary(
+            completed=outcome is Outcome.COMPLETE,
+            outcome=outcome,
+            seed=setting.seed,
+            robots=len(team),
+            planner=setting.planner,
+            scheme=setting.scheme,
+            fusion=setting.fusion,
+            world=self._world.name,
+            radio=setting.radio,
+            faults=setting.faults,
+            time_s=time,
+            t50_s=progress.t_at(0.50),
+            t90_s=progress.t_at(0.90),
+            t95_s=progress.t_at(0.95),
+            t99_s=progress.t_at(0.99),
+            auc_s=progress.auc(time),
+            coverage=progress.coverages[-1],
+            map_errors=wrong,
+            map_error_share=wrong / known if known else 0.0,
+            path_m={name: each.travelled_m for name, each in team.items()},
+            overlap=overlap([view.seen for view in self._views]),
+            collisions=sum(each.collisions for each in team.values()),
+            min_clearance_m=min(each.min_clearance_m for each in team.values()),
+            rounds=rounds.rounds,
+            sweeps=rounds.sweeps,
+            bound_ratio=rounds.bound_ratio,
+            apart_s=self.apart_s,
+            messages={name: each.messages for name, each in team.items()},
+            bytes={name: each.bytes for name, each in team.items()},
+        )
