@@ -6,6 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from vedette.domains.mapping import layers
+from vedette.domains.mapping.baselines.cost_utility import CostUtilityPlatform
+from vedette.domains.mapping.baselines.greedy import GreedyPlatform
+from vedette.domains.mapping.baselines.hungarian import HungarianPlatform
+from vedette.domains.mapping.baselines.makespan import MakespanPlatform
+from vedette.domains.mapping.baselines.optimal import MOST_ROBOTS, OptimalPlatform
+from vedette.domains.mapping.baselines.team import check_size
 from vedette.domains.mapping.layers import TimeLayers
 from vedette.domains.mapping.platform import MappingPlatform
 from vedette.domains.mapping.yardsticks import BurgardPlatform, NearestPlatform
@@ -25,6 +31,8 @@ class Planner:
     hidden: float  # area expected behind a frontier [m^2]
     return_price: float  # more for a frontier far from others [m^2 a metre]
     platform: Callable[[PlatformSpec], MappingPlatform]
+    scheme: str | None = None  # the negotiation that is part of the planner; None: any
+    most_robots: int | None = None  # None: any number
 
 
 PLANNERS = {
@@ -49,21 +57,69 @@ PLANNERS = {
         0.0,
         lambda spec: MappingPlatform(spec, max_stops=1, measured="distance"),
     ),
+    "jacobi": Planner(
+        "as rate, all replying at once (the paper, Table 1)",
+        layers.rate(),
+        0.0,
+        0.0,
+        lambda spec: MappingPlatform(spec, max_stops=1, measured="distance"),
+        scheme="jacobi",
+    ),
+    "greedy": Planner(
+        "as tours, each replying once to those before it (sequential greedy)",
+        layers.rate(start=5.0),
+        HIDDEN_AREA,
+        RETURN_PRICE,
+        lambda spec: GreedyPlatform(spec, max_stops=6, measured="unknown"),
+        scheme="token",
+    ),
+    "optimal": Planner(
+        f"as rate, the joint optimum by search; at most {MOST_ROBOTS} robots",
+        layers.rate(),
+        0.0,
+        0.0,
+        lambda spec: OptimalPlatform(spec, max_stops=1, measured="distance"),
+        most_robots=MOST_ROBOTS,
+    ),
     "nearest": Planner(
         "nearest frontier, uncoordinated (Yamauchi)", layers.plain(), 0.0, 0.0, NearestPlatform
+    ),
+    "cost-utility": Planner(
+        "area against path length, uncoordinated (Gonzalez-Banos & Latombe)",
+        layers.plain(),
+        0.0,
+        0.0,
+        CostUtilityPlatform,
     ),
     "burgard": Planner(
         "coordinated assignment of frontiers (Burgard et al.)", layers.plain(), 0.0, 0.0, BurgardPlatform
     ),
+    "hungarian": Planner(
+        "assignment of frontiers with the least total path (Kuhn; Wurm et al.)",
+        layers.plain(),
+        0.0,
+        0.0,
+        HungarianPlatform,
+    ),
+    "makespan": Planner(
+        "routes through all frontiers, the longest as short as can be (min-max salesmen)",
+        layers.plain(),
+        0.0,
+        0.0,
+        MakespanPlatform,
+    ),
 }
 
 
-def planner(name: str) -> Planner:
-    """Return the planner of this name.
+def planner(name: str, robots: int = 1) -> Planner:
+    """Return the planner of this name, for a team of so many.
 
     Raises:
-        InputError: there is none.
+        InputError: there is none, or it cannot plan for so many.
     """
     if name not in PLANNERS:
         raise InputError(f"unknown planner {name!r}: {nearest_name(name, PLANNERS)}")
-    return PLANNERS[name]
+    found = PLANNERS[name]
+    if found.most_robots is not None:
+        check_size(name, robots, found.most_robots)
+    return found
