@@ -1,0 +1,5 @@
+"""``python -m vedette``: the command."""
+
+from vedette.cli import main
+
+main()

@@ -1,0 +1,144 @@
+"""What one robot's agent process is told: its team, its links, its mission, its body."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from datetime import datetime
+from pathlib import Path
+from typing import Annotated
+
+from msgspec import Meta, Struct
+
+from vedette.domains.mapping.planners import PLANNERS, planner
+from vedette.errors import InputError, nearest_name
+from vedette.negotiation import SCHEMES
+from vedette.net.access import Access
+from vedette.net.credentials import credentials
+from vedette.net.names import MOST_ROBOTS
+from vedette.scenario import load_scenario
+from vedette.sim.exploration import FUSIONS
+from vedette.team import PlatformSpec
+
+ADMITTED = 64  # robots numbered higher are let in only by a robot that knows of so many
+
+Robot = Annotated[int, Meta(ge=1, le=MOST_ROBOTS)]
+
+
+class Links(Struct, forbid_unknown_fields=True, frozen=True):
+    """How the robot is reached, and whom it reaches."""
+
+    listen: tuple[str, ...] = ()  # endpoints of this robot
+    connect: tuple[str, ...] = ()  # endpoints of others; whichever end connects, the link goes both ways
+    keys: str | None = None  # folder with ca.pem, cert.pem and key.pem, beside this file
+    insecure: bool = False  # plain TCP, open to everybody
+    scouting: bool = False  # find others by multicast as well
+    lease: Annotated[float, Meta(ge=0.2, le=60.0)] = 3.0  # after which a silent neighbour is given up [s]
+    address: str | None = None  # where others reach ``listen``, if that says 0.0.0.0
+
+    @property
+    def reached_at(self) -> tuple[str, ...]:
+        """Endpoints as others have to write them."""
+        if self.address is None:
+            return self.listen
+        return tuple(
+            re.sub(r"/(?:0\.0\.0\.0|\[::\]):", f"/{self.address}:", endpoint) for endpoint in self.listen
+        )
+
+
+class Exploring(Struct, forbid_unknown_fields=True, frozen=True):
+    """How the robot explores; the same for the whole team."""
+
+    planner: str = "tours"
+    scheme: str = "token"
+    fusion: str = "replicated"
+    return_home: bool = False
+
+
+class Body(Struct, forbid_unknown_fields=True, frozen=True):
+    """The robot itself; in this version a simulated one."""
+
+    map: str  # the world: a map_server .yaml beside this file, or an image
+    start: tuple[float, float, float]  # x, y, heading [m, m, deg], team frame
+    resolution: float | None = None  # of an image [m]
+    seed: Annotated[int, Meta(ge=0)] = 0  # of the lidar's noise
+    speed: float = 0.5  # [m/s]
+    turn_rate: float = 1.5  # [rad/s]
+    radius: float = 0.2  # [m]
+    range: float = 8.0  # of the lidar [m]
+    view: float = 360.0  # [deg]
+    beams: int = 360
+    rate: float = 5.0  # scans a second [Hz]
+    range_noise: float = 0.01  # [m]
+
+    def spec(self, name: str) -> PlatformSpec:
+        """Return the platform.
+
+        Raises:
+            InputError: a field is out of its range.
+        """
+        return PlatformSpec(
+            name,
+            self.speed,
+            self.turn_rate,
+            self.radius,
+            self.range,
+            self.view,
+            self.beams,
+            self.rate,
+            self.range_noise,
+            self.start,
+        )
+
+
+class AgentConfig(Struct, forbid_unknown_fields=True, frozen=True):
+    """One robot's file for ``vedette agent``."""
+
+    team: str
+    robot: Robot
+    body: Body
+    robots: Robot = 1  # it waits for so many, itself included, before it begins; for a while
+    links: Links = Links()
+    explore: Exploring = Exploring()
+
+
+def load_config(path: Path | str) -> AgentConfig:
+    """Read and check a robot's file.
+
+    Raises:
+        InputError: as :func:`vedette.scenario.load_scenario`, or a name or number that cannot be.
+    """
+    config = load_scenario(path, AgentConfig)
+    try:
+        _check_word("planner", config.explore.planner, list(PLANNERS))
+        _check_word("scheme", config.explore.scheme, SCHEMES)
+        _check_word("fusion", config.explore.fusion, list(FUSIONS))
+        planner(config.explore.planner, config.robots)
+        config.body.spec(f"robot-{config.robot}")
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
+    return config
+
+
+def access_of(config: AgentConfig, folder: Path, now: datetime) -> Access:
+    """Return how a robot takes part in its team; paths are relative to ``folder``.
+
+    Raises:
+        InputError: keys that do not admit this robot now, or links that cannot be.
+    """
+    links = config.links
+    return Access(
+        team=config.team,
+        listen=links.listen,
+        connect=links.connect,
+        credentials=None if links.keys is None else credentials(folder / links.keys, now),
+        insecure=links.insecure,
+        robots=max(ADMITTED, config.robots, config.robot),
+        lease=links.lease,
+        scouting=links.scouting,
+    )
+
+
+def _check_word(what: str, word: str, words: Sequence[str]) -> None:
+    if word not in words:
+        raise InputError(f"explore.{what}: unknown {what} {word!r}; {nearest_name(word, words)}")

@@ -1,0 +1,183 @@
+"""One robot as a process: its agent, over Zenoh, in a body."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from functools import partial
+
+from vedette.agent import Datagram, NetworkedAgent
+from vedette.agent.effects import Drive, Fly, Job
+from vedette.agent.events import JobDone
+from vedette.agent.networked import Output
+from vedette.net import body as bodies
+from vedette.net.inbox import Datagram as Received
+from vedette.net.inbox import Inbox, PeerGone, PeerSeen
+from vedette.net.names import Topic
+from vedette.net.transport import Published, Transport
+from vedette.net.witness import Witness
+from vedette.sim.own_body import OwnBody
+from vedette.sim.simulation import TICK
+
+UNSEEN = 2.0  # a body not told of for so long is taken away [s]
+REPORT_PERIOD = 0.5  # of mission time, but not more often than LEAST_REPORTS apart [s]
+LEAST_REPORTS = 0.1  # [s]
+MOST_HEARING = 0.05  # at a stretch, before the body moves on [s]
+LATE = 5  # ticks that are made up for at most; a process that falls behind more runs slower
+
+
+@dataclass(frozen=True)
+class _Done:
+    """A job has run."""
+
+    job: Job
+    error: BaseException | None
+
+
+@dataclass
+class MissionClock:
+    """Mission time: ticks of the body, and what has passed of the present one."""
+
+    speed: float  # seconds of the mission in a second
+    ticks: int = 0
+    ticked: float = 0.0  # when the last one was, by the process's clock [s]
+
+    def shows(self, now: float) -> float:
+        """Return the mission's time [s]; it stands still rather than overtake the body."""
+        return self.ticks * TICK + min(max(now - self.ticked, 0.0) * self.speed, TICK)
+
+    @property
+    def next(self) -> float:
+        """When the next tick is due [s]."""
+        return self.ticked + TICK / self.speed
+
+    def tick(self, now: float) -> None:
+        """Go on by a tick; one that comes much too late moves all later ones."""
+        self.ticks += 1
+        self.ticked = max(self.next, now - LATE * TICK / self.speed)
+
+
+@dataclass
+class AgentProcess:
+    """Runs a robot until it is told to stop; only this touches the clock, the network and threads.
+
+    The agent, its overlay and its links run in one thread. Heavy computing runs in another, while the agent
+    waits and the overlay goes on.
+    """
+
+    node: NetworkedAgent
+    body: OwnBody
+    transport: Transport
+    inbox: Inbox
+    witness: Witness
+    mission: MissionClock
+    clock: Callable[[], float] = time.monotonic
+    stopped: bool = False
+    _seen: dict[int, float] = field(default_factory=dict)  # when each other body was last told of [s]
+    _reported: float = -1e9  # [s]
+    _reported_at: float = -1e9  # mission time [s]
+
+    def stop(self) -> None:
+        """End ``run`` soon; may be called from a signal handler."""
+        self.stopped = True
+
+    def run(self) -> None:
+        """Run until stopped; then say goodbye."""
+        self.transport.subscribe(Topic.BODY, self.inbox.put)
+        self.transport.answer_status(lambda: self.witness.status)
+        self.mission.ticked = self.clock()
+        with ThreadPoolExecutor(1, thread_name_prefix="planning") as self._worker:
+            while not self.stopped:
+                self._turn()
+        for goodbye in self.node.leave(self.clock()):
+            self.transport.send(goodbye.to, goodbye.payload)
+        self._report(self.clock(), state="left")
+
+    def _turn(self) -> None:
+        """Wait until something happens or is due, and see to it.
+
+        What has been said is heard before the body moves on: where the host is too slow, the mission's time
+        slows down, and messages do not grow old.
+        """
+        due = min(self.node.wake, self.mission.next)
+        event = self.inbox.get(timeout=due - self.clock())
+        until = self.clock() + MOST_HEARING
+        while event is not None:
+            self._take(event)
+            event = self.inbox.get(timeout=0.0) if self.clock() < until else None
+        now = self.clock()
+        if now >= self.mission.next:
+            self._tick(now)
+        elif now >= self.node.wake:
+            self._do(partial(self.node.step, (), now))
+
+    def _take(self, event: object) -> None:
+        now = self.clock()
+        match event:
+            case Received(robot, payload):
+                self._do(partial(self.node.hear, robot, payload, now))
+            case PeerSeen():
+                self._do(partial(self.node.peers, self.transport.peers, now))
+            case PeerGone(robot):
+                self._do(partial(self.node.lost, robot, now))
+                self._do(partial(self.node.peers, self.transport.peers, now))
+            case Published(robot=robot, payload=payload):
+                self._see(robot, payload, now)
+            case _Done(job, error):
+                if error is not None:
+                    raise error
+                self.node.hold = False
+                self._do(partial(self.node.step, [JobDone(job.key)], now))
+
+    def _tick(self, now: float) -> None:
+        """Move the body, and let the agent know what it senses."""
+        self.mission.tick(now)
+        at = self.mission.ticks * TICK
+        self.body.advance(at, TICK)
+        self.transport.publish(Topic.BODY, bodies.encode(self.body.shown))
+        for robot in [k for k, when in self._seen.items() if now > when + UNSEEN]:
+            del self._seen[robot]
+            self.body.see(robot, None)
+        self._do(partial(self.node.step, self.body.sense(at), now))
+        if at >= self._reported_at + REPORT_PERIOD and now >= self._reported + LEAST_REPORTS:
+            self._report(now)
+
+    def _see(self, robot: int, payload: bytes, now: float) -> None:
+        try:
+            self.body.see(robot, bodies.decode(payload))
+        except ValueError:
+            self.witness.malformed += 1
+            return
+        self._seen[robot] = now
+
+    def _report(self, now: float, state: str | None = None) -> None:
+        """Tell the operator, if any, how it goes; not while the agent is at work in another thread."""
+        if self.node.hold:
+            return
+        at = self.mission.shows(now)
+        self._reported, self._reported_at = now, at
+        self.transport.publish(Topic.REPORT, self.witness.report(now, at, state))
+
+    def _do(self, act: Callable[[], Iterable[Output]]) -> None:
+        """Let the robot do something, and carry out what it wants done."""
+        agent = self.node.agent
+        for output in self.witness.clock.measured(agent.robot, agent.rounds, act):
+            match output:
+                case Datagram(to, payload):
+                    self.transport.send(to, payload)
+                case Job():
+                    self.node.hold = True
+                    self._worker.submit(self._run, output)
+                case Drive() | Fly():
+                    self.body.carry_out(output, self.mission.shows(self.clock()))
+        self.witness.note(self.clock())
+
+    def _run(self, job: Job) -> None:
+        error: BaseException | None = None
+        try:
+            self.witness.clock.run(self.node.agent.robot, job)
+        except BaseException as raised:  # raised again where somebody sees it
+            error = raised
+        self.inbox.put(_Done(job, error))

@@ -1,0 +1,107 @@
+"""How a team's agents are, asked of each and shown in a table."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Mapping, Sequence
+
+import msgspec
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from vedette.net.names import robot_name
+from vedette.net.report import Condition, LinkReport, read_condition
+from vedette.net.transport import Operator
+from vedette.record.plain import json_text
+
+ANSWER = 0.5  # for which an agent may think about its answer [s]
+
+
+def ask(operator: Operator, robots: Sequence[int], wait: float) -> dict[int, Condition | None]:
+    """Return what each robot says of itself; None for one that does not within ``wait`` [s], or nonsense."""
+    told: dict[int, Condition | None] = dict.fromkeys(robots)
+    end = time.monotonic() + wait
+    while None in told.values() and time.monotonic() < end:
+        if not operator.peers >= {robot for robot, said in told.items() if said is None}:
+            time.sleep(0.05)
+            if time.monotonic() < end - ANSWER:
+                continue
+        for robot, payload in operator.statuses(min(ANSWER, max(end - time.monotonic(), 0.1))).items():
+            told[robot] = _read(robot, payload)
+    return dict(sorted(told.items()))
+
+
+def status_json(told: Mapping[int, Condition | None]) -> str:
+    """Return everything that was told, by robot's name."""
+    return json_text(
+        {
+            robot_name(robot): None if said is None else msgspec.structs.asdict(said)
+            for robot, said in told.items()
+        }
+    )
+
+
+def status_table(told: Mapping[int, Condition | None]) -> RenderableType:
+    """Return the agents, their tree and its links, for a terminal."""
+    answered = [said for said in told.values() if said is not None]
+    majority = Counter(said.digest for said in answered).most_common(1)
+    digest = majority[0][0] if majority else 0
+    agents = Table(title="agents", title_justify="left")
+    for column in ("robot", "state", "known", "map", "tree", "parent", "rounds", "dropped"):
+        agents.add_column(column)
+    for robot, said in told.items():
+        agents.add_row(robot_name(robot), *(["no answer"] if said is None else _row(said, digest)))
+    links = Table(title="links", title_justify="left")
+    for column in ("from", "to", "role", "loss", "round trip", "clock", "last heard"):
+        links.add_column(column)
+    for said in answered:
+        for link in said.links:
+            links.add_row(robot_name(said.robot), robot_name(link.robot), *_link(link))
+    return Group(agents, Text(""), links, Text(_verdict(told)))
+
+
+def _row(said: Condition, digest: int) -> list[str]:
+    dropped = ", ".join(f"{where} {count}" for where, count in said.dropped.items() if count)
+    parent = "root" if said.parent is None else robot_name(said.parent)
+    return [
+        said.state if said.refusal is None else f"refused: {said.refusal}",
+        f"{100 * said.known:.1f} %",
+        "same" if said.digest == digest else "differs",
+        f"{robot_name(said.root)}, {said.size} robots, {said.age:.0f} s old",
+        parent,
+        str(said.rounds) if said.decided is None else f"{said.rounds}, {said.decided:.0f} s ago",
+        dropped or "none",
+    ]
+
+
+def _link(link: LinkReport) -> list[str]:
+    return [
+        link.role,
+        f"{100 * link.loss:.0f} %",
+        "-" if link.round_trip is None else f"{1e3 * link.round_trip:.1f} ms",
+        "-" if link.offset is None else f"{link.offset:+.3f} s",
+        "never" if link.silent is None else f"{link.silent:.1f} s ago",
+    ]
+
+
+def _verdict(told: Mapping[int, Condition | None]) -> str:
+    answered = [said for said in told.values() if said is not None]
+    trees = len({said.number for said in answered})
+    maps = len({said.digest for said in answered})
+    together = "on one tree" if trees == 1 else f"on {trees} trees"
+    agree = "hold the same map" if maps == 1 else f"hold {maps} different maps"
+    return (
+        f"{len(answered)} of {len(told)} answered; they are {together} and {agree}"
+        if answered
+        else "none answered"
+    )
+
+
+def _read(robot: int, payload: bytes) -> Condition | None:
+    try:
+        condition = read_condition(payload)
+    except ValueError:
+        return None
+    return condition if condition.robot == robot else None

@@ -1,0 +1,126 @@
+"""What a robot's process sees of itself, for the operator."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import cast
+
+import numpy as np
+from msgspec import structs
+
+from vedette.agent import GroundBehaviour, NetworkedAgent
+from vedette.maps import UNKNOWN
+from vedette.missions.explore import Exploration
+from vedette.net import report as wire
+from vedette.net.report import Condition, LinkReport, Spread
+from vedette.net.transport import Transport
+from vedette.overlay import LinkStatus
+from vedette.record.summary import Spread as Statistics
+from vedette.sim.clock import Clock
+from vedette.sim.observer import held_map
+from vedette.sim.own_body import OwnBody
+
+
+@dataclass
+class Witness:
+    """Counts what the process does, and tells of the robot; call it from the agent's thread."""
+
+    node: NetworkedAgent
+    body: OwnBody
+    transport: Transport
+    name: str
+    clock: Clock = field(default_factory=Clock)
+    malformed: int = 0  # of what is told of bodies
+    status: bytes = b""  # the latest condition, for any thread
+    _rounds: list[float] = field(default_factory=list)  # that this robot began [s]
+    _round_began: float | None = None
+    _decisions: int = 0
+    _decided: float | None = None  # when the latest round ended with a decision [s]
+    _began: float | None = None  # mission time at which the robot began to map [s]
+
+    @property
+    def _mission(self) -> Exploration:
+        return cast(Exploration, self.node.agent.mission)
+
+    def note(self, now: float) -> None:
+        """Watch the rounds, after every act; ``now`` [s]."""
+        rounds = self.node.agent.rounds
+        if rounds.decisions != self._decisions and self._round_began is not None:
+            self._rounds.append(now - self._round_began)
+        if not rounds.busy or rounds.decisions != self._decisions:
+            self._round_began = None
+        if rounds.busy and self._round_began is None and rounds.tree.parent is None:
+            self._round_began = now
+        if rounds.decisions != self._decisions:
+            self._decisions, self._decided = rounds.decisions, now
+
+    def report(self, now: float, mission_time: float, state: str | None) -> bytes:
+        """Return a report; ``state`` takes the place of the agent's own."""
+        if self._began is None and self.node.agent.awake:
+            self._began = mission_time
+        classes = held_map(self._mission.fusion.classes, self._mission.log_odds)
+        known = float(np.count_nonzero(classes != UNKNOWN) / classes.size)
+        condition = self._condition(now, mission_time, known)
+        if state is not None:
+            condition = structs.replace(condition, state=state)
+        self.status = wire.encode(condition)
+        decided = self.node.agent.rounds.impact
+        impact = None if decided is None else self._mission.codec.encode(decided)
+        return wire.report(condition, classes, self._mission.log_odds != 0, impact)
+
+    def _condition(self, now: float, mission_time: float, known: float) -> Condition:
+        agent, overlay = self.node.agent, self.node.overlay.status(now)
+        x, y, heading = self.body.pose.tolist()
+        wanted = cast(GroundBehaviour, agent.behaviour).driver.wanted
+        path = () if wanted is None else tuple(wanted.path.ravel().tolist())
+        return Condition(
+            robot=agent.robot,
+            boot=agent.boot,
+            name=self.name,
+            time=mission_time,
+            began=self._began,
+            state=agent.state.value,
+            x=x,
+            y=y,
+            heading=heading,
+            path=path[-2000:],
+            root=overlay.root,
+            epoch=overlay.epoch,
+            number=overlay.place.epoch,
+            parent=overlay.place.parent,
+            neighbours=overlay.place.neighbours,
+            size=overlay.place.size,
+            age=overlay.age,
+            links=tuple(map(_link, overlay.links)),
+            digest=self._mission.fusion.digest,
+            known=known,
+            rounds=agent.rounds.decisions,
+            sweeps=agent.rounds.sweeps,
+            cuts=agent.rounds.cuts,
+            bounded=len(agent.rounds.bound_ratios),
+            bound_ratios=float(sum(agent.rounds.bound_ratios)),
+            travelled=self.body.travelled,
+            collisions=self.body.collisions,
+            min_clearance=self.body.min_clearance,
+            messages={kind.value: count for kind, count in self.node.messages_sent.items()},
+            bytes={kind.value: count for kind, count in self.node.bytes_sent.items()},
+            dropped={
+                "transport": self.transport.refused + self.transport.inbox.dropped,
+                "overlay and links": self.node.malformed,
+                "agent": agent.dropped,
+                "bodies": self.malformed,
+            },
+            refusal=self.node.overlay.refusal,
+            planning_ms=_spread(self.clock.planning_ms, len(self.clock.planning)),
+            answer_ms=_spread(self.clock.answer_ms, len(self.clock.answers)),
+            round_ms=_spread(Statistics.of([1e3 * took for took in self._rounds]), len(self._rounds)),
+            decided=None if self._decided is None else max(now - self._decided, 0.0),
+        )
+
+
+def _link(link: LinkStatus) -> LinkReport:
+    return LinkReport(link.robot, link.role, link.loss, link.round_trip, link.offset, link.silent)
+
+
+def _spread(statistics: Statistics | None, count: int) -> Spread | None:
+    return None if statistics is None else Spread(count, statistics.p50, statistics.p95, statistics.max)
