@@ -14,7 +14,7 @@ from small_missions import check_complete, robots, run, small_office
 from vedette.sim.explore import Report
 
 GOLDEN: dict[str, Any] = {
-    "schema_version": 1,
+    "schema_version": 2,
     "completed": True,
     "outcome": "complete",
     "seed": 7,
@@ -23,12 +23,14 @@ GOLDEN: dict[str, Any] = {
     "scheme": "token",
     "fusion": "replicated",
     "world": "office",
+    "radio": None,
+    "faults": None,
     "time_s": 92.3,
     "t50_s": 5.0,
     "t90_s": 69.5,
     "t95_s": 70.0,
     "t99_s": 71.5,
-    "auc_s": 20.009862,
+    "auc_s": 20.006742,
     "coverage": 1.0,
     "map_errors": 0,
     "map_error_share": 0.0,
@@ -39,13 +41,14 @@ GOLDEN: dict[str, Any] = {
     "rounds": 32,
     "sweeps": 46,
     "bound_ratio": 0.817884,
+    "apart_s": 0.0,
     "messages": {
-        "robot-1": {"negotiation": 110, "fusion": 73, "beacons": 310},
-        "robot-2": {"negotiation": 108, "fusion": 75, "beacons": 310},
+        "robot-1": {"negotiation": 110, "fusion": 73, "beacons": 310, "overlay": 0},
+        "robot-2": {"negotiation": 108, "fusion": 75, "beacons": 310, "overlay": 0},
     },
     "bytes": {
-        "robot-1": {"negotiation": 22384, "fusion": 8366, "beacons": 8321},
-        "robot-2": {"negotiation": 30137, "fusion": 9186, "beacons": 8273},
+        "robot-1": {"negotiation": 22448, "fusion": 8366, "beacons": 8321, "overlay": 0},
+        "robot-2": {"negotiation": 30169, "fusion": 9186, "beacons": 8273, "overlay": 0},
     },
 }
 
