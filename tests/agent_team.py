@@ -151,6 +151,9 @@ class ToyMission:
         """Leave nothing out."""
         return impact
 
+    def admit(self, belief: Any, impact: Float, robots: int) -> None:
+        """As many points as there are can be claimed."""
+
     def nothing_left(self, value: float, now: float) -> bool:
         """As the value and the test say."""
         return value <= 0.0 and not self.put_off

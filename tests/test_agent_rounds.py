@@ -12,6 +12,7 @@ from vedette import Tree, negotiate
 from vedette.agent import messages
 from vedette.agent.effects import Traffic
 from vedette.agent.events import Message, Stuck
+from vedette.negotiation import Chooser
 from vedette.problem import Coverage
 
 INTERVAL = 1.0  # least time between rounds [s]
@@ -117,13 +118,17 @@ def test_when_a_robot_dies_the_rest_goes_on_on_a_new_tree(victim: int, when: flo
     assert tuple(team.choices()[robot] for robot in living) == expected.choice
 
 
-def test_without_a_new_tree_rounds_fail_but_strategies_stay() -> None:
-    team, _, _ = toy_team(Tree.chain(3))
+def test_without_a_new_tree_a_silent_child_is_cut_and_those_behind_it_keep_their_strategies() -> None:
+    team, candidates, belief = toy_team(Tree.chain(3))
     team.run_round()
-    chosen = team.choices()
+    chosen, before = team.choices(), team.decisions()
     team.alive[1] = False
     team.run(10.0)
-    assert team.choices() == chosen
+    alone = Chooser(Coverage(), belief, candidates[0])
+    alone.reply(Coverage().nothing(belief))
+    assert team.decisions()[0] > before[0]
+    assert team.agents[0].rounds.cuts >= 1
+    assert team.choices() == (alone.index, *chosen[1:])
 
 
 def test_messages_of_an_old_epoch_are_void() -> None:

@@ -161,6 +161,8 @@ def test_messages_out_of_turn_are_refused() -> None:
     for sender, message, words in cases:
         fresh = node()
         fresh.start()
+        if sender == 1 and not isinstance(message, Up):
+            fresh.receive(2, Up(A, 0.0, 0.0, ()))
         with pytest.raises(InputError, match=words):
             fresh.receive(sender, message)
     faithful = JacobiNode([1], 1, Chooser(Coverage(), WORTH, [A, B]), remove=lambda total, own: total)

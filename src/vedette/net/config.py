@@ -91,6 +91,13 @@ class Body(Struct, forbid_unknown_fields=True, frozen=True):
         )
 
 
+class Best(Struct, forbid_unknown_fields=True, frozen=True):
+    """What no robot of the team exceeds: who claims to see more is not believed."""
+
+    range: Annotated[float, Meta(gt=0.0)]  # of the lidar [m]
+    speed: Annotated[float, Meta(gt=0.0)]  # [m/s]
+
+
 class AgentConfig(Struct, forbid_unknown_fields=True, frozen=True):
     """One robot's file for ``vedette agent``."""
 
@@ -98,6 +105,7 @@ class AgentConfig(Struct, forbid_unknown_fields=True, frozen=True):
     robot: Robot
     body: Body
     robots: Robot = 1  # it waits for so many, itself included, before it begins; for a while
+    best: Best | None = None  # of the whole team; None: as this robot
     links: Links = Links()
     explore: Exploring = Exploring()
 

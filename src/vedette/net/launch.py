@@ -65,7 +65,7 @@ class TeamProcesses:
         n = len(self.plan.specs)
         issue_team(TEAM, self.folder / "keys", n, datetime.now().astimezone(), KEY_DAYS)
         self.plan.world.save(self.folder)
-        endpoints = [f"tls/127.0.0.1:{port}" for port in _free_ports(n)]
+        endpoints = self._endpoints()
         self.operator = Access(
             TEAM,
             connect=tuple(endpoints),
@@ -118,6 +118,10 @@ class TeamProcesses:
         """Return the file of what a robot's process says."""
         return self.logs / f"{robot_name(robot)}.log"
 
+    def _endpoints(self) -> list[str]:
+        """Return where the operator reaches each robot."""
+        return [f"tls/127.0.0.1:{port}" for port in _free_ports(len(self.plan.specs))]
+
     def _file_of(self, i: int) -> Path:
         return self.folder / f"{robot_name(i)}.yaml"
 
@@ -145,6 +149,10 @@ class TeamProcesses:
             "team": TEAM,
             "robot": i + 1,
             "robots": len(plan.specs),
+            "best": {
+                "range": max(spec.range for spec in plan.specs),
+                "speed": max(spec.speed for spec in plan.specs),
+            },
             "links": {
                 "listen": [endpoints[i]],
                 "connect": list(endpoints[:i]),

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from vedette.agent import NetworkedAgent
+from vedette.domains.mapping.impact import Most
 from vedette.net.config import AgentConfig, access_of
 from vedette.net.inbox import Inbox
 from vedette.net.names import robot_name
@@ -45,8 +46,16 @@ def agent_process(config: AgentConfig, folder: Path, speed: float) -> AgentProce
     start = choose_starts(world, [spec], np.random.default_rng(0))[0]
     rng = np.random.default_rng([config.body.seed, robot])
     body = OwnBody(world, spec, start, robot, max(MOST_BODIES, robot + 1), rng)
+    best = config.best
     agent = explorer(
-        world.frame, spec, config.explore, robot, boot, robots=config.robots, waits_for=config.robots
+        world.frame,
+        spec,
+        config.explore,
+        robot,
+        boot,
+        robots=config.robots,
+        most=Most.of([spec]) if best is None else Most(best.range, best.speed),
+        waits_for=config.robots,
     )
     clock = MissionClock(speed)
     inbox = Inbox()

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from vedette.agent import Agent, GroundBehaviour
 from vedette.agent.driving import Driver
+from vedette.domains.mapping.impact import Most
 from vedette.domains.mapping.planners import planner
 from vedette.domains.mapping.sightings import BINS
 from vedette.errors import InputError, nearest_name
@@ -80,8 +81,10 @@ class ExploreSimulation(Simulation):
         super().__init__(self._explorer, self.robots, setup, world)
 
     def _explorer(self, robot: int, boot: int) -> Agent:
-        robots = len(self.specs)
-        return explorer(self.world.frame, self.specs[robot], self.setup, robot, boot, robots=robots)
+        specs = self.specs
+        return explorer(
+            self.world.frame, specs[robot], self.setup, robot, boot, robots=len(specs), most=Most.of(specs)
+        )
 
     @property
     def missions(self) -> list[Exploration]:
@@ -102,6 +105,7 @@ def explorer(
     boot: int,
     *,
     robots: int,
+    most: Most,
     waits_for: int = 1,
 ) -> Agent:
     """Return a fresh agent of a team.
@@ -113,6 +117,7 @@ def explorer(
         robot: its number.
         boot: of its start.
         robots: in the team.
+        most: what none of them exceeds.
         waits_for: so many robots, itself included, before it begins; for a while.
 
     Raises:
@@ -121,7 +126,7 @@ def explorer(
     if how.fusion not in FUSIONS:
         raise InputError(f"unknown fusion {how.fusion!r}; {nearest_name(how.fusion, FUSIONS)}")
     fusion: Fusion = FUSIONS[how.fusion](robot, boot, frame.shape, 4 * BINS)
-    mission = Exploration(frame, spec, planner(how.planner, robots), fusion)
+    mission = Exploration(frame, spec, planner(how.planner, robots), fusion, most=most)
     behaviour = GroundBehaviour(mission, Driver(robot, spec, frame), how.return_home, waits_for)
     return Agent(robot, boot, spec, behaviour, scheme_of(how))
 

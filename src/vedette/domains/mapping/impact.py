@@ -66,9 +66,10 @@ def check_claim(
         side: of a planning cell [m].
         edges: (LAYERS,) upper edge of each layer [s]; the last takes all later arrivals.
     """
-    cell, layer = np.divmod(impact.keys, np.uint32(LAYERS))
-    first = np.flatnonzero(np.diff(cell.astype(np.int64), prepend=-1))  # of each cell: its earliest layer
-    claimed = np.cumsum(np.bincount(layer[first], minlength=LAYERS))
+    cell = impact.keys // np.uint32(LAYERS)
+    earliest = np.ones(len(cell), np.bool_)  # of each cell's layers
+    earliest[1:] = cell[1:] != cell[:-1]
+    claimed = np.cumsum(np.bincount(impact.keys[earliest] % np.uint32(LAYERS), minlength=LAYERS))
     discs = stops * most_cells_swept(most.range, 0.0, side)
     seen = np.minimum(most_cells_swept(most.range, most.speed * edges, side), discs)
     seen[-1] = discs

@@ -10,6 +10,7 @@ from typing import cast
 import numpy as np
 
 from vedette.agent import Agent, FlightBehaviour, Pace
+from vedette.domains.search.impact import Most
 from vedette.errors import InputError
 from vedette.fusion.steps import ReplicatedSteps, Sparse, SparseIntegers, StepEvidence, StepSums
 from vedette.missions.search import Declared, Searching, SearchPlan, SharedBeliefSearching
@@ -95,7 +96,10 @@ class SearchSimulation(Simulation):
                 f"{setup.link_delay:g} s; plan more than {taken} steps of {scenario.step:g} s"
             )
         declare = scenario.declare
-        return SearchPlan(case.pdf, scenario.weights, ahead, declare.probability, declare.radius)
+        most = Most(
+            max(detector.range for detector in case.detectors), max(each.speed for each in scenario.vehicles)
+        )
+        return SearchPlan(case.pdf, scenario.weights, ahead, declare.probability, declare.radius, most)
 
     def _mission(self, i: int, boot: int, setup: SearchSetup) -> Searching:
         kind = SharedBeliefSearching if setup.coordination == "shared" else Searching
