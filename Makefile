@@ -19,7 +19,7 @@ INSTALLED := $(VENV)/.installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help explore test test-all check lint types contracts rust-lint bench missions api build ready ready-dev clean
+.PHONY: help explore test test-all check lint types contracts rust-lint bench fuzz missions api build ready ready-dev clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -52,6 +52,10 @@ rust-lint: ready-dev ## Lint and check the formatting of the Rust code
 
 bench: ready-dev ## Measure speed and traffic against the targets: MET or MISSED
 	@$(PY) -m bench $(ARGS)
+
+fuzz: ready-dev ## Fuzz every decoder and loader, guided by coverage
+	@$(PIP) install -c constraints.txt 'atheris>=3,<4'
+	@$(PY) -m tests.fuzz $(ARGS)
 
 missions: ready-dev ## Run the table of missions beside the yardsticks (long)
 	@$(PY) -m bench.missions $(if $(wildcard $(MAPS)),--maps $(MAPS)) $(ARGS)
