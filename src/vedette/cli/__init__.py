@@ -13,7 +13,7 @@ from vedette.errors import InputError
 BAD_INPUT, INTERRUPTED = 2, 130
 
 
-COMMANDS = ("agent", "explore", "keys", "search", "status", "team", "track", "world")
+COMMANDS = ("agent", "explore", "keys", "reproduce", "search", "status", "study", "team", "track", "world")
 
 
 class _Commands(click.Group):

@@ -1,0 +1,85 @@
+"""Two robots of a mission that may get in each other's way, and where they could go."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.domains.mapping.belief import MapBelief, freeze
+from vedette.domains.mapping.impact import Impact
+from vedette.domains.mapping.layers import rate
+from vedette.domains.mapping.objective import MappingObjective
+from vedette.domains.mapping.platform import MappingPlatform
+from vedette.problem import exhaustive
+from vedette.study.paper.missions import Case, Mission, specs
+from vedette.study.paper.run import Run
+from vedette.study.paper.scans import scan, spaced
+
+MOMENTS = np.linspace(0.15, 0.60, 16)  # that are tried: shares of the mission's coverage
+OBJECTIVE = MappingObjective()
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Two robots of a mission, the map as they and their mate know it, and where they could go."""
+
+    belief: MapBelief
+    classes: NDArray[np.uint8]
+    mission: Mission
+    platforms: list[MappingPlatform]
+    candidates: list[list[Impact]]  # one a reachable stop
+    stops: list[NDArray[np.int64]]  # the stop of each candidate
+
+
+def make_scenes(run: Run) -> Iterator[Scene]:
+    """Yield two robots' situations at moments of a mission."""
+    mission = run.missions.get(Case("rate", run.scale.mission_seeds[0], *run.scale.office))
+    reached = np.maximum.accumulate(mission.report.log.coverage)
+    for share in MOMENTS:
+        run.tell(f"when {100 * share:.0f} % were covered")
+        yield make_scene(mission, int(np.searchsorted(reached, share)), run)
+
+
+def make_scene(mission: Mission, moment: int, run: Run) -> Scene:
+    """Scan along the ways of a mission's robots up to a moment, and list where two of them could go."""
+    poses = mission.report.log.poses[: moment + 1]
+    way = np.concatenate([spaced(poses[:, i], 0.5) for i in range(poses.shape[1])])
+    team = specs()[:2]
+    scanned = scan(mission.world, way, team[0], run.rng(4))
+    belief = freeze(
+        scanned.classes,
+        mission.world.frame,
+        reach=team[0].range,
+        extent=max(2.5, 0.35 * team[0].range),
+        hidden=0.0,
+        layers=rate(),
+        counts=scanned.counts,
+    )
+    platforms, candidates, stops = [], [], []
+    for i, spec in enumerate(team):
+        x, y, _ = poses[-1, i].tolist()
+        platform = MappingPlatform(spec, max_stops=1, measured="distance")
+        platform.place(x, y, [], [(i, x, y)], 0.0)
+        platform.prepare(belief)
+        assert platform.stops is not None
+        reachable = np.flatnonzero(np.isfinite(platform.stops.first_leg))
+        platforms.append(platform)
+        stops.append(reachable)
+        candidates.append([platform.impact(belief, platform.tour(np.array([stop]))) for stop in reachable])
+    return Scene(belief, scanned.classes, mission, platforms, candidates, stops)
+
+
+def selfish_choice(scene: Scene) -> tuple[list[int], float]:
+    """Return what each would choose if it were alone, and what that is worth together."""
+    nothing = OBJECTIVE.nothing(scene.belief)
+    alone = [int(np.argmax(OBJECTIVE.values(scene.belief, nothing, own))) for own in scene.candidates]
+    together = OBJECTIVE.combine(*(own[k] for own, k in zip(scene.candidates, alone, strict=True)))
+    return alone, OBJECTIVE.value(scene.belief, together)
+
+
+def share_of_selfish(scene: Scene) -> float:
+    """Return the value of two choices made alone, as a share of the optimum."""
+    return selfish_choice(scene)[1] / exhaustive(OBJECTIVE, scene.belief, scene.candidates).value

@@ -1,0 +1,83 @@
+"""The simulated missions that several parts look at, each run once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from vedette.record.log import Snapshot
+from vedette.record.summary import Outcome
+from vedette.sim.exploration import ExploreSetup
+from vedette.sim.explore import Report, explore, prepare
+from vedette.sim.world import World
+from vedette.sim.worlds import office
+from vedette.team import PlatformSpec
+
+ROBOTS = 3  # as in the paper
+
+
+@dataclass(frozen=True)
+class Case:
+    """A mission of three robots that start together in a generated office."""
+
+    planner: str
+    seed: int  # of the office, the starts and all chance
+    width: float  # [m]
+    height: float  # [m]
+
+
+@dataclass(frozen=True, eq=False)
+class Mission:
+    """A case and how it went."""
+
+    case: Case
+    world: World
+    report: Report
+
+
+def specs() -> list[PlatformSpec]:
+    """Return the team, named as the paper's Pioneers are (paper, Fig. 5)."""
+    return [PlatformSpec(name=name) for name in ("Hornet", "Buzz", "Mozzy")]
+
+
+@dataclass(eq=False)
+class Missions:
+    """Missions by case; a mission that was interrupted is not kept."""
+
+    tell: Callable[[str], None]
+    _done: dict[Case, Mission] = field(default_factory=dict)
+
+    def get(self, case: Case) -> Mission:
+        """Return the mission, run now unless it has been.
+
+        Raises:
+            KeyboardInterrupt: it was interrupted.
+        """
+        if case not in self._done:
+            world = office(np.random.default_rng(case.seed), case.width, case.height)
+            simulation = prepare(world, specs(), ExploreSetup(planner=case.planner, seed=case.seed))
+            report = explore(simulation, [_Ticker(case, self.tell)])
+            if report.summary.outcome is Outcome.INTERRUPTED:
+                raise KeyboardInterrupt
+            self._done[case] = Mission(case, world, report)
+        return self._done[case]
+
+
+@dataclass(eq=False)
+class _Ticker:
+    """Tells how far a mission is; ``vedette.record.log.Sink``."""
+
+    case: Case
+    tell: Callable[[str], None]
+    _next: float = 0.0  # [s] of simulated time
+
+    def update(self, snapshot: Snapshot) -> None:
+        """Tell it every few simulated seconds."""
+        if snapshot.t >= self._next:
+            self._next = snapshot.t + 5.0
+            self.tell(
+                f"mission with {self.case.planner}, seed {self.case.seed}: {snapshot.t:.0f} s, "
+                f"{100 * snapshot.coverage:.0f} % covered"
+            )

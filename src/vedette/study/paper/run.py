@@ -1,0 +1,62 @@
+"""What every part of a reproduction is given: how much to compute, with which seed, and where to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from vedette.study.paper.missions import Missions
+
+
+@dataclass(frozen=True)
+class Scale:
+    """How much is computed."""
+
+    teams: tuple[int, ...]  # team sizes
+    largest_dense: int  # team where everybody's impact covers an area that grows with the team
+    trials: int  # random cases of a kind
+    scan_offices: int  # offices that Fig. 3 scans
+    scans: int  # places in each
+    mission_seeds: tuple[int, ...]  # of the missions of claim C12, Fig. 6's first
+    targets: int  # drawn for claim C13
+    office: tuple[float, float]  # width and height of that of the missions [m]
+
+
+FULL = Scale(
+    teams=(2, 4, 8, 16, 32, 64, 128),
+    largest_dense=64,
+    trials=40,
+    scan_offices=10,
+    scans=60,
+    mission_seeds=(0, 1, 2, 3),
+    targets=100_000,
+    office=(30.0, 20.0),
+)
+QUICK = Scale(
+    teams=(2, 4, 8, 16, 32),
+    largest_dense=32,
+    trials=12,
+    scan_offices=4,
+    scans=30,
+    mission_seeds=(0,),
+    targets=20_000,
+    office=(30.0, 20.0),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One reproduction."""
+
+    scale: Scale
+    seed: int
+    figures: Path  # folder for the pictures
+    missions: Missions
+    tell: Callable[[str], None]  # what is being computed, for the progress display
+
+    def rng(self, *key: int) -> np.random.Generator:
+        """Return a stream of chance of its own for a part; the same whatever else was computed."""
+        return np.random.default_rng([self.seed, *key])
