@@ -12,6 +12,7 @@ from pathlib import Path
 import click
 
 from vedette.cli.options import Positive
+from vedette.errors import InputError
 from vedette.net.config import load_config
 from vedette.net.start import agent_process
 
@@ -34,7 +35,10 @@ def agent(config_path: Path, speed: float, starter: int | None) -> None:
     docs/how-to/network.md explains the file. Exit status: 0 stopped, 2 bad input.
     """
     config = load_config(config_path)
-    process = agent_process(config, config_path.resolve().parent, speed)
+    try:
+        process = agent_process(config, config_path.resolve().parent, speed)
+    except InputError as error:
+        raise InputError(f"{config_path}: {error}") from error
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: process.stop())
     if starter is not None:

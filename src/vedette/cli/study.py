@@ -7,21 +7,21 @@ import shlex
 import sys
 from datetime import datetime
 from pathlib import Path
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 import click
 from rich.console import Console
 
 from vedette.cli.options import OneOf
+from vedette.study.backends import BACKENDS, Backend, require
 from vedette.study.combinations import runs_of
-from vedette.study.conduct import Conducted, conduct
-from vedette.study.outputs import write_outputs
 from vedette.study.provenance import provenance
 from vedette.study.spec import find_spec, load_spec
-from vedette.study.store import Store
-from vedette.study.workers import BACKENDS, Backend, Workers, require
 
-INCOMPLETE, INTERRUPTED = 1, 130
+if TYPE_CHECKING:
+    from vedette.study.conduct import Conducted
+
+BROKE, INTERRUPTED = 1, 130
 
 
 @click.command()
@@ -41,23 +41,36 @@ def study(spec_name: str, out: Path | None, jobs: int | None, backend: str) -> N
     A study that was stopped goes on when it is called again. Exit status: 0 all runs came to an end, 1 some
     broke, 2 bad input, 130 interrupted.
     """
-    path = find_spec(spec_name)
-    spec = load_spec(path)
-    runs = runs_of(spec, path)
     chosen = cast(Backend, backend)
     require(chosen)
-    command = shlex.join(["vedette", *sys.argv[1:]])
-    made = provenance(command, datetime.now().astimezone().isoformat(" ", "seconds"))
+    path = find_spec(spec_name)
     folder = Path("runs") / f"study-{path.stem}" if out is None else out
-    store = Store.open(folder, made.code)
-    console = Console()
-    conducted = conduct(runs, store, Workers(jobs or os.cpu_count() or 1, chosen), console)
+    conducted = _conducted(path, folder, jobs or os.cpu_count() or 1, chosen)
     if conducted.results:
-        write_outputs(conducted, path, spec.reference or spec.planners[0], folder, made)
         click.echo(_closing(conducted, folder))
     if conducted.missing:
         raise SystemExit(INTERRUPTED)
-    raise SystemExit(INCOMPLETE if conducted.broken else 0)
+    raise SystemExit(BROKE if conducted.broken else 0)
+
+
+def _conducted(path: Path, folder: Path, jobs: int, backend: Backend) -> Conducted:
+    """Conduct a study and write what came out."""
+    # These need packages that need not be installed: `require` has seen to it that they are.
+    from vedette.study.conduct import conduct
+    from vedette.study.outputs import write_outputs
+    from vedette.study.store import Store
+    from vedette.study.workers import Workers
+
+    spec = load_spec(path)
+    runs = runs_of(spec, path)
+    made = provenance(
+        shlex.join(["vedette", *sys.argv[1:]]), datetime.now().astimezone().isoformat(" ", "seconds")
+    )
+    store = Store.open(folder, made.code)
+    conducted = conduct(runs, store, Workers(jobs, backend), Console())
+    if conducted.results:
+        write_outputs(conducted, path, spec.reference or spec.planners[0], folder, made)
+    return conducted
 
 
 def _closing(conducted: Conducted, folder: Path) -> str:

@@ -47,7 +47,7 @@ def team() -> None:
 )
 @click.option(
     "--lease",
-    type=Positive("s", most=60.0),
+    type=Positive("s", least=0.2, most=60.0),
     default=3.0,
     show_default=True,
     help="A neighbour silent for so long is given up [s of real time].",

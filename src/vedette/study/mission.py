@@ -1,0 +1,139 @@
+"""Carry out one run and measure it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from vedette.record.log import RunLog
+from vedette.record.plain import plain
+from vedette.record.summary import Outcome, Summary, Timing, Traffic
+from vedette.sim.exploration import ExploreSimulation
+from vedette.sim.explore import explore, prepare
+from vedette.study.bounds import Limit, limit
+from vedette.study.run import Run, Value
+from vedette.study.starts import spread, team
+
+LEVELS = (0.50, 0.90, 0.95, 0.99)
+FAILED = "failed"  # outcome of a run that broke
+
+
+@dataclass(frozen=True)
+class Result:
+    """What one run left: figures in simulated time, wall-clock figures apart, and the curve of coverage."""
+
+    figures: Mapping[str, Value]
+    timing: Mapping[str, Value]
+    times: tuple[float, ...]  # at which the unknown share changed [s]
+    unknown: tuple[float, ...]  # share of the coverable cells from then on, 0..1
+    limit_times: tuple[float, ...]  # the same for what no team can pass
+    limit_unknown: tuple[float, ...]
+
+    @property
+    def error(self) -> str:
+        """Why it broke; empty if it did not."""
+        return str(self.figures.get("error", ""))
+
+
+def carry_out(run: Run) -> Result:
+    """Run a mission to its end; one that breaks is a result too.
+
+    Raises:
+        KeyboardInterrupt: it was interrupted: half a mission is no result.
+    """
+    try:
+        simulation = prepared(run)
+        report = explore(simulation)
+    except Exception as error:  # whatever it is, the other runs of the study go on
+        return broken(error)
+    if report.summary.outcome is Outcome.INTERRUPTED:
+        raise KeyboardInterrupt
+    best = limit(simulation.world, simulation.specs, simulation.starts)
+    figures = _figures(report.summary, simulation) | _limits(best)
+    return Result(plain(figures), plain(_timing(report.timing)), *_curve(report.log), *_limit_curve(best))
+
+
+def prepared(run: Run) -> ExploreSimulation:
+    """Return the simulation of a run, robots at their starts."""
+    world = run.world.build()
+    specs = team(run.platform, run.robots)
+    if run.starts == "apart":
+        specs = spread(world, specs, np.random.default_rng([run.setup.seed, 2]))
+    return prepare(world, specs, run.setup)
+
+
+def broken(error: BaseException) -> Result:
+    """Return the result of a run that did not come to an end."""
+    text = " ".join(f"{type(error).__name__}: {error}".split())
+    return Result({"outcome": FAILED, "completed": False, "error": text[:500]}, {}, (), (), (), ())
+
+
+def _figures(summary: Summary, simulation: ExploreSimulation) -> dict[str, Value]:
+    """Return what is told of a mission; ``docs/how-to/study.md`` explains the names."""
+    resolution = simulation.world.frame.resolution
+    seen = [np.count_nonzero(mission.log_odds) * resolution**2 for mission in simulation.missions]
+    paths = list(summary.path_m.values())
+    return {
+        "outcome": summary.outcome.value,
+        "completed": summary.completed,
+        "error": "",
+        "coverage": summary.coverage,
+        "t50_s": summary.t50_s,
+        "t90_s": summary.t90_s,
+        "t95_s": summary.t95_s,
+        "t99_s": summary.t99_s,
+        "time_s": summary.time_s,
+        "auc_s": summary.auc_s,
+        "path_m": float(np.mean(paths)),
+        "path_max_m": max(paths),
+        "overlap": summary.overlap,
+        "seen_mean_m2": float(np.mean(seen)),
+        "seen_std_m2": float(np.std(seen)),
+        "map_error_share": summary.map_error_share,
+        "collisions": summary.collisions,
+        "min_clearance_m": summary.min_clearance_m,
+        "rounds": summary.rounds,
+        "sweeps": summary.sweeps,
+        "bound_ratio": summary.bound_ratio,
+        **_sent("messages", summary.messages),
+        **_sent("bytes", summary.bytes),
+    }
+
+
+def _sent(what: str, by_robot: Mapping[str, Traffic]) -> dict[str, Value]:
+    """Return what the whole team sent, by kind."""
+    kinds = [field.name for field in fields(Traffic)]
+    return {f"{what}_{kind}": sum(getattr(sent, kind) for sent in by_robot.values()) for kind in kinds}
+
+
+def _limits(best: Limit) -> dict[str, Value]:
+    levels = {f"bound_t{100 * level:.0f}_s": best.time(level) for level in LEVELS}
+    return {**levels, "bound_s": best.time(), "bound_auc_s": best.auc(), "coverable_m2": best.coverable}
+
+
+def _timing(timing: Timing) -> dict[str, Value]:
+    planning, answer = timing.planning_ms, timing.answer_ms
+    return {
+        "planning_p50_ms": None if planning is None else planning.p50,
+        "planning_p95_ms": None if planning is None else planning.p95,
+        "planning_max_ms": None if planning is None else planning.max,
+        "answer_p95_ms": None if answer is None else answer.p95,
+        "real_time_factor": timing.real_time_factor,
+        "wall_s": timing.wall_s,
+    }
+
+
+def _curve(log: RunLog) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Return when the unknown share changed, and to what."""
+    unknown = np.round(1.0 - log.coverage, 5)
+    changed = np.append(True, np.diff(unknown) != 0.0)
+    return tuple(np.round(log.times[changed], 3).tolist()), tuple(unknown[changed].tolist())
+
+
+def _limit_curve(best: Limit) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Return the least unknown share, a second apart, until it is none."""
+    times = np.arange(0.0, np.ceil(best.time()) + 1.0)
+    unknown = np.round(1.0 - best.coverage(times), 5)
+    return tuple(times.tolist()), tuple(unknown.tolist())

@@ -1,0 +1,42 @@
+"""The files that a study leaves beside its runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from vedette.record.files import write_text
+from vedette.study.conduct import Conducted
+from vedette.study.curves import CurvesOf
+from vedette.study.pictures import curves_png, metrics_png, tradeoff_png
+from vedette.study.provenance import Provenance
+from vedette.study.report import Findings, report
+from vedette.study.rows import figure_rows, timing_rows, write_rows
+from vedette.study.tables import difference_rows, mean_rows
+
+
+def write_outputs(
+    conducted: Conducted, spec: Path, reference: str, folder: Path, provenance: Provenance
+) -> None:
+    """Write results, statistics, pictures and report of the runs that are done, each file atomically."""
+    rows, timing = figure_rows(conducted.results), timing_rows(conducted.results)
+    text = spec.read_text(encoding="utf-8")
+    write_text(folder / "spec.yaml", text)
+    write_rows(rows, folder / "results")
+    write_rows(timing, folder / "timing")
+    write_rows(mean_rows(rows), folder / "means")
+    write_rows(difference_rows(rows, reference), folder / "differences")
+    curves: CurvesOf = {(run.case, run.setup.planner): each for run, each in conducted.results.items()}
+    curves_png(rows, curves, folder / "curves.png")
+    metrics_png(rows, folder / "metrics.png")
+    tradeoff_png(rows, folder / "tradeoff.png")
+    findings = Findings(
+        title=f"Study {spec.stem}",
+        rows=rows,
+        timing=timing,
+        missing=len(conducted.missing),
+        reference=reference,
+        spec=text,
+        provenance=provenance,
+        folder=folder,
+    )
+    write_text(folder / "report.html", report(findings))

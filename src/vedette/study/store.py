@@ -1,0 +1,60 @@
+"""The results of a study: a file for each run, so that a study that was stopped goes on where it was."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+
+from vedette.errors import InputError
+from vedette.record.files import output_directory, write_text
+from vedette.study.mission import Result
+from vedette.study.run import Run
+
+
+class Store:
+    """Results in a folder, by the key of their run; each file is put in place whole."""
+
+    def __init__(self, folder: Path, code: str) -> None:
+        """Use a folder that is there; ``code`` is the fingerprint of what carries the runs out."""
+        self._folder, self._code = folder, code
+
+    @classmethod
+    def open(cls, out: Path, code: str) -> Store:
+        """Return the store below ``out``, made if it is not there.
+
+        Raises:
+            InputError: ``out`` is a folder with something else in it, or cannot be written to.
+        """
+        runs = out / "runs"
+        if out.is_dir() and any(out.iterdir()) and not runs.is_dir():
+            raise InputError(f"{out} holds something else than a study; give --out another folder")
+        output_directory(out, force=True)
+        return cls(output_directory(runs, force=True), code)
+
+    def path(self, run: Run) -> Path:
+        """Return where the result of a run is, or will be."""
+        return self._folder / f"{run.key(self._code)}.json"
+
+    def read(self, run: Run) -> Result | None:
+        """Return the result of a run, ``None`` if there is none that can be read."""
+        try:
+            return msgspec.json.decode(self.path(run).read_bytes(), type=_File).result
+        except (OSError, msgspec.DecodeError):
+            return None
+
+    def write(self, run: Run, result: Result) -> None:
+        """Put the result of a run in place."""
+        file = _File(run=run.columns(), result=result)
+        write_text(self.path(run), msgspec.json.encode(file).decode() + "\n")
+
+    def others(self, runs: list[Run]) -> int:
+        """Count the results that are here but not of these runs as this code carries them out."""
+        return len(
+            {path.name for path in self._folder.glob("*.json")} - {self.path(run).name for run in runs}
+        )
+
+
+class _File(msgspec.Struct):
+    run: dict[str, str | int | float | bool | None]  # for people: the key says the same
+    result: Result
