@@ -28,6 +28,7 @@ def bench(quick: bool, date: str | None, out: Path) -> None:
     """Measure what the project has to reach, and say MET or MISSED. Exit status 0 either way.
 
     The scale table comes last: ``python -m bench.scale`` makes it alone.
+    Teams of processes have a bench of their own, ``python -m bench.network``.
     """
     folder = command.results_folder(out)
     machine.stay_on_one_core()

@@ -9,24 +9,15 @@ from reprlib import repr as repr_short
 from typing import Any, TypeVar
 
 import msgspec
-import yaml
 from msgspec import inspect
 
 from vedette.errors import InputError, nearest_name
+from vedette.yaml_file import read_yaml
 
 T = TypeVar("T")
 
-_MAX_FILE = 1_000_000  # [characters]
 _PLACE = re.compile(r"(?P<what>.*?)(?: - at `\$(?P<place>[^`]*)`)?")
 _STEP = re.compile(r"\.([^.\[\]]+)|\[(\d+)\]")
-_FLOAT = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)[eE][-+]?\d+")
-
-
-class _Loader(yaml.SafeLoader):
-    """Reads 5e-2 as the number that it is, which YAML 1.1 takes for text."""
-
-
-_Loader.add_implicit_resolver("tag:yaml.org,2002:float", _FLOAT, list("-+.0123456789"))
 
 
 def load_scenario(path: Path | str, kind: type[T]) -> T:
@@ -36,17 +27,7 @@ def load_scenario(path: Path | str, kind: type[T]) -> T:
         InputError: unreadable, not YAML, a field that is unknown (with the nearest valid name), missing, of
             the wrong type or out of its range, or a number that is not finite; the line names file and field.
     """
-    path = Path(path)
-    try:
-        with path.open(encoding="utf-8") as file:
-            content = yaml.load(file.read(_MAX_FILE), _Loader)
-    except OSError as error:
-        raise InputError(f"cannot read scenario {path}: {error.strerror or error}") from error
-    except yaml.MarkedYAMLError as error:
-        line = f", line {error.problem_mark.line + 1}" if error.problem_mark else ""
-        raise InputError(f"{path}{line}: not valid YAML; a scenario is 'field: value' pairs") from error
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
-        raise InputError(f"{path}: not a YAML text; a scenario is 'field: value' pairs") from error
+    content = read_yaml(Path(path), "scenario", "a scenario is 'field: value' pairs")
     return as_scenario({} if content is None else content, kind, str(path))
 
 

@@ -9,9 +9,8 @@ from pathlib import Path
 from reprlib import repr as repr_short
 from typing import Any
 
-import yaml
-
 from vedette.errors import InputError, nearest_name
+from vedette.yaml_file import read_yaml
 
 _RANGES = {  # field: lowest, highest, unit
     "speed": (0.01, 10.0, "m/s"),
@@ -24,7 +23,6 @@ _RANGES = {  # field: lowest, highest, unit
     "range_noise": (0.0, 1.0, "m"),
 }
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}")
-_MAX_FILE = 1_000_000  # [characters]
 
 
 @dataclass(frozen=True)
@@ -90,16 +88,7 @@ def load_team(path: Path | str) -> list[PlatformSpec]:
 
 
 def _platforms(path: Path) -> list[Any]:
-    try:
-        with path.open(encoding="utf-8") as file:
-            content = yaml.safe_load(file.read(_MAX_FILE))
-    except OSError as error:
-        raise InputError(f"cannot read team file {path}: {error.strerror or error}") from error
-    except yaml.MarkedYAMLError as error:
-        line = f", line {error.problem_mark.line + 1}" if error.problem_mark else ""
-        raise InputError(f"{path}{line}: not valid YAML; a team file is a list under 'platforms:'") from error
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
-        raise InputError(f"{path}: not a YAML text; a team file is a list under 'platforms:'") from error
+    content = read_yaml(path, "team file", "a team file is a list under 'platforms:'")
     if not isinstance(content, dict) or not isinstance(content.get("platforms", []), list):
         raise InputError(f"{path}: a team file is a list under 'platforms:'; found something else")
     for key in content:
@@ -131,11 +120,6 @@ def _plain(field: str, value: Any) -> Any:
     """Return the value in the field's own type where that loses nothing; else as it is, to be refused."""
     if field == "start" and isinstance(value, list):
         return tuple(_plain("", part) for part in value)
-    if isinstance(value, str) and field != "name":
-        try:
-            value = float(value)  # the YAML reader takes 5e-2 for text
-        except ValueError:
-            return value
     if field == "beams":
         return int(value) if isinstance(value, float) and value.is_integer() else value
     return float(value) if _is_number(value) else value

@@ -45,6 +45,8 @@ def _take(agent: Agent, event: Event, now: float) -> list[Effect]:
         case JobDone(key):
             return _prepared(agent, key, now)
         case TreeChanged():
+            if event.epoch != agent.rounds.tree.epoch:
+                agent.quiet = 0  # who is new may know of something left to do
             agent.rounds.join(event)
             agent.mission.fusion.set_neighbours(event.neighbours)
     return []

@@ -7,6 +7,8 @@ from typing import Annotated, TypeAlias
 import msgspec
 from msgspec import Meta
 
+from vedette import wire
+
 Count = Annotated[int, Meta(ge=0, le=2**53)]
 Place = Annotated[int, Meta(ge=-(2**31), le=2**31)]  # [cm]
 Note = tuple[Place, Place, Count]  # x, y [cm], and a number to it: what they mean is the mission's
@@ -69,7 +71,7 @@ class Freeze(msgspec.Struct, frozen=True, array_like=True, tag=5):
     epoch: Count
     sequence: Count
     t0: Count  # the root's clock [ms]
-    digest: int  # of the root's evidence
+    digest: Annotated[int, Meta(ge=0)]  # of the root's evidence; 64 bits
     robots: Robots  # that take part, in all
     notes: Notes = ()  # of the whole team
     reach: Areas | None = None  # of all but the receiver's part of the tree; None: anywhere
@@ -95,7 +97,4 @@ def decode(payload: bytes) -> Wire:
     Raises:
         ValueError: malformed.
     """
-    try:
-        return _DECODER.decode(payload)
-    except msgspec.DecodeError as error:
-        raise ValueError(f"agent message of {len(payload)} bytes is malformed: {error}") from None
+    return wire.decode(_DECODER, payload, "agent message")

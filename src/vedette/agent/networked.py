@@ -18,6 +18,7 @@ from vedette.agent.state import Agent
 from vedette.overlay import Overlay, Place, ReliableLink, Stamp
 
 HELLO, PACKET, BEACON = b"H", b"P", b"B"  # a datagram's first byte
+SETTLED = 0.5  # a first place on a tree has to last so long before the agent is told of it [s]
 ALONE_AT_FIRST = 2.0  # a robot waits so long to be taken in by others before it begins on its own [s]
 MOST_WAITING = 4096  # events that wait for a job to end
 
@@ -69,6 +70,7 @@ class NetworkedAgent:
         self._lease = lease
         self._alone_until = now + ALONE_AT_FIRST
         self._told: Place | None = None  # the place on the tree that the agent knows of
+        self._found, self._settled = self.overlay.place, now  # the latest place, and when it has proved lasting
         self._links: dict[int, ReliableLink] = {}
         self._sessions: dict[int, tuple[int, int]] = {}  # boot and epoch that each link is open to
         self._waiting: list[Event] = []
@@ -78,7 +80,7 @@ class NetworkedAgent:
         """Return when ``step`` next has something to do, if nothing happens before [s]."""
         times = [self.overlay.wake, *(link.wake for link in self._links.values())]
         if self._told is None:
-            times.append(self._alone_until)
+            times.append(self._begin_at)
         return min(times)
 
     # -- what happens --------------------------------------------------------------------------------
@@ -109,7 +111,6 @@ class NetworkedAgent:
         for to, hello in self.overlay.tick(now):
             effects.append(self._datagram(to, HELLO + hello))
         self._follow_overlay(now)
-        # Until it has a place, alone or not, the robot waits: it would begin on its own, and map its mates.
         if self._waiting and self._told is not None and not self.hold:
             happened, self._waiting = self._waiting, []
             effects += self._agree(happened, now)
@@ -145,9 +146,18 @@ class NetworkedAgent:
                 link = self._links.setdefault(k, ReliableLink(self.agent.boot, 2 * self._lease))
                 link.open(*session, now)
                 self._sessions[k] = session
-        if place != self._told and (self._told or place.neighbours or now >= self._alone_until):
+        if place != self._found:
+            self._found, self._settled = place, now + SETTLED
+        if place != self._told and (self._told or now >= self._begin_at):
+            tree = TreeChanged(place.epoch, place.parent, place.neighbours, place.size)
+            # What came before the first tree, came from neighbours on it.
+            self._waiting.insert(len(self._waiting) if self._told else 0, tree)
             self._told = place
-            self._waiting.append(TreeChanged(place.epoch, place.parent, place.neighbours, place.size))
+
+    @property
+    def _begin_at(self) -> float:
+        """Return when to tell the agent its first place [s]: it would map mates that it does not know of."""
+        return min(self._settled, self._alone_until) if self.overlay.place.neighbours else self._alone_until
 
     # -- speaking ------------------------------------------------------------------------------------
 

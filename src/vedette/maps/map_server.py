@@ -16,10 +16,10 @@ from vedette.errors import InputError, nearest_name
 from vedette.maps.atomic import atomic_path
 from vedette.maps.frame import FREE, OCCUPIED, UNKNOWN, GridFrame
 from vedette.maps.image import read_levels
+from vedette.yaml_file import read_yaml
 
 RESOLUTIONS = (0.005, 10.0)  # accepted [m]
 MAX_ORIGIN = 1e6  # accepted [m]: farther out, metres lose the millimetres
-_MAX_YAML = 100_000  # [characters]
 _MODES = ("trinary", "scale", "raw")
 _PIXELS = {  # grey level of UNKNOWN, FREE and OCCUPIED, as map_saver writes them
     "trinary": np.array([205, 254, 0], np.uint8),
@@ -134,13 +134,7 @@ def read_meta(path: Path) -> MapMeta:
 
 
 def _load_yaml(path: Path) -> dict[str, Any]:
-    try:
-        with path.open(encoding="utf-8") as file:
-            content = yaml.safe_load(file.read(_MAX_YAML))
-    except OSError as error:
-        raise InputError(f"cannot read map {path}: {error.strerror or error}") from error
-    except (yaml.YAMLError, UnicodeDecodeError, ValueError, RecursionError) as error:
-        raise InputError(f"{path} is not a map: it is not valid YAML") from error
+    content = read_yaml(path, "map", "it is not a map without an 'image: FILE' line")
     if not isinstance(content, dict):
         raise InputError(f"{path} is not a map: it has no 'image: FILE' line")
     return content
@@ -178,11 +172,11 @@ def _origin(path: Path, value: Any) -> tuple[float, float]:
 
 def _number(value: Any) -> float:
     """Return the value as a float; NaN, which no range holds, where it is none."""
-    if isinstance(value, bool) or not isinstance(value, int | float | str):
+    if isinstance(value, bool) or not isinstance(value, int | float):
         return math.nan
     try:
-        return float(value)  # text too: the YAML reader takes 5e-2 for text
-    except (ValueError, OverflowError):
+        return float(value)
+    except OverflowError:  # a whole number of hundreds of digits
         return math.nan
 
 

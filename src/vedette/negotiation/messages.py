@@ -8,6 +8,7 @@ from typing import Annotated, Any, Generic, TypeAlias, cast
 
 import msgspec
 
+from vedette import wire
 from vedette.errors import InputError
 from vedette.problem.objective import Codec, ImpactT
 
@@ -97,11 +98,11 @@ def encode(message: Message[ImpactT], codec: Codec[ImpactT]) -> bytes:
 def decode(data: bytes, codec: Codec[ImpactT]) -> Message[ImpactT]:
     """Return the message that ``encode`` was given; ``InputError`` if it is malformed."""
     try:
-        message: Any = _DECODER.decode(data)
+        message: Any = wire.decode(_DECODER, data, "negotiation message")
         if not isinstance(message, Stop) and message.mu is not None:
             message = msgspec.structs.replace(message, mu=codec.decode(message.mu))
-    except (msgspec.MsgspecError, ValueError) as error:
-        raise InputError(f"negotiation message of {len(data)} bytes is malformed: {error}") from error
+    except ValueError as error:
+        raise InputError(str(error)) from error
     return cast("Message[ImpactT]", message)
 
 

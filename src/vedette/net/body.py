@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from math import hypot
 from typing import Annotated
 
 import msgspec
 from msgspec import Meta
 
+from vedette import wire
 from vedette.sim.own_body import Seen
 
+TOUCH = 0.01  # bodies that overlap by more are in one place [m]
 Metre = Annotated[float, Meta(ge=-1e6, le=1e6)]
 
 
@@ -37,8 +40,14 @@ def decode(payload: bytes) -> Seen:
     Raises:
         ValueError: malformed.
     """
-    try:
-        body = _DECODER.decode(payload)
-    except msgspec.DecodeError as error:
-        raise ValueError(f"body report of {len(payload)} bytes is malformed: {error}") from None
+    body = wire.decode(_DECODER, payload, "body report")
     return Seen(body.x, body.y, body.heading, body.vx, body.vy, body.radius)
+
+
+def inside(body: Seen, other: Seen) -> bool:
+    """Tell whether two bodies are in one place: each drove there while nobody told it of the other.
+
+    They must pass through each other until they are apart again; else neither could ever move.
+    """
+    gap = hypot(body.x - other.x, body.y - other.y) - body.radius - other.radius
+    return gap < -TOUCH

@@ -146,11 +146,12 @@ class AgentProcess:
 
     def _see(self, robot: int, payload: bytes, now: float) -> None:
         try:
-            self.body.see(robot, bodies.decode(payload))
+            seen = bodies.decode(payload)
         except ValueError:
             self.witness.malformed += 1
             return
         self._seen[robot] = now
+        self.body.see(robot, None if bodies.inside(seen, self.body.shown) else seen)
 
     def _report(self, now: float, state: str | None = None) -> None:
         """Tell the operator, if any, how it goes; not while the agent is at work in another thread."""

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import zlib
-from typing import Annotated, TypeVar
+from typing import Annotated
 
 import msgspec
 import numpy as np
 from msgspec import Meta
 from numpy.typing import NDArray
 
+from vedette import wire
 from vedette.maps import OCCUPIED
 
 MOST_BYTES = 1 << 24
@@ -17,7 +18,6 @@ MOST_CELLS = 1 << 26
 Count = Annotated[int, Meta(ge=0, le=2**53)]
 Real = Annotated[float, Meta(ge=-1e9, le=1e9)]
 Word = Annotated[str, Meta(max_length=64)]
-MessageT = TypeVar("MessageT")
 
 
 class Spread(msgspec.Struct, frozen=True, array_like=True):
@@ -114,7 +114,7 @@ def read_condition(payload: bytes) -> Condition:
     Raises:
         ValueError: malformed.
     """
-    return _read(_CONDITIONS, payload)
+    return wire.decode(_CONDITIONS, payload, "report")
 
 
 def read_report(payload: bytes) -> Report:
@@ -123,7 +123,7 @@ def read_report(payload: bytes) -> Report:
     Raises:
         ValueError: malformed.
     """
-    return _read(_REPORTS, payload)
+    return wire.decode(_REPORTS, payload, "report")
 
 
 def classes_of(report: Report) -> NDArray[np.uint8]:
@@ -162,10 +162,3 @@ def _inflated(packed: bytes, size: int) -> bytes:
     if len(plain) != size:
         raise ValueError(f"report: a grid holds {len(plain)} bytes or more, not {size}")
     return plain
-
-
-def _read(decoder: msgspec.msgpack.Decoder[MessageT], payload: bytes) -> MessageT:
-    try:
-        return decoder.decode(payload)
-    except msgspec.DecodeError as error:
-        raise ValueError(f"report of {len(payload)} bytes is malformed: {error}") from None

@@ -7,6 +7,7 @@ from typing import Annotated, Final, NamedTuple
 import msgspec
 from msgspec import Meta
 
+from vedette import wire
 from vedette.overlay.stamp import BOOT_BITS, EPOCH_BITS, ROBOT_BITS, Stamp
 
 TICKS = 10_000  # a second
@@ -65,10 +66,7 @@ def decode(sender: int, payload: bytes) -> Hello:
     """
     if len(payload) > MOST_BYTES:
         raise ValueError(f"hello of {len(payload)} bytes; at most {MOST_BYTES} are taken")
-    try:
-        hello = _DECODER.decode(payload)
-    except msgspec.DecodeError as error:
-        raise ValueError(f"hello of {len(payload)} bytes is malformed: {error}") from None
+    hello = wire.decode(_DECODER, payload, "hello")
     is_root = (hello.root, hello.root_boot) == (sender, hello.boot)
     if is_root != (hello.distance == 0) or (hello.root == sender and not is_root):
         raise ValueError(f"hello: root {hello.root} at distance {hello.distance}, told by robot {sender}")

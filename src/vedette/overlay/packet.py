@@ -9,6 +9,8 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
+from vedette import wire
+
 MOST_MESSAGES = 64  # in a packet
 WINDOW = 256  # messages that may be under way
 REPORTED = 62  # messages beyond the first gap that an acknowledgement tells of
@@ -42,10 +44,7 @@ def decode(payload: bytes) -> Packet:
     """
     if len(payload) > MOST_BYTES + 64:
         raise ValueError(f"packet of {len(payload)} bytes; at most {MOST_BYTES + 64} are taken")
-    try:
-        return _DECODER.decode(payload)
-    except msgspec.DecodeError as error:
-        raise ValueError(f"packet of {len(payload)} bytes is malformed: {error}") from None
+    return wire.decode(_DECODER, payload, "packet")
 
 
 def session_of(sender_boot: int, receiver_boot: int, stamp: int) -> int:

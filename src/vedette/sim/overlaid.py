@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from vedette.agent import Agent, NetworkedAgent
 from vedette.agent.effects import Traffic
-from vedette.agent.events import Event
+from vedette.agent.events import Event, Pose, Scan, Sensed
 from vedette.record.links import Link, links_of
 from vedette.sim.datagrams import Datagrams
 from vedette.sim.faults import Crashes, Freezes, Happening, Restarts, SkewedClock, Skews, Thaws, Timeline
@@ -25,7 +25,6 @@ from vedette.sim.network import FIRST_BOOT, Act, Spawn
 ROUNDING = 1e-7  # clocks round: a robot that wakes is never too early [s]
 RADIO_PERIOD = 0.5  # links follow the robots so often [s]
 BUFFER = 512  # datagrams that wait for a frozen robot
-EVENTS = 64  # that a frozen robot's sensors leave for it
 
 LossesNow = Callable[[], NDArray[np.float64]]
 """The links as they are now: ``(n, n)`` share of datagrams lost, 1 where there is no link."""
@@ -41,7 +40,7 @@ class _Robot:
     up: bool = True
     frozen: bool = False
     inbox: deque[tuple[int, bytes]] = field(default_factory=lambda: deque(maxlen=BUFFER))
-    sensed: deque[Event] = field(default_factory=lambda: deque(maxlen=EVENTS))
+    sensed: list[Event] = field(default_factory=list)  # while it could not take it in
     scheduled: float = float("inf")  # its next waking [s]
     peers: tuple[int, ...] = ()
 
@@ -155,10 +154,11 @@ class OverlaidNetwork:
                 yield i, self._act(i, partial(robot.life.peers, peers), now)
 
     def tell(self, i: int, events: Sequence[Event], now: float) -> Act:
-        """Let a robot's agent take in what its robot senses; what a frozen one senses waits."""
+        """Let a robot's agent take in what its robot senses; of a frozen one the latest waits for it."""
         robot = self._robots[i]
         if not robot.runs:
-            robot.sensed.extend(events)
+            lasting = [event for event in robot.sensed if not isinstance(event, Pose | Scan | Sensed)]
+            robot.sensed = [*lasting, *events]
             return list
         return self._act(i, partial(robot.life.step, events), now)
 
@@ -233,8 +233,7 @@ class OverlaidNetwork:
         while robot.inbox:
             sender, payload = robot.inbox.popleft()
             yield i, self._act(i, partial(robot.life.hear, sender, payload), now)
-        events = list(robot.sensed)
-        robot.sensed.clear()
+        events, robot.sensed = robot.sensed, []
         yield i, self._act(i, partial(robot.life.step, events), now)
 
     def _act(self, i: int, what: Callable[[float], Sequence[Any]], now: float) -> Act:

@@ -7,6 +7,8 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
+from vedette import wire
+
 Number = Annotated[int, Meta(ge=0, le=2**62)]
 
 
@@ -28,7 +30,4 @@ encode = msgspec.msgpack.Encoder().encode
 
 def decode(payload: bytes) -> TrackMessage:
     """Return the message; ValueError if malformed."""
-    try:
-        return _DECODER.decode(payload)
-    except msgspec.DecodeError as error:
-        raise ValueError(f"track payload of {len(payload)} bytes is malformed: {error}") from None
+    return wire.decode(_DECODER, payload, "track payload")

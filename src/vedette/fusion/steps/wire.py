@@ -9,6 +9,7 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
+from vedette import wire
 from vedette.fusion.link import Greeting, Key
 
 Number = Annotated[int, Meta(ge=0, le=2**62)]
@@ -57,10 +58,7 @@ encode = msgspec.msgpack.Encoder().encode
 
 def decode(data: bytes) -> Payload:
     """Return the payload; ValueError if malformed."""
-    try:
-        return _DECODER.decode(data)
-    except msgspec.DecodeError as error:
-        raise ValueError(f"step evidence of {len(data)} bytes is malformed: {error}") from None
+    return wire.decode(_DECODER, data, "step evidence")
 
 
 def check_step(step: Step) -> None:
