@@ -132,10 +132,7 @@ def classes_of(report: Report) -> NDArray[np.uint8]:
     Raises:
         ValueError: not a map of that size.
     """
-    cells = report.rows * report.cols
-    if cells > MOST_CELLS:
-        raise ValueError(f"report: a map of {cells} cells; at most {MOST_CELLS} are taken")
-    classes = np.frombuffer(_inflated(report.classes, cells), np.uint8)
+    classes = np.frombuffer(_inflated(report.classes, _cells(report)), np.uint8)
     if classes.max() > OCCUPIED:
         raise ValueError("report: a cell is neither unknown, free nor occupied")
     return classes.reshape(report.rows, report.cols)
@@ -147,9 +144,16 @@ def seen_of(report: Report) -> NDArray[np.bool_]:
     Raises:
         ValueError: not of that size.
     """
-    cells = report.rows * report.cols
+    cells = _cells(report)
     bits = np.frombuffer(_inflated(report.seen, -(-cells // 8)), np.uint8)
     return np.unpackbits(bits, count=cells).astype(np.bool_).reshape(report.rows, report.cols)
+
+
+def _cells(report: Report) -> int:
+    cells = report.rows * report.cols
+    if cells > MOST_CELLS:
+        raise ValueError(f"report: a map of {cells} cells; at most {MOST_CELLS} are taken")
+    return cells
 
 
 def _inflated(packed: bytes, size: int) -> bytes:
