@@ -38,9 +38,14 @@ def provenance(command: str, made: str) -> Provenance:
         made=made,
         version=release if commit == UNKNOWN else f"{release}, commit {commit}",
         code=fingerprint(),
-        machine=f"{_processor()}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}",
+        machine=machine(),
         python=platform.python_version(),
     )
+
+
+def machine() -> str:
+    """Return what this machine is, as words."""
+    return f"{_processor()}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}"
 
 
 def commit_of(folder: Path) -> str:
@@ -49,9 +54,9 @@ def commit_of(folder: Path) -> str:
     ``unknown`` without git, or where the folder is not part of the repository around it, as a package that is
     installed below somebody's own repository is not.
     """
-    if not _git(folder, "ls-files", "--", "__init__.py"):
+    if not git(folder, "ls-files", "--", "__init__.py"):
         return UNKNOWN
-    return _git(folder, "describe", "--always", "--dirty", "--exclude=*") or UNKNOWN
+    return git(folder, "describe", "--always", "--dirty", "--exclude=*") or UNKNOWN
 
 
 @cache
@@ -68,7 +73,8 @@ def fingerprint(package: Path = PACKAGE) -> str:
     return digest.hexdigest()[:12]
 
 
-def _git(folder: Path, *arguments: str) -> str:
+def git(folder: Path, *arguments: str) -> str:
+    """Return what git says in a folder; nothing where it cannot."""
     try:
         done = subprocess.run(("git", *arguments), cwd=folder, capture_output=True, text=True, check=True)
     except (OSError, subprocess.CalledProcessError):
