@@ -13,6 +13,7 @@ from vedette import Tree
 from vedette.agent import messages
 from vedette.agent.effects import Traffic
 from vedette.agent.events import Message, Pose, Scan, Sensed
+from vedette.agent.mates import MOST_MATES
 from vedette.agent.messages import Beacon
 
 BEACON = Beacon(1, 1, 1, 1100, 100, 0, 0, 20, 50, (0, 0, 100, 0))
@@ -227,3 +228,15 @@ def test_what_any_other_sensor_saw_reaches_the_mission_as_a_scan_does() -> None:
     before = toy(agent).observed
     team.tell(0, Sensed("something", team.now))
     assert toy(agent).observed == before + 1
+
+
+def test_team_mates_beyond_the_largest_team_are_dropped_and_counted_and_those_known_stay_up_to_date() -> None:
+    team, _, _ = toy_team(Tree.chain(2))
+    agent = team.agents[0]
+    for robot in range(1, MOST_MATES + 11):
+        team.tell(0, Message(1, messages.encode(msgspec.structs.replace(BEACON, robot=robot))))
+    assert agent.dropped == 10
+    assert [mate.robot for mate in agent.mates.all()] == list(range(1, MOST_MATES + 1))
+    team.tell(0, Message(1, messages.encode(msgspec.structs.replace(BEACON, sequence=2, x=1500))))
+    assert agent.dropped == 10
+    assert agent.mates.all()[0].x == 15.0

@@ -8,8 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from agent_team import Post, Team, nested_kind, toy, toy_team
+from tests.fuzz.fingerprint import fingerprint
 from vedette import Tree, negotiate
-from vedette.agent import messages
+from vedette.agent import Pace, messages
 from vedette.agent.effects import Traffic
 from vedette.agent.events import Message, Stuck
 from vedette.negotiation import Chooser
@@ -249,3 +250,21 @@ def test_a_robot_alone_decides_and_ends_without_a_message() -> None:
     team.run(12.0)
     assert team.agents[0].done
     assert team.log == []
+
+
+@pytest.mark.parametrize(("apart", "taken"), [(-60.0, False), (-15.0, True), (15.0, True), (1e9, False)])
+@pytest.mark.parametrize("beat", [0.0, 1.0])
+def test_who_plans_on_beats_freezes_nothing_by_a_clock_that_is_far_from_its_own(
+    beat: float, apart: float, taken: bool
+) -> None:
+    team, _, _ = toy_team(Tree.chain(2))
+    team.now, agent = 100.0, team.agents[1]
+    agent.rounds.pace = Pace(beat=beat)
+    team.tell(1, Message(0, messages.encode(messages.Begin(1, 5, 1))))
+    before = fingerprint(agent, frozenset({"dropped"}))
+    freeze = messages.Freeze(1, 5, round(1000.0 * (team.now + apart)), 0, 2)
+    team.tell(1, Message(0, messages.encode(freeze)))
+    taken = taken or beat == 0.0
+    assert agent.dropped == (0 if taken else 1)
+    assert (len(toy(agent).frozen_at) == 1) == taken
+    assert (fingerprint(agent, frozenset({"dropped"})) != before) == taken

@@ -13,6 +13,7 @@ from vedette.negotiation import SCHEMES
 from vedette.sim.exploration import FUSIONS, ExploreSetup
 from vedette.sim.explore import explore, observer_of, prepare, views
 from vedette.sim.links import Links
+from vedette.sim.score import Reference
 from vedette.sim.world import World
 from vedette.team import PlatformSpec
 

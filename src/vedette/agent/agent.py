@@ -47,7 +47,7 @@ def _take(agent: Agent, event: Event, now: float) -> list[Effect]:
         case TreeChanged():
             if event.epoch != agent.rounds.tree.epoch:
                 agent.quiet = 0  # who is new may know of something left to do
-            agent.rounds.join(event)
+            agent.rounds.join(event, now)
             agent.mission.fusion.set_neighbours(event.neighbours)
     return []
 

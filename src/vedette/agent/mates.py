@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from vedette.agent.messages import Beacon
 
+MOST_MATES = 1024  # that are kept; each has a path of at most 500 points
 SILENT = 3.0  # a mate not heard for so long stands where it was last [s]
 
 
@@ -39,7 +40,13 @@ class Mates:
     _mates: dict[int, Mate] = field(default_factory=dict)
 
     def hear(self, beacon: Beacon, now: float) -> bool:
-        """Keep a beacon; tell whether it is news."""
+        """Keep a beacon; tell whether it is news.
+
+        Raises:
+            ValueError: of a robot beyond the largest team.
+        """
+        if beacon.robot not in self._mates and len(self._mates) == MOST_MATES:
+            raise ValueError(f"beacon of robot {beacon.robot}: {MOST_MATES} team-mates are known already")
         stamp = beacon.boot, beacon.sequence
         if self._newest.get(beacon.robot, (-1, -1)) >= stamp:
             return False

@@ -70,7 +70,7 @@ class Freeze(msgspec.Struct, frozen=True, array_like=True, tag=5):
 
     epoch: Count
     sequence: Count
-    t0: Count  # the root's clock [ms]
+    t0: Annotated[int, Meta(ge=-(2**53), le=2**53)]  # the root's clock [ms]
     digest: Annotated[int, Meta(ge=0)]  # of the root's evidence; 64 bits
     robots: Robots  # that take part, in all
     notes: Notes = ()  # of the whole team

@@ -13,14 +13,14 @@ from typing import TypeAlias
 
 from vedette.agent.agent import step
 from vedette.agent.effects import Job, Motion, Send, Traffic
-from vedette.agent.events import Event, JobDone, Message, TreeChanged
+from vedette.agent.events import Event, Message, TreeChanged
 from vedette.agent.state import Agent
-from vedette.overlay import Overlay, Place, ReliableLink, Stamp
+from vedette.overlay import Overlay, Place, ReliableLink
 
 HELLO, PACKET, BEACON = b"H", b"P", b"B"  # a datagram's first byte
 SETTLED = 0.5  # a first place on a tree has to last so long before the agent is told of it [s]
 ALONE_AT_FIRST = 2.0  # a robot waits so long to be taken in by others before it begins on its own [s]
-MOST_WAITING = 4096  # events that wait for a job to end
+MOST_WAITING = 4096  # events that wait for a job to end, beside new places on the tree
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class NetworkedAgent:
         self._lease = lease
         self._alone_until = now + ALONE_AT_FIRST
         self._told: Place | None = None  # the place on the tree that the agent knows of
-        self._found, self._settled = self.overlay.place, now  # the latest place, and when it has proved lasting
+        self._found, self._settled = self.overlay.place, now  # latest place, and when it has proved lasting
         self._links: dict[int, ReliableLink] = {}
         self._sessions: dict[int, tuple[int, int]] = {}  # boot and epoch that each link is open to
         self._waiting: list[Event] = []
@@ -114,7 +114,9 @@ class NetworkedAgent:
         if self._waiting and self._told is not None and not self.hold:
             happened, self._waiting = self._waiting, []
             effects += self._agree(happened, now)
-        del self._waiting[:-MOST_WAITING]
+        if len(self._waiting) > MOST_WAITING:
+            old, self._waiting = self._waiting[:-MOST_WAITING], self._waiting[-MOST_WAITING:]
+            self._waiting[:0] = [event for event in old if isinstance(event, TreeChanged)]
         return effects + self._poll(now)
 
     def leave(self, now: float) -> list[Datagram]:

@@ -27,8 +27,10 @@ from vedette.negotiation import Claims, JacobiNode, Negotiator, Outcome, TokenNo
 from vedette.problem import Reach
 
 CALL_AGAIN = 1.0  # a call not answered is repeated after so long [s]
+SETTLING = 0.2  # a new tree is left alone for so long before a round [s]
 MAX_SWEEPS = 12
 MOST_NOTES = 512  # in one message
+CLOCKS_APART = 20.0  # that the root's may be from this robot's, where rounds keep to beats [s]
 MOST_EARLY = 8  # negotiation messages of one neighbour that wait for this robot's preparation
 
 
@@ -130,18 +132,21 @@ class Rounds:
         """Epoch and sequence number of the round going on, or of the last one."""
         return self.tree.epoch, self._sequence
 
-    def join(self, tree: TreeChanged) -> None:
+    def join(self, tree: TreeChanged, now: float) -> None:
         """Take part on another tree, where what went on on the old one is void.
 
-        In the same epoch neighbours are only added: they take part from the next round on.
+        In the same epoch neighbours are only added: they take part from the next round on. Whoever is new, or
+        gone, makes a plan worth having soon.
         """
-        same = tree.epoch == self.tree.epoch
-        self.tree = tree
-        if same:
+        before, self.tree = self.tree, tree
+        if (tree.epoch, tree.neighbours) == (before.epoch, before.neighbours):
+            return
+        self._wanted = True
+        self._ended = min(self._ended, now - self.pace.interval + SETTLING)
+        if tree.epoch == before.epoch:
             return
         self._round = None
         self._sequence = 0
-        self._wanted = True
         self._called = -1e9
 
     def want(self) -> None:
@@ -247,12 +252,20 @@ class Rounds:
         return [*news, self._say(self.tree.parent, flushed)]
 
     def freeze(self, message: Freeze, now: float) -> list[Effect]:
-        """Everything known has arrived: freeze it."""
+        """Everything known has arrived: freeze it.
+
+        Raises:
+            ValueError: the team's clocks do not agree, though its rounds keep to their beats. Such a mission
+                predicts what it knows to the root's time, step by step, and would not come to an end.
+        """
         if not self._matches(message.epoch, message.sequence):
             return []
         assert self._round
         if self._round.belief is not None:
             return []
+        apart = message.t0 / 1000.0 - now
+        if self.pace.beat and abs(apart) > CLOCKS_APART:
+            raise ValueError(f"freeze: the root's clock is {apart:.1f} s from this robot's")
         return self._freeze(message, now)
 
     def _freeze(self, message: Freeze, now: float) -> list[Effect]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
+from math import inf
 from typing import Protocol
 
 import numpy as np
@@ -130,7 +131,7 @@ class Agent:
 
     def is_due(self, what: str, period: float, now: float) -> bool:
         """Tell whether something periodic [s] is to be done now, and note when it will be again."""
-        if now < self.due.get(what, -1.0) - 1e-9:
+        if now < self.due.get(what, -inf) - 1e-9:
             return False
         self.due[what] = now + period
         return True

@@ -51,7 +51,7 @@ class _Robot:
 
 
 class OverlaidNetwork:
-    """Everybody keeps up the team's tree over datagrams that may get lost; ``vedette.sim.network.Network``."""
+    """Everybody keeps up the tree over datagrams that may get lost; ``vedette.sim.network.Network``."""
 
     def __init__(
         self,
