@@ -12,7 +12,22 @@ from numpy.typing import NDArray
 
 from tests.step_network import Edges, StepNetwork, chain, random_tree, ring
 from vedette.errors import InputError
-from vedette.fusion.gaussian import WAYS, Information, Motion, TrackFusion, intersect, track_fusion
+from vedette.fusion.gaussian import (
+    WAYS,
+    GaussianChannel,
+    Information,
+    Likelihoods,
+    Motion,
+    Packing,
+    TrackFusion,
+    intersect,
+    track_fusion,
+)
+from vedette.fusion.gaussian.wire import TrackMessage
+from vedette.fusion.gaussian.wire import encode as encode_tracks
+from vedette.fusion.steps import Sparse
+from vedette.fusion.steps.wire import Payload, Section, pack
+from vedette.fusion.steps.wire import encode as encode_steps
 
 Floats = NDArray[np.float64]
 TARGETS = 150  # independent of each other: as many Monte-Carlo runs in one
@@ -405,3 +420,125 @@ def test_damaged_track_payloads_raise_value_error_and_change_nothing(way: str) -
         with pytest.raises(ValueError, match=r"payload|evidence"):
             receiver.receive(0, payload[:cut], net.now)
     assert (receiver.estimate()[1].matrix == before).all()
+
+
+@settings(deadline=None, max_examples=40)
+@given(seed=st.integers(0, 10**6), robots=st.integers(1, 60), scale=st.floats(1e-6, 1.0))
+def test_no_sum_of_real_likelihoods_is_refused(seed: int, robots: int, scale: float) -> None:
+    """However near to singular: each sees a line or two through the targets' states."""
+    rng, kinds = np.random.default_rng(seed), Likelihoods(Packing(3, 4), 1.0, 1e4)
+    total = kinds.elements.zero()
+    for _ in range(robots):
+        lines = rng.normal(size=(3, int(rng.integers(1, 3)), 4)) * (rng.random((3, 1, 1)) < 0.6)
+        matrix = np.einsum("tki,tkj->tij", lines, lines)
+        matrix *= scale / max(float(np.abs(matrix).max()), 1e-9)
+        likelihood = Information(matrix, rng.normal(0.0, 100.0, (3, 4)))
+        total = kinds.elements.add(total, kinds.quantise(likelihood))
+    data = kinds.elements.encode(total)
+    assert kinds.elements.encode(kinds.elements.decode(data)) == data
+
+
+def evidence(*elements: Sparse, robot: int = 7, steps: int = 1) -> bytes:
+    """What a robot tells that holds these elements, one after another, of the first steps."""
+    encode = Likelihoods(Packing(2, 4), 1.0, 1e4).elements.encode
+    entries = b"".join(pack(k % steps, encode(element)) for k, element in enumerate(elements))
+    return encode_steps(Payload(3, None, (), (Section(robot, 3, 0, len(elements), entries),)))
+
+
+def of_first_entry(value: int) -> Sparse:
+    """The first target's place along x, known so well."""
+    return Sparse(np.array([0]), np.array([value]))
+
+
+@pytest.mark.parametrize("way", ["replicated", "sums"])
+def test_a_likelihood_below_zero_is_refused_and_changes_nothing(way: str) -> None:
+    robot = fusion(way, moving(2), 1)
+    robot.set_neighbours([7])
+    for bad in (of_first_entry(-(1 << 40)), Sparse(np.array([1]), np.array([1 << 40]))):
+        with pytest.raises(ValueError, match="not positive semidefinite"):
+            robot.receive(7, evidence(bad), 0.0)
+    robot.advance(3)
+    assert (robot.estimate()[1].matrix == fusion_alone(way, 3).matrix).all()
+    robot.receive(7, evidence(of_first_entry(1 << 40)), 0.0)
+    assert robot.estimate()[1].matrix[0, 0, 0] > fusion_alone(way, 3).matrix[0, 0, 0]
+
+
+def fusion_alone(way: str, step: int) -> Information:
+    """The tracks of a robot that has heard nothing."""
+    robot = fusion(way, moving(2), 0)
+    robot.advance(step)
+    return robot.estimate()[1]
+
+
+def test_sums_that_run_over_leave_their_step_out_at_every_robot_and_in_any_order() -> None:
+    elements = [of_first_entry(1 << 60)] * 9 + [of_first_entry(1 << 50)]
+    tracks = []
+    for order in (1, -1):
+        robot = fusion("replicated", moving(2), 1)
+        robot.set_neighbours([7])
+        robot.receive(7, evidence(*elements[::order]), 0.0)
+        robot.advance(2)
+        tracks.append(robot.estimate()[1].matrix)
+    assert (tracks[0] == tracks[1]).all()
+    assert (tracks[0] == fusion_alone("replicated", 2).matrix).all()
+
+
+EXTREME = {
+    "vector": lambda y: replace(y, vector=y.vector + 1e300),
+    "matrix": lambda y: replace(y, matrix=y.matrix * 1e300),
+    "nothing": lambda y: replace(y, matrix=y.matrix * 1e-30),
+    "negative": lambda y: replace(y, matrix=-y.matrix),
+    "correlated": lambda y: replace(y, matrix=np.ones((2, 4, 4)) + 1e-15 * np.eye(4)),
+    "fast": lambda y: replace(y, matrix=np.tile(np.diag([1e15, 1e15, 1e-17, 1e-17]), (2, 1, 1))),
+}
+
+
+@pytest.mark.parametrize("way", ["channel", "intersection"])
+@pytest.mark.parametrize("kind", EXTREME)
+def test_tracks_that_rounding_would_ruin_are_refused_and_change_nothing(way: str, kind: str) -> None:
+    of = moving(2)
+    robot = fusion(way, of, 1)
+    robot.set_neighbours([0])
+    nonce = 3 << 24 if way == "channel" else 3
+    data = Packing(2, 4).encode(EXTREME[kind](of.prior))
+    for sent, step in enumerate((0, 5), start=1):
+        with pytest.raises(ValueError, match="track payload"):
+            robot.receive(0, encode_tracks(TrackMessage(nonce, -1, sent, 0, 0, step, data)), 0.0)
+    robot.advance(9)
+    assert (robot.estimate()[1].matrix == fusion_alone(way, 9).matrix).all()
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_prior_that_rounding_would_ruin_is_told(way: str) -> None:
+    of = moving(2)
+    with pytest.raises(InputError, match="choose another unit or prior"):
+        fusion(way, replace(of, prior=EXTREME["nothing"](of.prior)), 0)
+
+
+def test_generations_go_round_so_that_no_neighbour_can_use_them_up() -> None:
+    of = moving(2)
+    robots = [fusion("channel", of, i) for i in range(3)]
+    robots[1].set_neighbours([0, 2])
+    last = (1 << 24) - 1
+    for generation in (last // 2, last - 1, last):
+        robots[1].receive(0, encode_tracks(TrackMessage((3 << 24) + generation, -1, 0, 0, 0, 0, b"")), 0.0)
+        assert generation_of(robots[1]) == generation
+    robots[1].set_neighbours([2])
+    robots[2].set_neighbours([1])
+    assert generation_of(robots[1]) == 1
+    robots[2].observe(0, of.look(np.zeros((2, 4)), np.random.default_rng(4)))
+    for now in range(0, 12, 3):
+        for a, b in ((1, 2), (2, 1)):
+            payload = robots[a].outgoing(b, float(now))
+            if payload is not None:
+                robots[b].receive(a, payload, float(now))
+    assert generation_of(robots[2]) == 1
+    assert robots[1].digest == robots[2].digest
+    robots[1].receive(2, encode_tracks(TrackMessage((3 << 24) + last, -1, 0, 0, 0, 0, b"")), 0.0)
+    assert generation_of(robots[1]) == 1  # that was before
+
+
+def generation_of(robot: TrackFusion) -> int:
+    """The generation that a channel filter is in, from what it tells."""
+    assert isinstance(robot, GaussianChannel)
+    return robot.generation

@@ -24,7 +24,8 @@ class ReplicatedEvidence:
     copies merge by "the later version wins". So loss, repetition, reordering, cycles, partition, re-joining
     and restarts neither lose evidence that any holder lives to tell, nor count any twice.
 
-    Memory is O(contributors x the area each has seen), 3 bytes a cell, beside 6 bytes a cell for the team.
+    Memory is O(contributors x the area each has seen), 3 bytes a cell, beside 6 bytes a cell for the team. A
+    contributor that shows nothing costs addresses, not memory: the system hands out pages as tiles fill.
     ``own`` grids are int8 log-odds ``(rows, cols)``; times are seconds of any one clock of this robot.
     """
 

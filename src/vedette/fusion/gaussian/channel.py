@@ -13,7 +13,7 @@ from vedette.fusion.link import Boots, check_boot
 
 RESEND_AFTER = 2.5  # [s]
 GENERATION_BITS = 24
-_GENERATIONS = (1 << GENERATION_BITS) - 1
+_CYCLE = (1 << GENERATION_BITS) - 1  # generations 1.._CYCLE, then from 1 again
 
 
 class GaussianChannel:
@@ -32,6 +32,7 @@ class GaussianChannel:
     **generation** begins: word of it spreads over the tree, all robots' tracks are merged once by covariance
     intersection, from the leaves inwards, and the result goes outwards; from there on channels are exact
     again. What all robots knew is kept whole; of what only some knew, a part. Nothing is counted twice.
+    Generations are numbered in a circle, 0 excepted, which comes before all: so no neighbour can use them up.
     """
 
     def __init__(
@@ -49,7 +50,7 @@ class GaussianChannel:
         ``boot < 2**38`` must differ from those of the robot's earlier starts.
         """
         check_boot(boot)
-        self._robot, self._boot, self._generation = robot, boot, 0
+        self._robot, self._boot, self.generation = robot, boot, 0
         self._node = Node(prior, motion, start)
         self._origin: Information | None = prior  # the prior, predicted; None once there is a new generation
         self._settled = True  # the merging at the generation's start has come to this robot
@@ -64,8 +65,12 @@ class GaussianChannel:
         return self._node.digest
 
     @property
+    def _next(self) -> int:
+        return self.generation % _CYCLE + 1
+
+    @property
     def _nonce(self) -> int:
-        return (self._boot << GENERATION_BITS) + self._generation
+        return (self._boot << GENERATION_BITS) + self.generation
 
     def observe(self, step: int, likelihood: Information) -> None:
         """Take in this robot's likelihood of the present step (or a later one: advance to it).
@@ -87,7 +92,7 @@ class GaussianChannel:
             for neighbour, edge in self._edges.items():
                 if edge.early is not None and edge.early.step <= self._node.step:
                     message, edge.early = edge.early, None
-                    self._take(neighbour, edge, message)
+                    self._take(neighbour, edge, message, self._node.decoded(message))
 
     def estimate(self) -> tuple[int, Information]:
         """Return the step and the tracks, its evidence included."""
@@ -98,7 +103,7 @@ class GaussianChannel:
         if set(neighbours) == self._edges.keys():
             return
         self._edges = {neighbour: Edge() for neighbour in neighbours}
-        self._renew(self._generation if self._untouched else self._generation + 1)
+        self._renew(self.generation if self._untouched else self._next)
 
     def outgoing(self, neighbour: int, now: float) -> bytes | None:
         """Return tracks that are news to the neighbour or got lost, or a bare acknowledgement; else None."""
@@ -126,34 +131,31 @@ class GaussianChannel:
         """
         message = decode(payload)
         boot, generation = divmod(message.nonce, 1 << GENERATION_BITS)
-        if message.data:
-            self._node.decoded(message)
-        if generation == _GENERATIONS:
-            raise ValueError("track payload: the generation is out of range")
+        theirs = self._node.decoded(message) if message.data else None
         if neighbour not in self._edges or self._boots.is_stale(neighbour, boot):
             return
-        if generation < self._generation:
+        if _is_later(self.generation, generation):
             self._edges[neighbour].owed = True  # so that it learns of the new one
             return
-        if generation > self._generation:
+        if _is_later(generation, self.generation):
             self._renew(generation)
         elif self._edges[neighbour].peer not in (-1, message.nonce):
-            self._renew(self._generation + 1)  # it has restarted, and may have passed on what others know
-        if generation == self._generation:
-            self._hear(neighbour, self._edges[neighbour], message)
+            self._renew(self._next)  # it has restarted, and may have passed on what others know
+        if generation == self.generation:
+            self._hear(neighbour, self._edges[neighbour], message, theirs)
 
-    def _hear(self, neighbour: int, edge: Edge, message: TrackMessage) -> None:
+    def _hear(self, neighbour: int, edge: Edge, message: TrackMessage, theirs: Information | None) -> None:
         edge.peer = message.nonce
         is_answer = message.echo == self._nonce
         if is_answer:
             edge.acknowledged = max(edge.acknowledged, min(message.heard, edge.sent))
-        if message.data and (is_answer or message.echo < 0):
+        if theirs is not None and (is_answer or message.echo < 0):
             edge.owed = True
-            self._take(neighbour, edge, message)
+            self._take(neighbour, edge, message, theirs)
         if is_answer:
             edge.release(message)
 
-    def _take(self, neighbour: int, edge: Edge, message: TrackMessage) -> None:
+    def _take(self, neighbour: int, edge: Edge, message: TrackMessage, theirs: Information) -> None:
         """Take in a neighbour's tracks: their news if we know what is common, all of an offer if we may."""
         if message.sent <= edge.heard:
             return
@@ -161,17 +163,19 @@ class GaussianChannel:
             edge.early = message
             return
         included = message.included if message.echo >= 0 else 0
-        theirs = self._node.decoded(message)
         if included in edge.common:
             merged = self._node.track + theirs - edge.common[included]
-            if not merged.is_proper:
+            common = edge.learnt(theirs, included)
+            if not all(map(self._node.can_keep, (merged, *common.values()))):
                 return  # no honest neighbour forgets what both know
-            edge.learn(theirs, included)
-            self._node.track = merged
+            edge.common, self._node.track = common, merged
             edge.news |= not self._settled and included < edge.sent  # offers after the one that was merged
             self._settled = True
         elif included == 0 and self._may_take(neighbour, edge):
-            self._node.track = intersect(self._node.track, theirs)
+            merged = intersect(self._node.track, theirs)
+            if not self._node.can_keep(merged):
+                return
+            self._node.track = merged
             edge.take()
             edge.news = True
             self._settled = all(other.taken for other in self._edges.values())
@@ -191,7 +195,7 @@ class GaussianChannel:
         """Begin a generation with nothing known to be common (the first one: nothing but the prior)."""
         if generation > 0:
             self._origin, self._untouched = None, False
-        self._generation = generation
+        self.generation = generation
         self._settled = generation == 0 or not self._edges
         common = {} if self._origin is None else {0: self._origin}
         self._edges = {neighbour: Edge(dict(common)) for neighbour in self._edges}
@@ -206,3 +210,10 @@ class GaussianChannel:
     def _may_take(self, neighbour: int, edge: Edge) -> bool:
         """Take one offer of each neighbour; where two offers cross, the robot of higher number takes."""
         return not self._settled and not edge.taken and (edge.sent == 0 or self._robot > neighbour)
+
+
+def _is_later(generation: int, than: int) -> bool:
+    """Tell whether one generation comes after another: by the shorter way round the circle."""
+    if generation == 0 or than == 0:
+        return generation > than
+    return 0 < (generation - than) % _CYCLE <= _CYCLE // 2

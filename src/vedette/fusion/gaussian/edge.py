@@ -62,10 +62,10 @@ class Edge:
         self.sent_at = now
         self.news = False
 
-    def learn(self, theirs: Information, included: int) -> None:
-        """Note that both sides know from now on what the neighbour's tracks add to what they knew."""
+    def learnt(self, theirs: Information, included: int) -> dict[int, Information]:
+        """Return what both sides know once they know what the neighbour's tracks add to what they knew."""
         news = theirs - self.common[included]
-        self.common = {n: track + news for n, track in self.common.items() if n >= included}
+        return {n: track + news for n, track in self.common.items() if n >= included}
 
     def take(self) -> None:
         """Note that the neighbour's offer is merged, and that any of ours will not be."""

@@ -12,6 +12,11 @@ from vedette.errors import InputError
 
 Floats = NDArray[np.float64]
 
+LARGEST = 1e18  # entry that tracks may have: at a precision of 1 nm, or 10^9 km away
+SMALLEST = 1e-18  # on the diagonal: known to 10^6 km
+BELOW = 1e-9  # of its largest entry: a likelihood may have eigenvalues so far below zero, by rounding
+MARGIN = 1e-13  # least eigenvalue of the correlations, far above what rounding takes from it
+
 
 @dataclass(frozen=True, eq=False)
 class Information:
@@ -44,6 +49,21 @@ class Information:
         except np.linalg.LinAlgError:
             return False
         return True
+
+    @property
+    def is_sound(self) -> bool:
+        """Whether rounding leaves them proper in all that follows: entries in range, no correlation near 1.
+
+        ``SMALLEST <= Y_ii``, ``|Y_ij|, |y_i| <= LARGEST``; with ``Y_ij / sqrt(Y_ii Y_jj)`` no eigenvalue is
+        below ``MARGIN``. What a robot sees for itself is far from these bounds; what it is told may be
+        anything.
+        """
+        scale = np.diagonal(self.matrix, axis1=1, axis2=2)
+        most = max(np.abs(self.matrix).max(initial=0.0), np.abs(self.vector).max(initial=0.0))
+        if most > LARGEST or (scale < SMALLEST).any():
+            return False
+        shares = self.matrix / np.sqrt(scale[:, :, None] * scale[:, None, :])
+        return Information(shares - MARGIN * np.eye(scale.shape[1]), self.vector).is_proper
 
     @classmethod
     def from_moments(cls, mean: Floats, covariance: Floats) -> Information:
@@ -134,6 +154,16 @@ def checked_prior(prior: Information, name: str = "prior information matrix") ->
     return prior
 
 
+def checked_start(prior: Information) -> Information:
+    """Return tracks to begin with; InputError unless they are proper, and sound to the last digit."""
+    if not checked_prior(prior).is_sound:
+        raise InputError(
+            f"prior information is too near to certain or to nothing for its numbers: entries must lie in "
+            f"{SMALLEST:g}..{LARGEST:g}, and correlations below 1 by {MARGIN:g}; choose another unit or prior"
+        )
+    return prior
+
+
 def check_likelihood(likelihood: Information, prior: Information) -> None:
     """Raise InputError unless a likelihood fits the tracks: same shape, positive semidefinite."""
     if likelihood.matrix.shape != prior.matrix.shape:
@@ -141,5 +171,5 @@ def check_likelihood(likelihood: Information, prior: Information) -> None:
             f"likelihood has shape {likelihood.matrix.shape}; the tracks have {prior.matrix.shape}"
         )
     least = np.linalg.eigvalsh(likelihood.matrix).min(initial=0.0)
-    if least < -1e-9 * np.abs(likelihood.matrix).max(initial=0.0):
+    if least < -BELOW * np.abs(likelihood.matrix).max(initial=0.0):
         raise InputError(f"likelihood must be positive semidefinite; its least eigenvalue is {least}")

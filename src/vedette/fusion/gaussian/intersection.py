@@ -119,7 +119,7 @@ class IntersectionFusion:
             for name, edge in self._neighbours.items():
                 if edge.early is not None and edge.early.step <= self._node.step:
                     message, edge.early = edge.early, None
-                    self._merge(name, edge, message)
+                    self._merge(name, edge, message, self._node.decoded(message))
 
     def estimate(self) -> tuple[int, Information]:
         """Return the step and the tracks, its evidence included."""
@@ -149,8 +149,7 @@ class IntersectionFusion:
         A payload from a robot that is no neighbour, or from its past, is ignored.
         """
         message = decode(payload)
-        if message.data:
-            self._node.decoded(message)
+        theirs = self._node.decoded(message) if message.data else None
         edge = self._neighbours.get(neighbour)
         if edge is None or self._boots.is_stale(neighbour, message.nonce):
             return
@@ -158,22 +157,21 @@ class IntersectionFusion:
             edge.peer, edge.heard, edge.news, edge.early = message.nonce, 0, True, None
         if message.echo == self._boot:
             edge.acknowledged = max(edge.acknowledged, min(message.heard, edge.sent))
-        if not message.data:
-            return
-        edge.owed = True
-        self._merge(neighbour, edge, message)
+        if theirs is not None:
+            edge.owed = True
+            self._merge(neighbour, edge, message, theirs)
 
-    def _merge(self, neighbour: int, edge: _Neighbour, message: TrackMessage) -> None:
+    def _merge(self, neighbour: int, edge: _Neighbour, message: TrackMessage, theirs: Information) -> None:
         if message.sent <= edge.heard:
             return
         if message.step > self._node.step:
             edge.early = message
             return
         edge.heard = message.sent
-        theirs = self._node.decoded(message)
         before = self._node.track
         merged = intersect(before, theirs)
-        if (log_det(merged.matrix) - log_det(before.matrix) > NEWS).any():
+        gains = (log_det(merged.matrix) - log_det(before.matrix) > NEWS).any()
+        if gains and self._node.can_keep(merged):
             self._node.track = merged
             for name, other in self._neighbours.items():
                 other.news |= name != neighbour

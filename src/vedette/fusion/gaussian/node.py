@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from vedette.errors import InputError
-from vedette.fusion.gaussian.information import Information, Motion, check_likelihood, checked_prior
+from vedette.fusion.gaussian.information import Information, Motion, check_likelihood, checked_start
 from vedette.fusion.gaussian.packing import Packing, check_shape
 from vedette.fusion.gaussian.wire import TrackMessage
 from vedette.fusion.steps.wire import check_step
@@ -16,7 +16,7 @@ class Node:
         check_step(start)
         if motion.transition.shape != prior.matrix.shape:
             raise InputError(f"F has shape {motion.transition.shape}; the prior has {prior.matrix.shape}")
-        self.track = checked_prior(prior)
+        self.track = checked_start(prior)
         self.step = start
         self._motion = motion
         self._packing = Packing(*prior.vector.shape)
@@ -48,5 +48,15 @@ class Node:
         return self._packing.encode(self.track)
 
     def decoded(self, message: TrackMessage) -> Information:
-        """Return a message's tracks, predicted to the present step; ValueError if malformed."""
-        return self.forward(self._packing.decode(message.data), max(0, self.step - message.step))
+        """Return a message's tracks, predicted to the present step; ValueError if malformed or not usable."""
+        tracks = self.forward(self._packing.decode(message.data), max(0, self.step - message.step))
+        if not self.can_keep(tracks):
+            raise ValueError("track payload: tracks that cannot be predicted")
+        return tracks
+
+    def can_keep(self, tracks: Information) -> bool:
+        """Tell whether tracks at the present step are sound, and still are at the next one."""
+        try:
+            return tracks.is_sound and self.forward(tracks).is_sound
+        except ValueError:  # numpy's LinAlgError is one
+            return False

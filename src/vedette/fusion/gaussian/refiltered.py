@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from vedette.errors import InputError
-from vedette.fusion.gaussian.information import Information, Motion, check_likelihood, checked_prior
+from vedette.fusion.gaussian.information import Information, Motion, check_likelihood, checked_start
 from vedette.fusion.gaussian.packing import Likelihoods
 from vedette.fusion.steps import Refilter, Sparse, StepEvidence
 
@@ -31,7 +31,7 @@ class RefilteredTracks:
             raise InputError(f"F has shape {motion.transition.shape}; the prior has {prior.matrix.shape}")
         self.evidence = evidence
         self._likelihoods = likelihoods
-        self._prior, self._start, self._step = checked_prior(prior), start, start
+        self._prior, self._start, self._step = checked_start(prior), start, start
         self._filter: Refilter[Information, Sparse] = Refilter(
             evidence,
             prior,
@@ -41,7 +41,11 @@ class RefilteredTracks:
         )
 
     def _update(self, track: Information, _: int, total: Sparse) -> Information:
-        return track + self._likelihoods.tracks(total) if len(total.index) else track
+        """Add a step's evidence, or leave it out if its sum is none: all who hold the same do the same."""
+        if not len(total.index):
+            return track
+        updated = track + self._likelihoods.tracks(total)
+        return updated if updated.is_sound else track
 
     @property
     def digest(self) -> int:
