@@ -7,9 +7,11 @@ use numpy::{
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+mod blur;
 mod fuse;
 mod walk;
 
+pub use blur::{integrate_blurred_scan, Blur};
 pub use fuse::{integrate_scan, Gains};
 pub use walk::Lattice;
 use walk::Walk;
@@ -176,6 +178,15 @@ fn scan_of<'a>(x: f64, y: f64, angles: &'a [f64], ranges: &'a [f64], hits: &'a [
     Ok(Scan { x, y, angles, ranges, hits })
 }
 
+fn gains_of(hit: i32, miss: i32, clamp: i32) -> PyResult<Gains> {
+    if !(1..=127).contains(&clamp) || !(0..=1000).contains(&hit) || !(0..=1000).contains(&miss) {
+        return Err(PyValueError::new_err(format!(
+            "clamp must be in 1..127 and gains in 0..1000; got {clamp}, {hit}, {miss}"
+        )));
+    }
+    Ok(Gains { hit, miss, clamp })
+}
+
 #[pyfunction(name = "cast_rays")]
 fn py_cast_rays<'py>(
     py: Python<'py>,
@@ -215,13 +226,39 @@ fn py_integrate_scan<'py>(
 ) -> PyResult<Bound<'py, PyArray1<i64>>> {
     let lattice = lattice_of(&log_odds, resolution)?;
     let scan = scan_of(x, y, angles.as_slice()?, ranges.as_slice()?, hits.as_slice()?)?;
-    if !(1..=127).contains(&clamp) || !(0..=1000).contains(&gain_hit) || !(0..=1000).contains(&gain_miss) {
+    let gains = gains_of(gain_hit, gain_miss, clamp)?;
+    Ok(integrate_scan(log_odds.as_slice_mut()?, lattice, scan, gains, nudge).into_pyarray(py))
+}
+
+#[pyfunction(name = "integrate_blurred_scan")]
+fn py_integrate_blurred_scan<'py>(
+    py: Python<'py>,
+    mut log_odds: PyReadwriteArray2<'py, i8>,
+    resolution: f64,
+    x: f64,
+    y: f64,
+    angles: PyReadonlyArray1<'py, f64>,
+    ranges: PyReadonlyArray1<'py, f64>,
+    hits: PyReadonlyArray1<'py, bool>,
+    margins: PyReadonlyArray1<'py, f64>,
+    gain_hit: i32,
+    gain_miss: i32,
+    clamp: i32,
+    nudge: f64,
+) -> PyResult<Bound<'py, PyArray1<i64>>> {
+    let lattice = lattice_of(&log_odds, resolution)?;
+    let scan = scan_of(x, y, angles.as_slice()?, ranges.as_slice()?, hits.as_slice()?)?;
+    let gains = gains_of(gain_hit, gain_miss, clamp)?;
+    let margins = margins.as_slice()?;
+    let fits = |margin: &f64| (0.0..=100.0).contains(margin);
+    if margins.len() != scan.angles.len() || !margins.iter().all(fits) {
         return Err(PyValueError::new_err(format!(
-            "clamp must be in 1..127 and gains in 0..1000; got {clamp}, {gain_hit}, {gain_miss}"
+            "margins must be as many as beams ({}), each 0 to 100 m; got {margins:?}",
+            scan.angles.len()
         )));
     }
-    let gains = Gains { hit: gain_hit, miss: gain_miss, clamp };
-    Ok(integrate_scan(log_odds.as_slice_mut()?, lattice, scan, gains, nudge).into_pyarray(py))
+    let blur = Blur { margins };
+    Ok(integrate_blurred_scan(log_odds.as_slice_mut()?, lattice, scan, blur, gains, nudge).into_pyarray(py))
 }
 
 #[pyfunction(name = "count_sightings")]
@@ -254,6 +291,7 @@ fn py_count_sightings<'py>(
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(py_cast_rays, m)?)?;
     m.add_function(wrap_pyfunction!(py_integrate_scan, m)?)?;
+    m.add_function(wrap_pyfunction!(py_integrate_blurred_scan, m)?)?;
     m.add_function(wrap_pyfunction!(py_count_sightings, m)?)?;
     Ok(())
 }

@@ -24,6 +24,20 @@ def integrate_scan(
     clamp: int,
     nudge: float,
 ) -> NDArray[np.int64]: ...
+def integrate_blurred_scan(
+    log_odds: NDArray[np.int8],
+    resolution: float,
+    x: float,
+    y: float,
+    angles: NDArray[np.float64],
+    ranges: NDArray[np.float64],
+    hits: NDArray[np.bool_],
+    margins: NDArray[np.float64],
+    gain_hit: int,
+    gain_miss: int,
+    clamp: int,
+    nudge: float,
+) -> NDArray[np.int64]: ...
 def count_sightings(
     log_odds: NDArray[np.int8],
     resolution: float,

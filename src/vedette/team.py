@@ -21,6 +21,8 @@ _RANGES = {  # field: lowest, highest, unit
     "beams": (8, 4096, "beams"),
     "rate": (0.2, 50.0, "Hz"),
     "range_noise": (0.0, 1.0, "m"),
+    "pose_std": (0.0, 1.0, "m"),
+    "pose_std_heading": (0.0, 30.0, "deg"),
 }
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}")
 
@@ -43,6 +45,8 @@ class PlatformSpec:
     rate: float = 5.0  # scans a second [Hz]
     range_noise: float = 0.01  # standard deviation of a range [m]
     start: tuple[float, ...] | None = None  # x, y[, heading] [m, m, deg], team frame; None: chosen
+    pose_std: float = 0.0  # standard deviation of each coordinate of the place that it is told [m]
+    pose_std_heading: float = 0.0  # and of the heading [deg]
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not _NAME.fullmatch(self.name):
@@ -64,8 +68,9 @@ class PlatformSpec:
 def load_team(path: Path | str) -> list[PlatformSpec]:
     """Read a team file: YAML with one list, ``platforms``, of which every field has a default.
 
-    Units are those of :class:`PlatformSpec`: metres, m/s, rad/s, Hz, and degrees for ``view`` and the heading
-    in ``start``. A platform without a name is called ``robot-N``, N its place in the list from 1::
+    Units are those of :class:`PlatformSpec`: metres, m/s, rad/s, Hz, and degrees for ``view``,
+    ``pose_std_heading`` and the heading in ``start``. A platform without a name is called ``robot-N``, N its
+    place in the list from 1::
 
         platforms:
           - {name: scout, speed: 1.0, range: 12, start: [2.0, 3.5, 90]}

@@ -3,22 +3,23 @@
 use super::walk::{Lattice, Walk};
 use super::Scan;
 
-const MISS: u8 = 1;
-const HIT: u8 = 2;
+pub const MISS: u16 = 1;
+const HIT: u16 = 2;
 
 /// What one scan says of each cell that it touched: the part of the grid in its reach, and the touched cells.
-struct Marks {
+pub struct Marks {
     first_row: i64,
     first_col: i64,
     rows: usize,
     cols: usize,
-    marks: Vec<u8>,
+    marks: Vec<u16>,
     touched: Vec<u32>,
 }
 
 impl Marks {
-    fn around(scan: Scan, lattice: Lattice, nudge: f64) -> Self {
-        let reach = (0..scan.angles.len()).map(|b| scan.reach(b, nudge)).fold(0.0, f64::max);
+    /// Nothing yet, in the part of the grid within the scan's reach and `more` metres.
+    pub fn around(scan: Scan, lattice: Lattice, nudge: f64, more: f64) -> Self {
+        let reach = (0..scan.angles.len()).map(|b| scan.reach(b, nudge)).fold(0.0, f64::max) + more;
         let clip = |position: f64, size: usize| {
             let low = ((position - reach) / lattice.resolution).floor() - 1.0;
             let high = ((position + reach) / lattice.resolution).floor() + 2.0;
@@ -37,9 +38,16 @@ impl Marks {
         }
     }
 
+    /// Tell whether a cell is in the part of the grid.
+    #[inline]
+    pub fn covers(&self, row: i64, col: i64) -> bool {
+        ((row - self.first_row) as u64) < self.rows as u64
+            && ((col - self.first_col) as u64) < self.cols as u64
+    }
+
     /// Record a mark, the stronger one where a cell gets several; false outside the grid.
     #[inline]
-    fn put(&mut self, row: i64, col: i64, mark: u8) -> bool {
+    pub fn put(&mut self, row: i64, col: i64, mark: u16) -> bool {
         let (row, col) = ((row - self.first_row) as u64, (col - self.first_col) as u64);
         if row >= self.rows as u64 || col >= self.cols as u64 {
             return false;
@@ -68,11 +76,34 @@ impl Marks {
         self.put(walk.row, walk.col, if scan.hits[b] { HIT } else { MISS });
     }
 
-    fn set_miss(&mut self, row: i64, col: i64) {
+    /// The sensor stands in a free cell, whatever the beams say.
+    pub fn set_sensor(&mut self, scan: Scan, resolution: f64) {
+        if scan.angles.is_empty() {
+            return;
+        }
+        let cell = |position: f64| (position / resolution).floor() as i64;
+        let (row, col) = (cell(scan.y), cell(scan.x));
         if self.put(row, col, MISS) {
             let cell = (row - self.first_row) as usize * self.cols + (col - self.first_col) as usize;
             self.marks[cell] = MISS;
         }
+    }
+
+    /// Turn each touched cell's old log-odds into new ones; return the sorted cells whose class changed.
+    #[inline]
+    pub fn apply(&self, log_odds: &mut [i8], lattice: Lattice, new: impl Fn(u16, i32) -> i32) -> Vec<i64> {
+        let mut changed = Vec::new();
+        for &local in &self.touched {
+            let (row, col) = (local as usize / self.cols, local as usize % self.cols);
+            let cell = (row + self.first_row as usize) * lattice.cols + col + self.first_col as usize;
+            let old = log_odds[cell];
+            log_odds[cell] = new(self.marks[local as usize], i32::from(old)) as i8;
+            if log_odds[cell].signum() != old.signum() {
+                changed.push(cell as i64);
+            }
+        }
+        changed.sort_unstable();
+        changed
     }
 }
 
@@ -92,26 +123,13 @@ pub fn integrate_scan(
     gains: Gains,
     nudge: f64,
 ) -> Vec<i64> {
-    let mut marks = Marks::around(scan, lattice, nudge);
+    let mut marks = Marks::around(scan, lattice, nudge, 0.0);
     for b in 0..scan.angles.len() {
         marks.trace(scan, b, lattice.resolution, nudge);
     }
-    if !scan.angles.is_empty() {
-        let cell = |position: f64| (position / lattice.resolution).floor() as i64;
-        marks.set_miss(cell(scan.y), cell(scan.x)); // the sensor stands there
-    }
-    let mut changed = Vec::new();
-    for &local in &marks.touched {
-        let (row, col) = (local as usize / marks.cols, local as usize % marks.cols);
-        let cell = (row + marks.first_row as usize) * lattice.cols + col + marks.first_col as usize;
-        let step = if marks.marks[local as usize] == HIT { gains.hit } else { -gains.miss };
-        let old = log_odds[cell];
-        let new = (i32::from(old) + step).clamp(-gains.clamp, gains.clamp) as i8;
-        log_odds[cell] = new;
-        if new.signum() != old.signum() {
-            changed.push(cell as i64);
-        }
-    }
-    changed.sort_unstable();
-    changed
+    marks.set_sensor(scan, lattice.resolution);
+    marks.apply(log_odds, lattice, |mark, old| {
+        let step = if mark == HIT { gains.hit } else { -gains.miss };
+        (old + step).clamp(-gains.clamp, gains.clamp)
+    })
 }

@@ -19,12 +19,14 @@ class Message:
 
 @dataclass(frozen=True)
 class Pose:
-    """Where the robot is; comes at least ten times a second, and keeps the agent's time going."""
+    """Where the robot takes itself to be; at least ten times a second: it keeps the agent's time going."""
 
     x: float  # [m], team frame
     y: float
     heading: float  # [rad]
     slowed: float = 0.0  # time without progress on its way [s]
+    deviation: float = 0.0  # standard deviation of x and of y, as a localiser's covariance has it [m]
+    heading_deviation: float = 0.0  # [rad]
 
 
 @dataclass(frozen=True, eq=False)

@@ -95,6 +95,52 @@ def integrate_scan(
     )
 
 
+def integrate_blurred_scan(
+    log_odds: NDArray[np.int8],
+    resolution: float,
+    x: float,
+    y: float,
+    angles: NDArray[np.float64],
+    ranges: NDArray[np.float64],
+    hits: NDArray[np.bool_],
+    margins: NDArray[np.float64],
+    gain_hit: int,
+    gain_miss: int,
+    clamp: int,
+    nudge: float,
+) -> NDArray[np.int64]:
+    """As ``integrate_scan``, for a scan whose returns may lie up to a margin from where they seem to.
+
+    A return's evidence is spread over its band: its own cell and those whose centre is within its margin *m*,
+    each of which gets ``max(1, round(gain_hit * min(1, a / 2 m)))`` with *a* the cell's side. A cell is a
+    miss only if the middle of the beam's way through it is farther than *m* from every return and from its
+    shadow: before its band, or past it at a bearing that clears it by *m*. What was known stays known:
+    log-odds that would be 0 stop one short of it, on the step's side. docs/theory.md (V81), (V82)
+
+    Args:
+        margins: ``(B,)`` of each beam's return [m], 0 to 100; those of beams without one do not count.
+        log_odds, resolution, x, y, angles, ranges, hits: as for ``integrate_scan``.
+        gain_hit, gain_miss, clamp, nudge: as for ``integrate_scan``.
+
+    Returns:
+        Sorted flat indices of the cells whose class changed.
+    """
+    return _kernels.integrate_blurred_scan(
+        log_odds,
+        resolution,
+        x,
+        y,
+        floats(angles),
+        floats(ranges),
+        flags(hits),
+        floats(margins),
+        gain_hit,
+        gain_miss,
+        clamp,
+        nudge,
+    )
+
+
 def count_sightings(
     log_odds: NDArray[np.int8],
     resolution: float,

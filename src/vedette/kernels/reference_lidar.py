@@ -95,6 +95,52 @@ def integrate_scan(
     return np.flatnonzero(np.sign(log_odds) != before)
 
 
+def integrate_blurred_scan(
+    log_odds: NDArray[np.int8],
+    resolution: float,
+    x: float,
+    y: float,
+    angles: Floats,
+    ranges: Floats,
+    hits: NDArray[np.bool_],
+    margins: Floats,
+    gain_hit: int,
+    gain_miss: int,
+    clamp: int,
+    nudge: float,
+) -> NDArray[np.int64]:
+    """Twin of ``lidar.integrate_blurred_scan``."""
+    shape = (log_odds.shape[0], log_odds.shape[1])
+    reaches = np.where(hits, np.asarray(ranges) + nudge, ranges)
+    free, gains = np.zeros(shape, bool), np.zeros(shape, np.int64)
+    rows, cols = (np.indices(shape) + 0.5) * resolution
+    for b, angle in enumerate(angles):
+        entry, leave = crossings(shape, resolution, x, y, angle)
+        middle = 0.5 * (entry + leave)
+        crossed = (entry < leave) & (
+            (middle <= reaches[b] - margins[b]) if hits[b] else (entry <= reaches[b])
+        )
+        for other in np.flatnonzero(hits & (np.asarray(margins) > 0)):
+            near, across = reaches[other] - margins[other], abs(math.sin(angle - angles[other]))
+            if math.cos(angle - angles[other]) > 0:
+                crossed &= ~((middle > near) & (middle * across < margins[other]))
+        free |= crossed
+        if hits[b]:
+            end_x, end_y = x + reaches[b] * math.cos(angle), y + reaches[b] * math.sin(angle)
+            band = np.hypot(cols - end_x, rows - end_y) <= margins[b]
+            band |= np.maximum(np.abs(cols - end_x), np.abs(rows - end_y)) < resolution / 2
+            gain = max(1, math.floor(gain_hit / max(1.0, 2 * margins[b] / resolution) + 0.5))
+            gains[band] = np.maximum(gains[band], gain)
+    row, col = math.floor(y / resolution), math.floor(x / resolution)
+    if len(angles) and 0 <= row < shape[0] and 0 <= col < shape[1]:
+        free[row, col], gains[row, col] = True, 0
+    before = np.sign(log_odds)
+    step = np.where(gains > 0, gains, np.where(free, -gain_miss, 0))
+    after = np.clip(log_odds + step, -clamp, clamp)
+    log_odds[step != 0] = np.where(after == 0, np.sign(step), after)[step != 0]
+    return np.flatnonzero(np.sign(log_odds) != before)
+
+
 def count_sightings(
     log_odds: NDArray[np.int8],
     resolution: float,

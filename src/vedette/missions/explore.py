@@ -36,8 +36,9 @@ NUDGE = 0.25  # a return lies in the wall, not on its face: it counts as so much
 SIGHTING_STRIDE = 4  # one beam in so many teaches the sighting model
 LEARNING_STEP = 2.0  # a robot learns from one scan in so many metres of its way [m]
 COUNTS_PERIOD = 10.0  # the model's counts are shared at most so often [s]
-MATE_MARGIN = 0.15  # a return this near a mate's rim is the mate [m]
-THERE = 0.35  # a robot this near a stop's viewpoint is at it [m]
+BLUR = 1.0  # a return lies within so many deviations of where it seems to [1]
+MATE_MARGIN = 0.15  # a return this near a mate's rim is the mate; more by two deviations of the pose [m]
+THERE = 0.35  # a robot this near a stop's viewpoint is at it; more by two deviations of its pose [m]
 IN_THE_WAY = 1.0  # a mate this near a frontier may hide it [m]
 AVOID_TIME = 20.0  # a stop that could not be carried out is left alone for so long, longer each time [s]
 TRIES = 4  # a stop that could not be carried out so often is given up
@@ -80,21 +81,14 @@ class Exploration:
         for mate in mates:
             self._leave_out(mate, pose, scan.angles, ranges, hits, now)
         x, y = pose.x - self.frame.origin_x, pose.y - self.frame.origin_y
-        resolution = self.frame.resolution
+        nudge = NUDGE * self.frame.resolution
         self._learn(scan.angles, ranges, hits, x, y)
-        changed = lidar.integrate_scan(
-            self.log_odds,
-            resolution,
-            x,
-            y,
-            scan.angles,
-            ranges,
-            hits,
-            GAIN_HIT,
-            GAIN_MISS,
-            CLAMP,
-            NUDGE * resolution,
-        )
+        beams = self.log_odds, self.frame.resolution, x, y, scan.angles, ranges, hits
+        if pose.deviation > 0.0 or pose.heading_deviation > 0.0:
+            margins = BLUR * np.hypot(pose.deviation, ranges * pose.heading_deviation)
+            changed = lidar.integrate_blurred_scan(*beams, margins, GAIN_HIT, GAIN_MISS, CLAMP, nudge)
+        else:
+            changed = lidar.integrate_scan(*beams, GAIN_HIT, GAIN_MISS, CLAMP, nudge)
         if len(changed):
             self._changed.append(changed)
 
@@ -143,13 +137,14 @@ class Exploration:
         """Turn returns from a mate's body into free space up to just before it."""
         dx, dy = mate.x - pose.x, mate.y - pose.y
         moved = mate.speed * min(now - mate.heard, 0.5)
-        reach = mate.radius + MATE_MARGIN + moved
+        reach = mate.radius + MATE_MARGIN + moved + 2.0 * pose.deviation
         if np.hypot(dx, dy) > self.spec.range + reach:
             return
         off = np.hypot(ranges * np.cos(angles) - dx, ranges * np.sin(angles) - dy)
         body = hits & (off < reach)
         hits[body] = False
-        ranges[body] = np.maximum(ranges[body] - self.frame.resolution, 0.0)
+        before = self.frame.resolution + BLUR * pose.deviation
+        ranges[body] = np.maximum(ranges[body] - before, 0.0)
 
     def publish(self, now: float) -> None:
         """Hand the own evidence to fusion."""
@@ -185,6 +180,7 @@ class Exploration:
             extent=max(2.5, 0.35 * self.spec.range),
             hidden=self.planner.hidden,
             return_price=self.planner.return_price,
+            turn=self.planner.turn,
             layers=self.planner.layers,
             counts=self.fusion.counts.reshape(4, BINS).copy(),
         )
@@ -280,7 +276,7 @@ class Exploration:
         in_the_way = any(
             np.hypot(mate.x - x, mate.y - y) < IN_THE_WAY for mate in mates if not mate.silent(now)
         )
-        if away > THERE or in_the_way:
+        if away > THERE + 2.0 * pose.deviation or in_the_way:
             self._put_off(now)
         else:
             self.platform.visited.append((x, y, int(self.strategy.unknown[0])))

@@ -121,12 +121,15 @@ class Searching:
         """Hear nothing beside the evidence."""
 
     def freeze(self, t0: float) -> SearchBelief:
-        """Snapshot the pdf of the present step; plans take over at the first step that all can make."""
-        step = self.team.step(t0)
+        """Snapshot the pdf of the present step; plans take over at the first step that all can make.
+
+        By a clock that is behind, the present may be a step that is no longer kept: the first that is, then.
+        """
+        step = max(self.team.step(t0), self._filter.first)
         pdf = self.pdf(step)
         if self.declared is None and self.platform.detector.false_alarm > 0.0:
             self.declared = self._sure(pdf, t0)
-        return freeze(pdf, self.team.worth, start_step(t0, self.team.lead, pdf.dt) - step)
+        return freeze(pdf, self.team.worth, max(0, start_step(t0, self.team.lead, pdf.dt) - step))
 
     def _sure(self, pdf: TargetPdf, now: float) -> Declared | None:
         """Return the most probable place if the target is near it with the threshold's probability."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import fields
 from datetime import datetime
 from pathlib import Path
 from typing import Annotated
@@ -20,6 +21,7 @@ from vedette.scenario import load_scenario
 from vedette.sim.exploration import FUSIONS
 from vedette.team import PlatformSpec
 
+OF_BODY = tuple(field.name for field in fields(PlatformSpec) if field.name not in ("name", "start"))
 ADMITTED = 64  # robots numbered higher are let in only by a robot that knows of so many
 
 Robot = Annotated[int, Meta(ge=1, le=MOST_ROBOTS)]
@@ -70,6 +72,8 @@ class Body(Struct, forbid_unknown_fields=True, frozen=True):
     beams: int = 360
     rate: float = 5.0  # scans a second [Hz]
     range_noise: float = 0.01  # [m]
+    pose_std: float = 0.0  # of the pose that the robot is told [m]
+    pose_std_heading: float = 0.0  # [deg]
 
     def spec(self, name: str) -> PlatformSpec:
         """Return the platform.
@@ -77,18 +81,7 @@ class Body(Struct, forbid_unknown_fields=True, frozen=True):
         Raises:
             InputError: a field is out of its range.
         """
-        return PlatformSpec(
-            name,
-            self.speed,
-            self.turn_rate,
-            self.radius,
-            self.range,
-            self.view,
-            self.beams,
-            self.rate,
-            self.range_noise,
-            self.start,
-        )
+        return PlatformSpec(name, start=self.start, **{field: getattr(self, field) for field in OF_BODY})
 
 
 class Best(Struct, forbid_unknown_fields=True, frozen=True):

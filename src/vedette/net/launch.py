@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.net.access import Access
+from vedette.net.config import OF_BODY
 from vedette.net.credentials import credentials
 from vedette.net.endpoints import free_port
 from vedette.net.keys import issue_team
@@ -169,12 +170,9 @@ class TeamProcesses:
                 "map": "map.yaml",
                 "start": [x, y, float(np.degrees(heading))],
                 "seed": plan.seed,
-                **{name: getattr(spec, name) for name in _BODY},
+                **{name: getattr(spec, name) for name in OF_BODY},
             },
         }
-
-
-_BODY = ("speed", "turn_rate", "radius", "range", "view", "beams", "rate", "range_noise")
 
 
 def _free_ports(n: int) -> list[int]:

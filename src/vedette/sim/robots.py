@@ -12,6 +12,7 @@ from vedette.agent.events import Arrived, Event, Pose, Scan, Stuck
 from vedette.kernels.lidar import cast_rays
 from vedette.record.summary import Outcome
 from vedette.sim.body import Bodies
+from vedette.sim.localisation import Localisation, displaced
 from vedette.sim.world import World
 from vedette.team import PlatformSpec
 
@@ -39,6 +40,7 @@ class Robots:
         self._beams = [
             np.radians(spec.view) * ((np.arange(spec.beams) + 0.5) / spec.beams - 0.5) for spec in specs
         ]
+        self._localisers = [Localisation.of(spec, rng) for spec, rng in zip(specs, noise, strict=False)]
         self._next_scan = [0.0] * n
         self._stuck_told = [0.0] * n
         self._told_arrival = [True] * n
@@ -56,12 +58,12 @@ class Robots:
 
     def sense(self, i: int, now: float) -> list[Event]:
         """Return pose, scan, and whether the robot has arrived or is stuck."""
-        x, y, heading = self.pose(i)
         slowed = self.bodies.stuck_for(i)
-        events: list[Event] = [Pose(x, y, heading, slowed)]
+        pose = self._told(i, slowed)
+        events: list[Event] = [pose]
         if now >= self._next_scan[i] - 1e-9:
             self._next_scan[i] += 1.0 / self._specs[i].rate
-            events.append(self._scan(i, heading))
+            events.append(self._scan(i, pose.heading))
         if not self._told_arrival[i] and self.bodies.arrived(i):
             self._told_arrival[i] = True
             events.append(Arrived())
@@ -72,33 +74,56 @@ class Robots:
             events.append(Stuck())
         return events
 
-    def _scan(self, i: int, heading: float) -> Scan:
+    def _told(self, i: int, slowed: float) -> Pose:
+        """Return where the robot takes itself to be."""
+        x, y, heading = self.pose(i)
+        localiser = self._localisers[i]
+        if localiser is None:
+            return Pose(x, y, heading, slowed)
+        dx, dy, turn = localiser.error.tolist()
+        deviation, _, heading_deviation = localiser.deviation.tolist()
+        return Pose(x + dx, y + dy, heading + turn, slowed, deviation, heading_deviation)
+
+    def _scan(self, i: int, told_heading: float) -> Scan:
         spec = self._specs[i]
-        angles = heading + self._beams[i]
         discs = np.column_stack((self.bodies.poses[:, :2], self.bodies.radii))[
             np.arange(len(self._specs)) != i
         ]
         local = self.bodies.poses[i]
+        angles = local[2] + self._beams[i]
         ranges = cast_rays(
             self._world.solid, self._world.frame.resolution, local[0], local[1], angles, spec.range, discs
         )
         noise = self._noise[i].normal(0.0, spec.range_noise, spec.beams)
-        return Scan(angles, np.maximum(ranges + noise, 0.0))
+        return Scan(told_heading + self._beams[i], np.maximum(ranges + noise, 0.0))
 
     def carry_out(self, i: int, motion: Motion, now: float) -> None:
-        """Let a robot follow a route, or stand."""
+        """Let a robot follow a route, or stand.
+
+        It follows by the pose that it is told as the command comes, and from there by its wheels: route and
+        map lie as far beside the truth as it takes itself to be.
+        """
         assert isinstance(motion, Drive), "robots on the ground do not fly"
         route = motion.route
         self._told_arrival[i] = route is None
         if route is None:
             self.bodies.command(i, None)
-        else:
-            self.bodies.command(i, route.path - self._corner, route.passable)
-            self._last_change = now
+            return
+        path, passable, localiser = route.path - self._corner, route.passable, self._localisers[i]
+        if localiser is not None:
+            east, north = localiser.error[:2].tolist()
+            resolution = self._world.frame.resolution
+            path = path - (east, north)
+            passable = displaced(passable, round(north / resolution), round(east / resolution))
+        self.bodies.command(i, path, passable)
+        self._last_change = now
 
     def advance(self, now: float, dt: float) -> None:
         """Move everybody for a tick."""
         self.bodies.step(dt)
+        for localiser in self._localisers:
+            if localiser is not None:
+                localiser.advance(dt)
 
     def kill(self, i: int) -> None:
         """Stop a robot; its body stays as an obstacle."""

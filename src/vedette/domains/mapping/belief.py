@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vedette.domains.mapping.frontier_worth import frontier_areas, spread_behind
-from vedette.domains.mapping.layers import TimeLayers
+from vedette.domains.mapping.layers import TimeLayers, rate
+from vedette.domains.mapping.outlook import mean_promise
 from vedette.kernels.frontier import find_frontiers
 from vedette.maps import UNKNOWN, GridFrame
 
@@ -32,6 +34,7 @@ class MapBelief:
     frontier_starts: NDArray[np.int64]  # (K + 1,)
     layers: TimeLayers
     counts: NDArray[np.int64]  # (4, BINS) the team's sightings
+    gathering: bool  # so little is left that robots gather up what was left behind, by tours
 
     def planning_cells(self, local: NDArray[np.uint32]) -> NDArray[np.uint32]:
         """Map the window's flat planning cells to those of the whole map."""
@@ -52,6 +55,7 @@ def freeze(
     extent: float,
     hidden: float,
     return_price: float = 0.0,
+    turn: float = math.inf,
     layers: TimeLayers,
     counts: NDArray[np.int64],
 ) -> MapBelief:
@@ -67,6 +71,7 @@ def freeze(
         extent: longest frontier before it is split [m].
         hidden: area expected behind a frontier [m^2].
         return_price: more for a frontier that is far from others [m^2 a metre].
+        turn: gather up what was left behind, at these prices, once frontiers promise less than this [m^2].
         layers: the time layers of the objective.
         counts: (4, BINS) the team's sightings.
     """
@@ -85,8 +90,12 @@ def freeze(
     cells, starts = find_frontiers(crop, smallest, max(2, round(extent / frame.resolution)))
     unknown = _block_sum(crop == UNKNOWN, factor)
     local = unknown.astype(np.float32) * LN2
+    frontiers = cells, starts
+    gathering = turn == math.inf or (
+        turn > 0.0 and mean_promise(crop, frame.resolution, frontiers, counts, unknown, factor) < turn
+    )
     areas = frontier_areas(window, cells, starts, hidden, return_price)
-    if areas.any():
+    if gathering and areas.any():
         local += LN2 / frame.resolution**2 * spread_behind(crop, cells, starts, areas, factor)
     first = (rows.start // factor, cols.start // factor)
     # Outside the window nothing is known, and each robot's window is its own.
@@ -94,7 +103,18 @@ def freeze(
     weights *= np.float32(LN2)
     weights[first[0] : first[0] + local.shape[0], first[1] : first[1] + local.shape[1]] = local
     return MapBelief(
-        window, crop, planning, factor, first, unknown, weights.ravel(), cells, starts, layers, counts
+        window,
+        crop,
+        planning,
+        factor,
+        first,
+        unknown,
+        weights.ravel(),
+        cells,
+        starts,
+        layers if gathering else rate(),
+        counts,
+        gathering,
     )
 
 

@@ -46,8 +46,9 @@ class Most:
 
     @classmethod
     def of(cls, specs: Sequence[PlatformSpec]) -> Most:
-        """Return the limits of a team."""
-        return cls(max(spec.range for spec in specs), max(spec.speed for spec in specs))
+        """Return the limits of a team; uncertain poses blur footprints over the lidar's range."""
+        reaches = [spec.range + 4.0 * spec.pose_std for spec in specs]
+        return cls(max(reaches), max(spec.speed for spec in specs))
 
 
 def check_claim(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -19,6 +20,7 @@ from vedette.errors import InputError, nearest_name
 from vedette.team import PlatformSpec
 
 HIDDEN_AREA = 2.0  # expected behind a frontier [m^2]
+SCRAP_AREA, SCRAP_PRICE = 0.5, 0.3  # the same, where little is left [m^2], [m^2 a metre]
 RETURN_PRICE = 1.0  # about half of what a robot maps while it drives a metre [m^2 a metre]
 
 
@@ -31,13 +33,43 @@ class Planner:
     hidden: float  # area expected behind a frontier [m^2]
     return_price: float  # more for a frontier far from others [m^2 a metre]
     platform: Callable[[PlatformSpec], MappingPlatform]
+    turn: float = math.inf  # prices and tours count once frontiers promise less than this [m^2]; 0: never
+    alone: str | None = None  # the planner of a team of one; None: the same
     scheme: str | None = None  # the negotiation that is part of the planner; None: any
     most_robots: int | None = None  # None: any number
 
 
+DEFAULT = "balanced"
+
+
+def _turning(summary: str, turn: float, return_price: float, alone: str | None = None) -> Planner:
+    """Return a planner that goes by the paper's rate, by tours once frontiers promise less than ``turn``."""
+    return Planner(
+        summary,
+        layers.rate(start=5.0),
+        SCRAP_AREA,
+        return_price,
+        lambda spec: MappingPlatform(spec, max_stops=6, measured="unknown"),
+        turn=turn,
+        alone=alone,
+    )
+
+
 PLANNERS = {
+    "balanced": _turning(
+        "information first; then tours of what was left behind; alone, a route (default)",
+        1.4,
+        SCRAP_PRICE,
+        alone="makespan",
+    ),
+    "information": _turning("information first, until very little is left", 0.7, SCRAP_PRICE),
+    "completion": _turning(
+        "completion first: tours of all there is, at twice the price of coming back",
+        math.inf,
+        2 * RETURN_PRICE,
+    ),
     "tours": Planner(
-        "tours of frontiers with arrival times, negotiated (default)",
+        "tours of frontiers with arrival times, negotiated",
         layers.rate(start=5.0),
         HIDDEN_AREA,
         RETURN_PRICE,
@@ -111,8 +143,8 @@ PLANNERS = {
 }
 
 
-def planner(name: str, robots: int = 1) -> Planner:
-    """Return the planner of this name, for a team of so many.
+def planner(name: str, robots: int | None = None) -> Planner:
+    """Return the planner of this name, for a team of so many if that is known.
 
     Raises:
         InputError: there is none, or it cannot plan for so many.
@@ -120,6 +152,6 @@ def planner(name: str, robots: int = 1) -> Planner:
     if name not in PLANNERS:
         raise InputError(f"unknown planner {name!r}: {nearest_name(name, PLANNERS)}")
     found = PLANNERS[name]
-    if found.most_robots is not None:
+    if found.most_robots is not None and robots is not None:
         check_size(name, robots, found.most_robots)
-    return found
+    return PLANNERS[found.alone] if found.alone is not None and robots == 1 else found

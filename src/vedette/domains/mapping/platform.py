@@ -76,6 +76,7 @@ class MappingPlatform:
     avoided: list[tuple[float, float, float]] = field(default_factory=list)  # x, y, until [s]
     ground: Ground | None = None
     stops: Stops | None = None
+    ahead: int = field(init=False, default=1)  # stops of a tour in this round, at most
 
     def place(
         self,
@@ -91,10 +92,11 @@ class MappingPlatform:
     def model(self, belief: MapBelief) -> SightingModel:
         """Return the sighting model that the belief's counts give this robot's sensor."""
         cells = int(np.ceil(self.spec.range / belief.frame.resolution))
-        if self.measured == "beam":
+        measured = self.measured if belief.gathering else "distance"
+        if measured == "beam":
             return beam_model(cells)
         return measured_model(
-            belief.counts, belief.frame.resolution, cells, by_distance=self.measured == "distance"
+            belief.counts, belief.frame.resolution, cells, by_distance=measured == "distance"
         )
 
     def prepare(self, belief: MapBelief) -> None:
@@ -103,10 +105,13 @@ class MappingPlatform:
         A robot that can get to none with its usual clearance looks for narrower ways.
         """
         self._update_given_up(belief)
+        self.ahead = self.max_stops if belief.gathering else 1
         least = max(LEAST_AREA, 0.5 * belief.frame.resolution**2)
         for clearance in CLEARANCES:
             self.ground = survey(belief, self.spec, self.x, self.y, self.obstacles, clearance)
-            stops = find_stops(belief, self.ground, self.spec, self.model(belief), least)
+            stops = find_stops(
+                belief, self.ground, self.spec, self.model(belief), least, tours=self.ahead > 1
+            )
             self.stops = self._without_left_alone(stops)
             if np.isfinite(self.stops.first_leg).any():
                 break
@@ -196,7 +201,7 @@ class MappingPlatform:
             self.stops.first_leg,
             self.stops.legs,
             current.stops,
-            self.max_stops,
+            self.ahead,
             STICKINESS,
         )
         return self.tour(order) if gain > present * (1.0 + HYSTERESIS) else current
@@ -212,5 +217,5 @@ class MappingPlatform:
             self.stops.footprints,
             self.stops.first_leg,
             self.stops.legs,
-            self.max_stops,
+            self.ahead,
         )

@@ -8,13 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.domains.mapping.belief import MapBelief
+from vedette.domains.mapping.blur import blurred
 from vedette.domains.mapping.impact import MIN_SHARE, quantise
 from vedette.domains.mapping.sightings import SightingModel
 from vedette.kernels import coverage, distance, frontier
 from vedette.kernels.coverage import Footprints
-from vedette.maps import UNKNOWN, GridFrame
+from vedette.maps import FREE, UNKNOWN, GridFrame
 from vedette.team import PlatformSpec
 
+LEAST_SHARE = 0.0008  # of the area known to be free that a stop must promise ...
+ENOUGH = 0.35  # ... but no more than this [m^2]
+GAP = 2.0  # a gap that the body does not fit through must promise so many times as much
 MOST_STOPS = 40  # nearest first; the rest waits for a later round
 VIEW_REACH = 0.8  # how far from a frontier to look for a place to see it from [sensor ranges]
 CLEARANCES = (0.05, 0.01)  # kept to all that is not known free [m]; the second where the first leads nowhere
@@ -74,9 +78,21 @@ def unknown_near(classes: NDArray[np.uint8], frame: GridFrame, x: float, y: floa
 
 
 def find_stops(
-    belief: MapBelief, ground: Ground, spec: PlatformSpec, model: SightingModel, least_area: float
+    belief: MapBelief,
+    ground: Ground,
+    spec: PlatformSpec,
+    model: SightingModel,
+    least_area: float,
+    *,
+    tours: bool = True,
 ) -> Stops:
-    """Turn the belief's frontiers into stops that reveal at least ``least_area`` [m^2] in expectation."""
+    """Turn the belief's frontiers into stops that reveal at least ``least_area`` [m^2] in expectation.
+
+    In a large building a stop must promise more than in a small one, and a gap that the body does not fit
+    through more than another: behind most of them is the inside of a wall or of furniture, and nothing leads
+    on.  docs/theory.md (V66)
+    Legs between stops are worked out for ``tours`` only; else they are infinite.
+    """
     frame = belief.frame
     reach = max(2, round(VIEW_REACH * spec.range / frame.resolution))
     targets, views = coverage.viewpoints(
@@ -86,11 +102,13 @@ def find_stops(
     legs = ground.field.ravel()[views[keep]]
     keep = np.sort(keep[np.argsort(legs, kind="stable")[:MOST_STOPS]])
     targets, views = targets[keep], views[keep]
-    starts, cells, shares = _footprints(belief, spec, model, targets, views)
+    sharp = _footprints(belief, spec, model, targets, views)
+    starts, cells, shares = blurred(sharp, belief.unknown, spec.pose_std / belief.planning.resolution)
     area = np.add.reduceat(np.append(shares * belief.unknown.ravel()[cells], 0.0), starts[:-1]) * (
         np.diff(starts) > 0
     )
-    enough = area * frame.resolution**2 >= least_area
+    lengths = np.diff(belief.frontier_starts)[keep] * frame.resolution
+    enough = area * frame.resolution**2 >= _least(belief, lengths <= 2.0 * spec.radius + 1e-9, least_area)
     starts, cells, shares = _select(starts, cells, shares, enough)
     targets, views = targets[enough], views[enough]
     target_points, view_points = frame.centres(targets), frame.centres(views)
@@ -100,7 +118,7 @@ def find_stops(
         np.array([unknown_near(belief.classes, frame, x, y) for x, y in target_points], np.int64),
         Footprints(starts, belief.planning_cells(cells), quantise(shares)),
         ground.field.ravel()[views] / np.float32(spec.speed),
-        _legs(belief, ground, views) / np.float32(spec.speed),
+        _legs(belief, ground, views) / np.float32(spec.speed) if tours else _no_legs(len(views)),
     )
 
 
@@ -142,6 +160,16 @@ def _select(
     sizes = np.diff(starts)
     entries = np.repeat(rows, sizes)
     return np.concatenate(([0], np.cumsum(sizes[rows]))), cells[entries], shares[entries]
+
+
+def _least(belief: MapBelief, gap: NDArray[np.bool_], floor: float) -> NDArray[np.float64]:
+    free = int(np.count_nonzero(belief.classes == FREE)) * belief.frame.resolution**2
+    least = min(LEAST_SHARE * free, ENOUGH)
+    return np.maximum(np.where(gap, GAP * least, least), floor)
+
+
+def _no_legs(stops: int) -> NDArray[np.float32]:
+    return np.full((stops, stops), np.inf, np.float32)
 
 
 def _legs(belief: MapBelief, ground: Ground, views: NDArray[np.int64]) -> NDArray[np.float32]:
