@@ -252,6 +252,14 @@ def test_a_robot_alone_decides_and_ends_without_a_message() -> None:
     assert team.log == []
 
 
+def test_nothing_is_frozen_before_all_children_are_heard() -> None:
+    team, _, _ = toy_team(Tree.chain(3))
+    team.tell(1, Message(0, messages.encode(messages.Begin(1, 5, 1))))
+    team.tell(1, Message(0, messages.encode(messages.Freeze(1, 5, 0, 0, 3))))
+    assert team.agents[1].dropped == 1
+    assert toy(team.agents[1]).frozen_at == []
+
+
 @pytest.mark.parametrize(("apart", "taken"), [(-60.0, False), (-15.0, True), (15.0, True), (1e9, False)])
 @pytest.mark.parametrize("beat", [0.0, 1.0])
 def test_who_plans_on_beats_freezes_nothing_by_a_clock_that_is_far_from_its_own(

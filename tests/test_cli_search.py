@@ -20,7 +20,8 @@ from vedette.record.summary import Traffic
 FILES = {"summary.json", "timing.json", "pdf.png", "detection.png", "run.mcap"}
 FIELDS = [
     "schema_version", "completed", "outcome", "seed", "scenario", "coordination", "scheme", "fusion", "worth",
-    "radio", "faults", "vehicles", "time_s", "found_s", "found_by", "declared_m", "target_m", "error_m", "detection_then",
+    "radio", "faults", "vehicles", "time_s", "found_s", "found_by", "declared_m", "target_m", "error_m",
+    "detection_then",
     "duration_s", "detection", "t50_s", "t90_s", "mean_time_s", "counted", "bound", "koopman", "path_m",
     "rounds", "sweeps", "bound_ratio", "messages", "bytes", "comparison",
 ]  # fmt: skip

@@ -98,6 +98,13 @@ def test_until_plans_take_over_every_candidate_holds_the_present_flights_turn_ra
     assert mission.start(belief) == 22.0
 
 
+def test_by_a_clock_that_shows_a_time_before_the_start_a_round_freezes_the_start() -> None:
+    mission = mission_at(blind(case(), max_time=4.0))
+    belief = mission.freeze(-7.0)
+    assert (belief.step, belief.committed) == (0, 0)
+    assert (belief.mass == mission.pdf(0).mass).all()
+
+
 def test_a_plan_that_takes_over_in_the_horizons_last_step_or_later_is_refused() -> None:
     mission = mission_at(blind(case(), max_time=4.0))
     with pytest.raises(InputError, match="horizon of 6 steps"):

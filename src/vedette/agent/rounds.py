@@ -255,14 +255,17 @@ class Rounds:
         """Everything known has arrived: freeze it.
 
         Raises:
-            ValueError: the team's clocks do not agree, though its rounds keep to their beats. Such a mission
-                predicts what it knows to the root's time, step by step, and would not come to an end.
+            ValueError: a child has not been heard, so the root cannot have heard all. Or the clocks do not
+                agree where rounds keep to their beats: such a mission predicts what it knows to the root's
+                time, step by step, and would not come to an end.
         """
         if not self._matches(message.epoch, message.sequence):
             return []
         assert self._round
         if self._round.belief is not None:
             return []
+        if self._round.waiting:
+            raise ValueError(f"freeze: children {sorted(self._round.waiting)} have not been heard")
         apart = message.t0 / 1000.0 - now
         if self.pace.beat and abs(apart) > CLOCKS_APART:
             raise ValueError(f"freeze: the root's clock is {apart:.1f} s from this robot's")

@@ -44,13 +44,18 @@ class Refilter(Generic[B, E]):
         self._predict, self._update = predict, update
         self._kept: dict[int, B] = {}  # step -> belief, its evidence included
 
+    @property
+    def first(self) -> int:
+        """The first step that can be asked for: later than the start once steps are closed."""
+        return max(self._start, self._base)
+
     def at(self, step: int) -> B:
         """Return the belief at a step, given all known evidence up to it.
 
         Raises ValueError for steps before the start, and for those that are closed and no longer kept.
         """
-        if step < max(self._start, self._base):
-            raise ValueError(f"step {step} lies before {max(self._start, self._base)}, the first still kept")
+        if step < self.first:
+            raise ValueError(f"step {step} lies before {self.first}, the first still kept")
         changed = self._evidence.take_changed()
         if changed is not None:
             self._kept = {k: belief for k, belief in self._kept.items() if k < changed}
