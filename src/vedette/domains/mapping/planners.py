@@ -39,9 +39,6 @@ class Planner:
     most_robots: int | None = None  # None: any number
 
 
-DEFAULT = "balanced"
-
-
 def _turning(summary: str, turn: float, return_price: float, alone: str | None = None) -> Planner:
     """Return a planner that goes by the paper's rate, by tours once frontiers promise less than ``turn``."""
     return Planner(
@@ -57,7 +54,7 @@ def _turning(summary: str, turn: float, return_price: float, alone: str | None =
 
 PLANNERS = {
     "balanced": _turning(
-        "information first; then tours of what was left behind; alone, a route (default)",
+        "information first; then tours of what was left behind; alone, a route",
         1.4,
         SCRAP_PRICE,
         alone="makespan",
@@ -69,7 +66,7 @@ PLANNERS = {
         2 * RETURN_PRICE,
     ),
     "tours": Planner(
-        "tours of frontiers with arrival times, negotiated",
+        "tours of frontiers with arrival times, negotiated (default)",
         layers.rate(start=5.0),
         HIDDEN_AREA,
         RETURN_PRICE,
