@@ -380,10 +380,10 @@ def test_ctrl_c_leaves_every_file_valid_and_has_status_130(tmp_path: Path) -> No
 
 def test_ctrl_c_before_the_mission_writes_nothing_and_shows_no_traceback(tmp_path: Path) -> None:
     code = (
-        "import vedette.cli, os, signal, sys\n"
+        "import vedette.cli.explore, os, signal, sys\n"
         "signal.signal(signal.SIGINT, signal.default_int_handler)\n"  # a background job inherits none
         "def interrupted(*_): os.kill(os.getpid(), signal.SIGINT)\n"
-        "sys.modules['vedette.cli.explore']._world = interrupted\n"
+        "sys.modules['vedette.cli.explore'].world_of = interrupted\n"
         "vedette.cli.main()\n"
     )
     ran = subprocess.run(
