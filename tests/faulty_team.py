@@ -130,9 +130,24 @@ class FaultyTeam(SiteTeam):
         if self._healed is None:
             return None
         done = all(self.network.agents[i].done for i in self.living)
-        if done and all(len({self._mission(i).fusion.digest for i in part}) == 1 for part in self.parts()):
+        if done and all(self._agrees(part) for part in self.parts()):
             return Outcome.COMPLETE
         return Outcome.TIME_LIMIT if self.now >= AT_MOST else None
+
+    def _agrees(self, part: Sequence[int]) -> bool:
+        """Tell whether a part holds one map, and everybody all that anybody held when the faults ended.
+
+        Equal maps alone do not say so: what a robot saw again after a restart changes none.
+        """
+        assert self._healed is not None
+        missions = [self._mission(i) for i in part]
+        held = [self._healed.get(mission.life, {}) for mission in missions]
+        return len({mission.fusion.digest for mission in missions}) == 1 and all(
+            versions_of(mission).get(life, 0) >= version
+            for mission in missions
+            for versions in held
+            for life, version in versions.items()
+        )
 
     def _mission(self, i: int) -> SiteMission:
         return mission_of(self.network.agents[i])
