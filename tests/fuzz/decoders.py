@@ -172,7 +172,8 @@ def _tracks() -> list[Any]:
     return [Information(matrix, np.arange(12.0).reshape(3, 4))]
 
 
-def _conditions() -> list[Any]:
+def conditions() -> list[Any]:
+    """A robot's condition as it reports it."""
     link = report.LinkReport(1, "child", 0.25, 0.003, -1.5, None)
     counts = {"negotiation": 12, "beacons": 40}
     place = [0, 3, 40, None, (1, 2), 3, 12.5]
@@ -190,7 +191,7 @@ def _reports() -> list[bytes]:
     classes = np.zeros(FRAME.shape, np.uint8)
     classes[4:9] = 1
     impact = MappingCodec(FRAME.size).encode(Misses(np.arange(3, dtype=np.uint32), np.ones(3, np.uint8)))
-    (condition,) = _conditions()
+    (condition,) = conditions()
     return [report.report(condition, classes, classes > 0, told) for told in (impact, None)]
 
 
@@ -227,6 +228,6 @@ def decoders() -> list[Target]:
         _decoder("decode-track-message", track_wire.decode, track_wire.encode, lambda: [message]),
         _decoder("decode-tracks", packing.decode, packing.encode, _tracks),
         _decoder("decode-body", body.decode, body.encode, lambda: [Seen(1.0, 2.0, 0.5, 0.3, -0.2, 0.25)]),
-        _decoder("decode-condition", report.read_condition, report.encode, _conditions),
+        _decoder("decode-condition", report.read_condition, report.encode, conditions),
         Target("decode-report", _reports, _read_report, mutate_message),
     ]

@@ -17,7 +17,9 @@ MOST_BYTES = 1 << 24
 MOST_CELLS = 1 << 26
 Count = Annotated[int, Meta(ge=0, le=2**53)]
 Real = Annotated[float, Meta(ge=-1e9, le=1e9)]
-Word = Annotated[str, Meta(max_length=64)]
+PRINTABLE = r"^[^\x00-\x1f\x7f-\x9f\[\]]*\Z"  # what a terminal shows as it is, markup left out
+Word = Annotated[str, Meta(max_length=64, pattern=PRINTABLE)]
+Sentence = Annotated[str, Meta(max_length=500, pattern=PRINTABLE)]
 
 
 class Spread(msgspec.Struct, frozen=True, array_like=True):
@@ -74,7 +76,7 @@ class Condition(msgspec.Struct, frozen=True, array_like=True, tag=1):
     messages: Annotated[dict[Word, Count], Meta(max_length=16)]  # sent, by kind
     bytes: Annotated[dict[Word, int], Meta(max_length=16)]
     dropped: Annotated[dict[Word, Count], Meta(max_length=16)]  # what failed a check, by where
-    refusal: Annotated[str, Meta(max_length=500)] | None  # why it must start anew to join a team again
+    refusal: Sentence | None  # why it must start anew to join a team again
     planning_ms: Spread | None  # a round's preparation and answers
     answer_ms: Spread | None  # a negotiation message
     round_ms: Spread | None  # rounds that this robot began, as the root, from end to end
