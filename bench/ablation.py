@@ -1,0 +1,117 @@
+"""``python -m bench.ablation``: what the parts of ``balanced`` are worth, told by exchanging each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import click
+from rich.console import Console
+
+from bench import RESULTS, command, machine
+from bench.table import figure, markdown
+from vedette.domains.mapping import layers
+from vedette.domains.mapping.baselines.greedy import GreedyPlatform
+from vedette.domains.mapping.planners import PLANNERS, Planner
+from vedette.domains.mapping.platform import MappingPlatform
+from vedette.record.files import write_text
+from vedette.sim.exploration import ExploreSetup
+from vedette.study.bootstrap import Interval
+from vedette.study.compare import difference, mean
+from vedette.study.conduct import conduct
+from vedette.study.metrics import AUC, TIMES, TOTAL
+from vedette.study.mission import Result, carry_out
+from vedette.study.provenance import fingerprint
+from vedette.study.rows import Row, figure_rows
+from vedette.study.run import GeneratedWorld, Run
+from vedette.study.store import Store
+from vedette.study.workers import Workers
+from vedette.team import PlatformSpec
+
+WHOLE = "balanced"
+KINDS = ("office", "cave", "maze")
+SIZE, RESOLUTION, MAX_TIME = (30.0, 20.0), 0.1, 1800.0  # of the worlds [m], [m]; of a mission [s]
+METRICS = (AUC, *(metric for metric in TIMES if metric.column in ("t90_s", "t99_s")), TOTAL)
+
+
+def variants() -> Mapping[str, Planner]:
+    """Return the planner with one part exchanged, by what differs."""
+    whole = PLANNERS[WHOLE]
+
+    def with_platform(kind: type[MappingPlatform], stops: int, measured: str) -> Planner:
+        return replace(whole, platform=lambda spec: kind(spec, max_stops=stops, measured=measured))
+
+    return {
+        "turn at 0.7 m2": replace(whole, turn=0.7),
+        "turn at 2 m2": replace(whole, turn=2.0),
+        "turn at 3 m2": replace(whole, turn=3.0),
+        "never a turn: rate": PLANNERS["rate"],
+        "turned from the start": replace(whole, turn=float("inf")),
+        "single stops instead of tours": with_platform(MappingPlatform, 1, "unknown"),
+        "no hidden area": replace(whole, hidden=0.0),
+        "no price of the way back": replace(whole, return_price=0.0),
+        "no time layers": replace(whole, layers=layers.plain()),
+        "one pass from nothing": replace(with_platform(GreedyPlatform, 6, "unknown"), scheme="token"),
+        "all replying at once": replace(whole, scheme="jacobi"),
+        "sightings by distance": with_platform(MappingPlatform, 6, "distance"),
+        "sightings by the beam model": with_platform(MappingPlatform, 6, "beam"),
+    }
+
+
+def cases(seeds: Sequence[int], robots: int, names: Sequence[str]) -> list[Run]:
+    """Return a mission a world and variant: the same team in an office, a cave and a maze of every seed."""
+    worlds = [GeneratedWorld(kind, seed, *SIZE, RESOLUTION) for kind in KINDS for seed in seeds]
+    setups = [ExploreSetup(planner=name, max_time=MAX_TIME) for name in names]
+    return [Run(world, robots, "together", PlatformSpec("robot"), setup) for world in worlds for setup in setups]
+
+
+def carry_out_variant(run: Run) -> Result:
+    """Carry out a run whose planner may be a variant, in whatever process this is."""
+    PLANNERS.update(variants())
+    return carry_out(run)
+
+
+def table(rows: Sequence[Row]) -> str:
+    """Return the Markdown table: each planner's means, and their ratios to those of the whole."""
+    header = ("exchanged", *(metric.label for metric in METRICS))
+    names = dict.fromkeys(str(row["planner"]) for row in rows)
+    return markdown(header, [_row(rows, name) for name in names], "l" + "r" * len(METRICS))
+
+
+def _row(rows: Sequence[Row], name: str) -> tuple[str, ...]:
+    if name == WHOLE:
+        return ("nothing", *(figure(mean(rows, name, metric).interval.value) for metric in METRICS))
+    ratios = [difference(rows, name, WHOLE, metric).ratio for metric in METRICS]
+    return (name, *map(_ratio, ratios))
+
+
+def _ratio(interval: Interval) -> str:
+    return f"{interval.value:.2f} ({interval.low:.2f}-{interval.high:.2f})"
+
+
+@click.command()
+@click.option(
+    "--seeds", type=command.WholeNumbers(0), default="100-103", show_default=True, help="Of the worlds."
+)
+@click.option("--robots", type=click.IntRange(1, 64), default=3, show_default=True, help="In every team.")
+@click.option("--jobs", type=click.IntRange(min=1), default=2, show_default=True, help="Processes.")
+@click.option("--out", type=Path, default=RESULTS / "ablation", metavar="DIR", help="Folder for the results.")
+def ablation(seeds: tuple[int, ...], robots: int, jobs: int, out: Path) -> None:
+    """Exchange the parts of the planner one at a time and print what each is worth.
+
+    Missions that this code has carried out before are not carried out again.
+    Exit status 0 if all missions ran, 1 if one broke or was interrupted.
+    """
+    runs = cases(seeds, robots, (WHOLE, *variants()))
+    store = Store.open(out, fingerprint() + Path(__file__).read_text(encoding="utf-8"))
+    done = conduct(runs, store, Workers(jobs, work=carry_out_variant), Console())
+    if not done.missing:
+        text = f"{table(figure_rows(done.results))}\nCommit: {machine.commit()}\n"
+        write_text(out / "ablation.md", text)
+        click.echo(text)
+    raise SystemExit(1 if done.broken or done.missing else 0)
+
+
+if __name__ == "__main__":
+    command.run(ablation, "bench.ablation")
