@@ -11,9 +11,9 @@ from rich.console import Console
 
 from bench import RESULTS, command, machine
 from bench.table import figure, markdown
-from vedette.domains.mapping import layers
+from vedette.domains.mapping import layers, planners
 from vedette.domains.mapping.baselines.greedy import GreedyPlatform
-from vedette.domains.mapping.planners import PLANNERS, Planner
+from vedette.domains.mapping.planners import Planner
 from vedette.domains.mapping.platform import MappingPlatform
 from vedette.record.files import write_text
 from vedette.sim.exploration import ExploreSetup
@@ -37,7 +37,7 @@ METRICS = (AUC, *(metric for metric in TIMES if metric.column in ("t90_s", "t99_
 
 def variants() -> Mapping[str, Planner]:
     """Return the planner with one part exchanged, by what differs."""
-    whole = PLANNERS[WHOLE]
+    whole = planners.PLANNERS[WHOLE]
 
     def with_platform(kind: type[MappingPlatform], stops: int, measured: str) -> Planner:
         return replace(whole, platform=lambda spec: kind(spec, max_stops=stops, measured=measured))
@@ -46,7 +46,7 @@ def variants() -> Mapping[str, Planner]:
         "turn at 0.7 m2": replace(whole, turn=0.7),
         "turn at 2 m2": replace(whole, turn=2.0),
         "turn at 3 m2": replace(whole, turn=3.0),
-        "never a turn: rate": PLANNERS["rate"],
+        "never a turn: rate": planners.PLANNERS["rate"],
         "turned from the start": replace(whole, turn=float("inf")),
         "single stops instead of tours": with_platform(MappingPlatform, 1, "unknown"),
         "no hidden area": replace(whole, hidden=0.0),
@@ -63,12 +63,14 @@ def cases(seeds: Sequence[int], robots: int, names: Sequence[str]) -> list[Run]:
     """Return a mission a world and variant: the same team in an office, a cave and a maze of every seed."""
     worlds = [GeneratedWorld(kind, seed, *SIZE, RESOLUTION) for kind in KINDS for seed in seeds]
     setups = [ExploreSetup(planner=name, max_time=MAX_TIME) for name in names]
-    return [Run(world, robots, "together", PlatformSpec("robot"), setup) for world in worlds for setup in setups]
+    return [
+        Run(world, robots, "together", PlatformSpec("robot"), setup) for world in worlds for setup in setups
+    ]
 
 
 def carry_out_variant(run: Run) -> Result:
     """Carry out a run whose planner may be a variant, in whatever process this is."""
-    PLANNERS.update(variants())
+    planners.PLANNERS.update(variants())  # through its module: a worker gets copies of this one's own names
     return carry_out(run)
 
 

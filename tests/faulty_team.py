@@ -130,7 +130,7 @@ class FaultyTeam(SiteTeam):
         if self._healed is None:
             return None
         done = all(self.network.agents[i].done for i in self.living)
-        if done and all(self._agrees(part) for part in self.parts()):
+        if done and all(self._agrees(part) and not self._wakes(part) for part in self.parts()):
             return Outcome.COMPLETE
         return Outcome.TIME_LIMIT if self.now >= AT_MOST else None
 
@@ -148,6 +148,13 @@ class FaultyTeam(SiteTeam):
             for versions in held
             for life, version in versions.items()
         )
+
+    def _wakes(self, part: Sequence[int]) -> bool:
+        """Tell whether news has come to robots that were done, of work that they have yet to plan for.
+
+        They have a while for that, and no longer: ``_check_idle``.
+        """
+        return any(self._worthwhile(i, part) for i in part)
 
     def _mission(self, i: int) -> SiteMission:
         return mission_of(self.network.agents[i])
