@@ -1,4 +1,4 @@
-"""``python -m bench.ablation``: what the parts of ``balanced`` are worth, told by exchanging each."""
+"""``python -m bench.ablation``: what the parts of the default are worth, told by exchanging each."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from vedette.study.store import Store
 from vedette.study.workers import Workers
 from vedette.team import PlatformSpec
 
-WHOLE = "balanced"
+WHOLE = planners.DEFAULT
 KINDS = ("office", "cave", "maze")
 SIZE, RESOLUTION, MAX_TIME = (30.0, 20.0), 0.1, 1800.0  # of the worlds [m], [m]; of a mission [s]
 METRICS = (AUC, *(metric for metric in TIMES if metric.column in ("t90_s", "t99_s")), TOTAL)
@@ -37,20 +37,21 @@ METRICS = (AUC, *(metric for metric in TIMES if metric.column in ("t90_s", "t99_
 
 def variants() -> Mapping[str, Planner]:
     """Return the planner with one part exchanged, by what differs."""
-    whole = planners.PLANNERS[WHOLE]
+    whole = replace(planners.PLANNERS[WHOLE], alone=None)
 
     def with_platform(kind: type[MappingPlatform], stops: int, measured: str) -> Planner:
         return replace(whole, platform=lambda spec: kind(spec, max_stops=stops, measured=measured))
 
     return {
-        "turn at 0.7 m2": replace(whole, turn=0.7),
-        "turn at 2 m2": replace(whole, turn=2.0),
-        "turn at 3 m2": replace(whole, turn=3.0),
-        "never a turn: rate": planners.PLANNERS["rate"],
-        "turned from the start": replace(whole, turn=float("inf")),
+        "rate until 0.7 m2": replace(whole, turn=0.7),
+        "rate until 1.4 m2": replace(whole, turn=1.4),
+        "rate until 3 m2": replace(whole, turn=3.0),
+        "rate throughout": planners.PLANNERS["rate"],
         "single stops instead of tours": with_platform(MappingPlatform, 1, "unknown"),
         "no hidden area": replace(whole, hidden=0.0),
         "no price of the way back": replace(whole, return_price=0.0),
+        "twice the price of the way back": replace(whole, return_price=0.6),
+        "2 m2 hidden, 1 m2 a metre back": replace(whole, hidden=2.0, return_price=1.0),
         "no time layers": replace(whole, layers=layers.plain()),
         "one pass from nothing": replace(with_platform(GreedyPlatform, 6, "unknown"), scheme="token"),
         "all replying at once": replace(whole, scheme="jacobi"),

@@ -29,7 +29,9 @@ Run = Callable[[Case, str], Result]  # case, commit
 @click.option(
     "--robots", type=command.WholeNumbers(1), default="1,3,6", show_default=True, help="In the offices."
 )
-@click.option("--planners", default="tours,nearest,burgard", show_default=True, help="By name, with commas.")
+@click.option(
+    "--planners", default=f"{JUDGED},nearest,burgard", show_default=True, help="By name, with commas."
+)
 @click.option("--only-offices", is_flag=True, help="Leave the maps out.")
 @click.option("--only-maps", is_flag=True, help="Leave the offices out.")
 @click.option("--jobs", type=click.IntRange(min=1), default=2, show_default=True, help="Processes.")

@@ -8,8 +8,9 @@ from statistics import fmean, median
 from bench.cases import OFFICE, Result
 from bench.criteria import Criterion, Measurement
 from bench.table import figure, markdown
+from vedette.domains.mapping.planners import DEFAULT
 
-JUDGED = "tours"  # the planner that has to meet the criteria; the others are yardsticks
+JUDGED = DEFAULT  # has to meet the criteria; the others are yardsticks
 HEADER = (
     "missions",
     "planner",

@@ -17,7 +17,7 @@ from bench.command import WholeNumbers
 from bench.criteria import Criterion, Measurement, verdicts
 from bench.half_known import half_known
 from bench.missions import conduct, missions
-from bench.missions_table import judge, missions_table
+from bench.missions_table import JUDGED, judge, missions_table
 from bench.speed import Run, run_mission
 from bench.table import figure, markdown
 from vedette.errors import InputError
@@ -28,7 +28,7 @@ from vedette.team import PlatformSpec
 RESULT = Result(
     world="office",
     robots=3,
-    planner="tours",
+    planner=JUDGED,
     seed=0,
     outcome="complete",
     completed=True,
@@ -270,14 +270,14 @@ def test_the_table_has_a_row_a_group_and_planner_with_least_most_sum_and_mean() 
     ]
     rows = [cells(line) for line in missions_table(results).splitlines()[2:]]
     assert [row[:2] for row in rows] == [
-        ["offices, 3 robots", "tours"],
+        ["offices, 3 robots", JUDGED],
         ["offices, 3 robots", "nearest"],
-        ["cave, 1 robot", "tours"],
+        ["cave, 1 robot", JUDGED],
     ]
     assert rows[0][2:] == ["2/3", "98.00", "0.400", "2", "90", "150 (2/3)", "320", "260", "90"]
 
 
-def test_the_criteria_judge_tours_alone_and_name_the_worst_mission() -> None:
+def test_the_criteria_judge_the_default_alone_and_name_the_worst_mission() -> None:
     results = [
         RESULT,
         replace(RESULT, seed=4, coverage=0.994, completed=False, outcome="time_limit"),

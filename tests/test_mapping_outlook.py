@@ -15,7 +15,7 @@ from vedette.domains.mapping.baselines.cost_utility import expected_areas
 from vedette.domains.mapping.belief import MapBelief, freeze
 from vedette.domains.mapping.impact import MIN_SHARE
 from vedette.domains.mapping.outlook import RAYS, SIGHT, mean_promise
-from vedette.domains.mapping.planners import PLANNERS, planner
+from vedette.domains.mapping.planners import DEFAULT, PLANNERS, planner
 from vedette.domains.mapping.platform import STAY, MappingPlatform
 from vedette.domains.mapping.sightings import empty_counts, measured_model
 from vedette.domains.mapping.stops import ENOUGH, GAP, LEAST_SHARE, find_stops, survey
@@ -106,7 +106,7 @@ def test_before_the_turn_a_round_is_that_of_the_papers_rate() -> None:
     assert np.array_equal(before.weights, paper.weights)
     assert np.array_equal(before.layers.weights, paper.layers.weights)
     chosen = []
-    for name, belief in (("rate", paper), ("balanced", before)):
+    for name, belief in (("rate", paper), ("information", before)):
         robot = PLANNERS[name].platform(SPEC)
         placed(robot, belief)
         chosen.append(robot.reply(belief, robot.impact(belief, STAY), STAY).stops.tolist())
@@ -166,14 +166,13 @@ def test_a_gap_that_no_body_fits_through_must_promise_more() -> None:
     )
 
 
-@pytest.mark.parametrize("name", ["information", "balanced", "completion"])
-def test_the_named_objectives_differ_in_when_they_turn(name: str) -> None:
-    turns = [PLANNERS[each].turn for each in ("information", "balanced", "completion")]
-    assert turns == sorted(turns)
-    assert planner(name, robots=3) is PLANNERS[name]
+def test_the_named_objectives_differ_in_when_they_turn_and_in_the_price_of_coming_back() -> None:
+    information, completion = PLANNERS["information"], PLANNERS["completion"]
+    assert information.turn < PLANNERS[DEFAULT].turn == completion.turn
+    assert information.return_price == PLANNERS[DEFAULT].return_price < completion.return_price
 
 
 def test_a_robot_alone_plans_routes_by_default() -> None:
-    assert planner("balanced", robots=1) is PLANNERS["makespan"]
-    assert planner("balanced", robots=2) is PLANNERS["balanced"]
-    assert planner("balanced") is PLANNERS["balanced"]
+    assert planner(DEFAULT, robots=1) is PLANNERS["makespan"]
+    assert planner(DEFAULT, robots=2) is PLANNERS[DEFAULT]
+    assert planner(DEFAULT) is PLANNERS[DEFAULT]

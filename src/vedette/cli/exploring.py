@@ -11,7 +11,7 @@ import click
 import numpy as np
 
 from vedette.cli.options import OneOf, Positive, seed_option, with_options
-from vedette.domains.mapping.planners import PLANNERS
+from vedette.domains.mapping.planners import DEFAULT, PLANNERS
 from vedette.errors import InputError
 from vedette.maps import write_map
 from vedette.negotiation import SCHEMES
@@ -58,7 +58,7 @@ def exploring_options(command: CommandT) -> CommandT:
         click.option(
             "--planner",
             type=OneOf(list(PLANNERS)),
-            default="tours",
+            default=DEFAULT,
             show_default=True,
             help="How the team decides.",
         ),

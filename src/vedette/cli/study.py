@@ -36,7 +36,7 @@ BROKE, INTERRUPTED = 1, 130
 )  # fmt: skip
 def study(spec_name: str, out: Path | None, jobs: int | None, backend: str) -> None:
     """Compare planners on many worlds: SPEC is a YAML file, or the name of a study that comes with Vedette:
-    ten-minutes, hundred-minutes.
+    ten-minutes, hundred-minutes, poses-and-views.
 
     A study that was stopped goes on when it is called again. Exit status: 0 all runs came to an end, 1 some
     broke, 2 bad input, 130 interrupted.

@@ -11,7 +11,7 @@ from typing import Annotated
 
 from msgspec import Meta, Struct
 
-from vedette.domains.mapping.planners import PLANNERS, planner
+from vedette.domains.mapping.planners import DEFAULT, PLANNERS, planner
 from vedette.errors import InputError, nearest_name
 from vedette.negotiation import SCHEMES
 from vedette.net.access import Access
@@ -51,7 +51,7 @@ class Links(Struct, forbid_unknown_fields=True, frozen=True):
 class Exploring(Struct, forbid_unknown_fields=True, frozen=True):
     """How the robot explores; the same for the whole team."""
 
-    planner: str = "tours"
+    planner: str = DEFAULT
     scheme: str = "token"
     fusion: str = "replicated"
     return_home: bool = False

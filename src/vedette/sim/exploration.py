@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from vedette.agent import Agent, GroundBehaviour
 from vedette.agent.driving import Driver
 from vedette.domains.mapping.impact import Most
-from vedette.domains.mapping.planners import planner
+from vedette.domains.mapping.planners import DEFAULT, planner
 from vedette.domains.mapping.sightings import BINS
 from vedette.errors import InputError, nearest_name
 from vedette.fusion import ChannelFilter, Fusion, ReplicatedEvidence
@@ -53,7 +53,7 @@ class Exploring(Protocol):
 class ExploreSetup(Setup):
     """What to simulate, beside the world and the team."""
 
-    planner: str = "tours"
+    planner: str = DEFAULT
     fusion: str = "replicated"
     return_home: bool = False
 

@@ -19,9 +19,8 @@ from vedette.domains.mapping.yardsticks import BurgardPlatform, NearestPlatform
 from vedette.errors import InputError, nearest_name
 from vedette.team import PlatformSpec
 
-HIDDEN_AREA = 2.0  # expected behind a frontier [m^2]
-SCRAP_AREA, SCRAP_PRICE = 0.5, 0.3  # the same, where little is left [m^2], [m^2 a metre]
-RETURN_PRICE = 1.0  # about half of what a robot maps while it drives a metre [m^2 a metre]
+HIDDEN_AREA = 0.5  # expected behind a frontier [m^2]
+RETURN_PRICE = 0.3  # more for a frontier that somebody will have to come back for [m^2 a metre]
 
 
 @dataclass(frozen=True)
@@ -39,39 +38,33 @@ class Planner:
     most_robots: int | None = None  # None: any number
 
 
-def _turning(summary: str, turn: float, return_price: float, alone: str | None = None) -> Planner:
-    """Return a planner that goes by the paper's rate, by tours once frontiers promise less than ``turn``."""
+def _tours(
+    summary: str,
+    turn: float = math.inf,
+    return_price: float = RETURN_PRICE,
+    alone: str | None = None,
+    kind: type[MappingPlatform] = MappingPlatform,
+    scheme: str | None = None,
+) -> Planner:
+    """Return a planner that makes tours once frontiers promise less than ``turn``, until then as ``rate``."""
     return Planner(
         summary,
         layers.rate(start=5.0),
-        SCRAP_AREA,
+        HIDDEN_AREA,
         return_price,
-        lambda spec: MappingPlatform(spec, max_stops=6, measured="unknown"),
+        lambda spec: kind(spec, max_stops=6, measured="unknown"),
         turn=turn,
         alone=alone,
+        scheme=scheme,
     )
 
 
 PLANNERS = {
-    "balanced": _turning(
-        "information first; then tours of what was left behind; alone, a route",
-        1.4,
-        SCRAP_PRICE,
-        alone="makespan",
+    "tours": _tours(
+        "tours of frontiers with arrival times, negotiated; alone, a route (default)", alone="makespan"
     ),
-    "information": _turning("information first, until very little is left", 0.7, SCRAP_PRICE),
-    "completion": _turning(
-        "completion first: tours of all there is, at twice the price of coming back",
-        math.inf,
-        2 * RETURN_PRICE,
-    ),
-    "tours": Planner(
-        "tours of frontiers with arrival times, negotiated (default)",
-        layers.rate(start=5.0),
-        HIDDEN_AREA,
-        RETURN_PRICE,
-        lambda spec: MappingPlatform(spec, max_stops=6, measured="unknown"),
-    ),
+    "information": _tours("information first; then tours of what was left behind", turn=1.4),
+    "completion": _tours("completion first: tours, dearer to come back to what is left", return_price=2.0),
     "rate": Planner(
         "one frontier each by the rate of uncertainty reduction, negotiated (the paper, eq. 42)",
         layers.rate(),
@@ -94,12 +87,9 @@ PLANNERS = {
         lambda spec: MappingPlatform(spec, max_stops=1, measured="distance"),
         scheme="jacobi",
     ),
-    "greedy": Planner(
+    "greedy": _tours(
         "as tours, each replying once to those before it (sequential greedy)",
-        layers.rate(start=5.0),
-        HIDDEN_AREA,
-        RETURN_PRICE,
-        lambda spec: GreedyPlatform(spec, max_stops=6, measured="unknown"),
+        kind=GreedyPlatform,
         scheme="token",
     ),
     "optimal": Planner(
@@ -138,6 +128,8 @@ PLANNERS = {
         MakespanPlatform,
     ),
 }
+
+DEFAULT = "tours"
 
 
 def planner(name: str, robots: int | None = None) -> Planner:

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from vedette.domains.mapping.planners import PLANNERS
+from vedette.domains.mapping.planners import DEFAULT, PLANNERS
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save
@@ -21,7 +21,7 @@ from vedette.study.paper.content import Section, Table, Value, table
 from vedette.study.paper.missions import Case, Mission
 from vedette.study.paper.run import Run
 
-PAPERS, DEFAULT = "rate", "tours"
+PAPERS = "rate"
 STAGES = (0.30, 0.65, 1.0)  # shares of the final coverage
 PICTURE = "figure-6.png"
 _PANEL, _GAP, _MARGIN = 3.9, 0.12, 0.15  # [inch]
@@ -44,8 +44,8 @@ def figure_6(run: Run) -> Section:
             f"A generated office (seed {seed}) of {size[0]:g} × {size[1]:g} m in cells of 0.1 m, as in the "
             "paper; three robots of 0.5 m/s with an all-round lidar of 8 m start together. Above, one "
             "frontier each by the rate of uncertainty reduction (eq. (42), section 5.1), agreed by the "
-            "token; below, the default: tours of up to six frontiers on the same objective form. Stages "
-            "are where 30 % and 65 % of the final coverage were reached, and the end.",
+            "token; below, the default: tours of up to six frontiers on the same objective form. "
+            "Stages are where 30 % and 65 % of the final coverage were reached, and the end.",
             _compare(missions),
         ),
         tables=(_summary(missions), *(_curve(mission) for mission in missions)),
