@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pytest
@@ -358,3 +358,12 @@ def test_two_robots_that_go_the_same_way_through_a_door_do_not_give_way() -> Non
     leader, follower = Intent(0, 3.6, 3.05, path[3:]), Intent(1, 3.0, 3.05, path)
     assert give_way(open_, RESOLUTION, leader, [follower]) is None
     assert give_way(open_, RESOLUTION, follower, [leader]) is None
+
+
+def test_a_robot_that_stands_does_not_make_room_for_one_that_has_arrived() -> None:
+    open_ = inflated(two_rooms())
+    me = Intent(1, 4.43, 3.05, EMPTY)
+    arrived = Intent(0, 4.0, 3.05, np.array([(4.0, 3.05)]))
+    assert give_way(open_, RESOLUTION, me, [arrived]) is None
+    goes_on = replace(arrived, path=np.array([(4.0, 3.05), (6.0, 3.05)]))
+    assert give_way(open_, RESOLUTION, me, [goes_on]) is not None

@@ -112,9 +112,9 @@ def _spread(me: Intent, mate: Intent) -> float:
 
 
 def _opposed(mine: NDArray[np.float64], theirs: NDArray[np.float64], limit: float) -> bool:
-    """Tell whether, within ``limit``, our ways run against each other; standing counts as such."""
+    """Tell whether, within ``limit``, our ways oppose each other; to stand in a mate's way counts too."""
     if len(mine) < 2:
-        return True
+        return len(theirs) > 1
     a, b = np.diff(mine, axis=0), np.diff(theirs, axis=0)
     near = np.hypot(*(mine[:-1, None] - theirs[None, :-1]).transpose(2, 0, 1)) < limit
     dot = a @ b.T
