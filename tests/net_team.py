@@ -8,12 +8,17 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 
+import pytest
+
 from vedette.net import Access, credentials
 from vedette.net.endpoints import free_port
 from vedette.net.keys import issue_team
 from vedette.net.names import robot_name
 
 TEAM = "office"
+
+# Real sockets and clocks on a host that other work may keep busy: what fails three times is no accident.
+real_time = pytest.mark.flaky(reruns=2, reruns_delay=2)
 
 
 @dataclass

@@ -14,11 +14,13 @@ import pytest
 from click.testing import CliRunner
 from msgspec import yaml
 
-from tests.net_team import issue, wait_until
+from tests.net_team import issue, real_time, wait_until
 from tests.small_missions import drawn
 from tests.test_cli_explore import TWO_ROOMS, Command
 from vedette.cli.status import status as status_command
 from vedette.net.endpoints import free_port
+
+pytestmark = real_time
 
 START = 30.0  # a process may take so long to start on a busy host [s]
 

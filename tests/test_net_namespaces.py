@@ -15,10 +15,11 @@ import pytest
 
 from tests.net_hosts import Cable, HostedTeam, Hosts, missing
 from tests.net_processes import Diary, Fault, Mission, plan_of, run
+from tests.net_team import real_time
 from tests.small_missions import small_maze
 from vedette.record.summary import Outcome
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, real_time]
 
 CHAIN: list[Cable] = [(0, 1), (1, 2), (2, 3)]
 RING: list[Cable] = [*CHAIN, (3, 0)]

@@ -33,7 +33,7 @@ from tests.net_processes import (
     run,
     terminate,
 )
-from tests.net_team import issue, wait_until
+from tests.net_team import issue, real_time, wait_until
 from tests.small_missions import drawn, robots, small_maze
 from tests.test_cli_explore import TWO_ROOMS, check_files
 from vedette.agent.effects import Drive, Route
@@ -43,6 +43,8 @@ from vedette.net.body import inside
 from vedette.net.launch import TEAM, TeamProcesses
 from vedette.record.summary import Outcome
 from vedette.sim.own_body import OwnBody, Seen
+
+pytestmark = real_time
 
 SOON = 1.0  # [s]
 START = 30.0  # a process may take so long to start on a busy host [s]

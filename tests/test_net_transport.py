@@ -8,7 +8,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 import zenoh
 
-from tests.net_team import TEAM, Ports, issue, wait_until
+from tests.net_team import TEAM, Ports, issue, real_time, wait_until
 from vedette.errors import InputError
 from vedette.net import Access, Datagram, Inbox, Operator, PeerGone, PeerSeen, Published, Topic, Transport
 from vedette.net.access import MOST_PAYLOAD, settings
@@ -24,6 +24,8 @@ from vedette.net.credentials import credentials
 from vedette.net.endpoints import Endpoint, free_port, parse_endpoint
 from vedette.net.keys import issue_team
 from vedette.net.names import Names
+
+pytestmark = real_time
 
 QUIET = 0.3  # after which nothing more is expected [s]
 PROCESS = """
@@ -54,6 +56,24 @@ def datagrams(inbox: Inbox, wait: float = QUIET) -> list[tuple[int, bytes]]:
     return found
 
 
+def assert_delivered(sender: Transport, receiver: Transport, payloads: Sequence[bytes]) -> None:
+    """Check that all payloads arrive whole, in order and once.
+
+    A busy host may lose some of a volley, so volleys are sent until nothing is missing.
+    """
+    missing = set(payloads)
+    for _ in range(20):
+        for payload in payloads:
+            sender.send(receiver.robot, payload)
+        volley = datagrams(receiver.inbox)
+        expected = iter([(sender.robot, payload) for payload in payloads])
+        assert all(datagram in expected for datagram in volley)
+        missing -= {payload for _, payload in volley}
+        if not missing:
+            return
+    raise AssertionError(f"{len(missing)} of {len(payloads)} payloads never arrived")
+
+
 # -- datagrams -------------------------------------------------------------------------------------------
 
 
@@ -63,13 +83,11 @@ def test_datagrams_go_both_ways_whole_and_in_order_with_their_sender_and_time(po
         Transport(ports.access(1, [0]), 1) as b,
     ):
         wait_until(lambda: a.peers == {1} and b.peers == {0})
-        sent = [bytes([k]) * size for k, size in enumerate((0, 1, 1000, 60_000, 300_000))]
-        for payload in sent:
-            b.send(0, payload)
-            a.send(1, payload)
         assert a.inbox.get(1.0) == PeerSeen(1, 7.0)
-        assert [a.inbox.get(1.0) for _ in sent] == [Datagram(1, payload, 7.0) for payload in sent]
-        assert datagrams(b.inbox) == [(0, payload) for payload in sent]
+        sent = [bytes([k]) * size for k, size in enumerate((0, 1, 1000, 60_000, 300_000))]
+        assert_delivered(b, a, sent)
+        assert_delivered(a, b, sent)
+        wait_until(lambda: b.send(0, b"now") or a.inbox.get(0.1) == Datagram(1, b"now", 7.0))
 
 
 def test_the_neighbour_of_a_neighbour_hears_and_sees_nothing(ports: Ports) -> None:
@@ -95,9 +113,7 @@ def test_both_may_connect_to_each_other_and_hear_everything_once(keys: Path) -> 
     with Transport(ports.access(0, [1]), 0) as a, Transport(ports.access(1, [0]), 1) as b:
         wait_until(lambda: a.peers == {1} and b.peers == {0})
         time.sleep(0.5)  # for the second link to be tried
-        for k in range(20):
-            a.send(1, bytes([k]))
-        assert datagrams(b.inbox) == [(0, bytes([k])) for k in range(20)]
+        assert_delivered(a, b, [bytes([k]) for k in range(20)])
 
 
 def test_a_payload_that_is_too_large_is_refused() -> None:
