@@ -16,9 +16,17 @@ from vedette.domains.mapping.belief import MapBelief, freeze
 from vedette.domains.mapping.impact import MIN_SHARE
 from vedette.domains.mapping.outlook import RAYS, SIGHT, mean_promise
 from vedette.domains.mapping.planners import DEFAULT, PLANNERS, planner
-from vedette.domains.mapping.platform import STAY, MappingPlatform
+from vedette.domains.mapping.platform import LEAST_AREA, LEFT_ALONE, STAY, MappingPlatform
 from vedette.domains.mapping.sightings import empty_counts, measured_model
-from vedette.domains.mapping.stops import ENOUGH, GAP, LEAST_SHARE, find_stops, survey
+from vedette.domains.mapping.stops import (
+    CLEARANCES,
+    CLOSE_VIEW,
+    ENOUGH,
+    GAP,
+    LEAST_SHARE,
+    find_stops,
+    survey,
+)
 from vedette.kernels import reference_coverage
 from vedette.kernels.coverage import LAYERS
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
@@ -164,6 +172,24 @@ def test_a_gap_that_no_body_fits_through_must_promise_more() -> None:
     assert sorted(map(tuple, narrow.targets.tolist())) == sorted(
         map(tuple, wide.targets[areas >= GAP * least].tolist())
     )
+
+
+def test_when_nothing_else_is_left_a_frontier_seen_too_slantingly_is_looked_at_from_close_by() -> None:
+    x, y = -2.5, 6.8
+    belief = at_turn(math.inf, explored([(x, y)]))
+    robot = MappingPlatform(SPEC)
+    model = robot.model(belief)
+    ground = survey(belief, SPEC, x, y, [], CLEARANCES[0])
+    far = find_stops(belief, ground, SPEC, model, LEAST_AREA)
+    near = find_stops(belief, ground, SPEC, model, LEAST_AREA, close=True)
+    assert np.hypot(*(near.targets - near.views).T).max() <= CLOSE_VIEW + belief.frame.resolution
+    slanting = [target for target in near.targets if np.hypot(*(far.targets - target).T).min() > LEFT_ALONE]
+    assert slanting
+    robot.avoided = [(*target, math.inf) for target in far.targets]
+    placed(robot, belief, x, y)
+    assert robot.stops is not None
+    left = robot.stops.targets[np.isfinite(robot.stops.first_leg)]
+    assert left.tolist() == [target.tolist() for target in slanting]
 
 
 def test_the_named_objectives_differ_in_when_they_turn_and_in_the_price_of_coming_back() -> None:

@@ -66,7 +66,8 @@ def test_steer_equals_its_twin(seed: int) -> None:
             np.full(n, 0.3),
         )
     )
-    progress = (rng.uniform(0, 0.5), float(rng.choice(twin.OFFSETS)))
+    turning = float(rng.choice((0.0, rng.uniform(-1.5, 1.5), -1.5, 1.5)))
+    progress = (rng.uniform(0, 0.5), float(rng.choice(twin.OFFSETS)), turning)
     scene = (solid, traversable, RESOLUTION, pose, path, arc_length(path), progress, others, LIMITS)
     assert motion.steer(*scene) == pytest.approx(twin.steer(*scene), abs=1e-9)
 
@@ -92,6 +93,18 @@ def test_a_free_path_takes_at_most_a_tenth_longer_than_at_top_speed_plus_turning
     turning = turns[turns > np.pi / 4].sum() / 1.5
     assert taken <= 1.1 * np.hypot(*steps.T).sum() / 0.5 + turning
     assert bodies.collisions.sum() == 0
+
+
+def test_a_robot_in_a_corner_does_not_dither_between_two_ways_to_turn() -> None:
+    corner = np.ones_like(OPEN)
+    corner[:40, :33] = corner[:36] = False
+    path = np.array([(3.395, 3.841), (3.35, 4.05), (1.55, 4.05), (1.0, 4.05)])
+    for heading in np.linspace(-np.pi, np.pi, 400):
+        bodies = Bodies(OPEN, RESOLUTION, [PlatformSpec()], np.array([(*path[0], heading)]))
+        bodies.command(0, path, corner)
+        for _ in range(100):
+            bodies.step(0.1)
+        assert bodies.arrived(0), heading
 
 
 def test_a_sharp_bend_around_a_wall_is_driven_without_contact_at_nearly_full_speed() -> None:

@@ -24,6 +24,7 @@ const COST_CHANGE: f64 = 0.2;
 const COST_CLOSE: f64 = 0.5;
 const COST_WRONG_SIDE: f64 = 0.2;
 const COST_OUTSIDE: f64 = 0.3;
+const COST_BACK: f64 = 0.5;
 /// Full speed below this heading error, none above that one [rad].
 const ALIGNED: f64 = 0.35;
 const ASKEW: f64 = 1.3;
@@ -153,6 +154,8 @@ pub struct Scene<'a> {
     /// Rows `x, y, vx, vy, radius, courtesy`: the others, and the gap one would rather keep to them [m].
     pub others: &'a [f64],
     pub limits: Limits,
+    /// How fast it has just turned on the spot [rad/s]; 0 if it moved.
+    pub turning: f64,
 }
 
 #[derive(Clone, Copy)]
@@ -231,7 +234,7 @@ impl Scene<'_> {
         let keep = l.radius + WALL_GUARD;
         // A lower bound of the clearance, exact where it matters: moving by d takes at most d away.
         let mut wall = clearance(self.solid, x, y, keep + WALL_LOOK);
-        let fixed = COST_CHANGE * (f.offset - last_offset).abs();
+        let mut fixed = COST_CHANGE * (f.offset - last_offset).abs();
         for step in 1..=STEPS {
             let (v, w, e) = self.follow(f, (x, y, heading), s);
             let middle = heading + 0.5 * w * l.period;
@@ -239,6 +242,9 @@ impl Scene<'_> {
             error = e;
             if step == 1 {
                 command.turn = w;
+                if w.abs() >= l.turn_rate && w * self.turning < 0.0 {
+                    fixed += COST_BACK;
+                }
             }
             let is_outside = !self.traversable.at(nx, ny);
             let (free, near, side) = self.gap((x, y), (nx, ny), step);
@@ -327,7 +333,7 @@ fn py_steer(
     pose: (f64, f64, f64),
     path: PyReadonlyArray2<f64>,
     arc: PyReadonlyArray1<f64>,
-    progress: (f64, f64),
+    progress: (f64, f64, f64),
     others: PyReadonlyArray2<f64>,
     limits: (f64, f64, f64, f64),
 ) -> PyResult<(f64, f64, f64, f64, f64)> {
@@ -338,6 +344,7 @@ fn py_steer(
         path: Path { xy: path.as_slice()?, arc: arc.as_slice()? },
         others: others.as_slice()?,
         limits: Limits { radius, speed, turn_rate, period },
+        turning: progress.2,
     };
     let c = steer(scene, pose, progress.0, progress.1);
     Ok((c.speed, c.turn, c.arc, c.offset, c.cost))

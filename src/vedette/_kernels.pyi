@@ -85,7 +85,7 @@ def steer(
     pose: tuple[float, float, float],
     path: NDArray[np.float64],
     arc: NDArray[np.float64],
-    progress: tuple[float, float],
+    progress: tuple[float, float, float],
     others: NDArray[np.float64],
     limits: tuple[float, float, float, float],
 ) -> tuple[float, float, float, float, float]: ...

@@ -44,7 +44,7 @@ def steer(
     pose: tuple[float, float, float],
     path: NDArray[np.float64],
     arc: NDArray[np.float64],
-    progress: tuple[float, float],
+    progress: tuple[float, float, float],
     others: NDArray[np.float64],
     limits: Limits,
 ) -> Command:
@@ -54,13 +54,15 @@ def steer(
     window in path coordinates): each turns towards its point ahead and slows down while it is askew. One that
     would leave the traversable cells, or come within 5 cm of a disc (others move on at constant velocity) or
     2.5 cm of a wall, waits for that step, unless it is no worse than before. So every candidate is safe. The
-    first that costs at most 0.1 s more than conceivable is taken. Head-on, robots keep to the right.
+    first that costs at most 0.1 s more than conceivable is taken. Head-on, robots keep to the right. A robot
+    that turns on the spot needs a reason to turn back, lest it dither between two followers.
 
     ``solid`` ``(R, C)``: the true walls, as a ring of proximity sensors feels them within a metre.
     ``traversable`` ``(R, C)``: cells where the map allows the robot's centre.
     ``pose``: x, y [m] from the grid's lower-left corner, heading [rad].
     ``path`` ``(L, 2)`` [m], L >= 2, no two consecutive points equal; ``arc`` ``(L,)`` its arc length [m].
-    ``progress``: arc length reached and offset followed so far, both from the last command (0, 0 at first).
+    ``progress``: from the last command, the arc length reached and the offset followed [m], and its turn rate
+    [rad/s] if the robot did not move, otherwise 0; all 0 at first.
     ``others`` ``(D, 6)``: x, y, vx, vy, radius, and the gap one would rather keep (> 0) [m, m/s].
     """
     return Command(*_kernels.steer(solid, traversable, resolution, pose, path, arc, progress, others, limits))

@@ -23,6 +23,7 @@ COST_CHANGE = 0.2  # [s/m]
 COST_CLOSE = 0.5  # [s]
 COST_WRONG_SIDE = 0.2  # [s]
 COST_OUTSIDE = 0.3  # [s] a step
+COST_BACK = 0.5  # [s] to turn back on the spot
 ALIGNED, ASKEW = 0.35, 1.3  # full speed below, none above [rad]
 SATISFIED = 0.1  # [s]
 SLACK = 1e-9
@@ -59,6 +60,7 @@ class Scene(NamedTuple):
     arc: NDArray[np.float64]
     others: NDArray[np.float64]
     limits: Limits
+    turning: float  # how fast it has just turned on the spot [rad/s]; 0 if it moved
 
     def inside(self, x: float, y: float) -> bool:
         """Tell whether the point lies in a traversable cell."""
@@ -141,6 +143,7 @@ class Scene(NamedTuple):
         x, y, heading = pose
         speed, turn, first_arc = 0.0, 0.0, s
         close, wrong, outside, error = 0.0, 0.0, 0, 0.0
+        change = COST_CHANGE * abs(f.offset - last_offset)
         was_outside = not self.inside(x, y)
         wall = clearance(self.solid, self.resolution, x, y, keep)
         for step in range(1, STEPS + 1):
@@ -160,11 +163,13 @@ class Scene(NamedTuple):
             outside += was_outside
             if step == 1:
                 turn = w
+                if abs(w) >= self.limits.turn_rate and w * self.turning < 0.0:
+                    change += COST_BACK
                 if go:
                     speed, first_arc = v, s
             reach = s + (STEPS - step) * period * f.speed
             least = max(float(self.arc[-1]) - reach, 0.0) / self.limits.speed
-            least += COST_CHANGE * abs(f.offset - last_offset) + COST_CLOSE * close + COST_OUTSIDE * outside
+            least += change + COST_CLOSE * close + COST_OUTSIDE * outside
             if least > enough + SLACK:
                 return Command(speed, turn, first_arc, f.offset, math.inf)
         arc, lateral = self.project(x, y, s - 0.1, s + 0.5)
@@ -172,7 +177,7 @@ class Scene(NamedTuple):
             (float(self.arc[-1]) - arc) / self.limits.speed
             + abs(error) / self.limits.turn_rate
             + COST_LATERAL * lateral
-            + COST_CHANGE * abs(f.offset - last_offset)
+            + change
             + COST_CLOSE * close
             + COST_WRONG_SIDE * wrong
             + COST_OUTSIDE * outside
@@ -187,13 +192,13 @@ def steer(
     pose: Pose,
     path: NDArray[np.float64],
     arc: NDArray[np.float64],
-    progress: tuple[float, float],
+    progress: tuple[float, float, float],
     others: NDArray[np.float64],
     limits: Limits,
 ) -> Command:
     """Try every follower in turn; stop at the first that is good enough, else take the cheapest."""
-    scene = Scene(solid, traversable, resolution, path, arc, others, limits)
-    s, last_offset = progress
+    s, last_offset, turning = progress
+    scene = Scene(solid, traversable, resolution, path, arc, others, limits, turning)
     s = scene.project(pose[0], pose[1], s - 0.5, s + 1.0)[0]
     conceivable = max(float(arc[-1]) - s - STEPS * limits.period * limits.speed, 0.0) / limits.speed
     best = scene.price(Follower(last_offset, 0.0, LOOKS[0]), pose, s, last_offset)

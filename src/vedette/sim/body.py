@@ -31,6 +31,7 @@ class _Task:
     traversable: NDArray[np.bool_]  # (R, C) shared with the robot's own map
     done: float = 0.0  # arc length reached [m]
     offset: float = 0.0  # sideways offset being followed [m]
+    turning: float = 0.0  # turn rate of a robot that turns on the spot [rad/s]
     best_left: float = np.inf  # remaining length at the last progress [m]
     idle: float = 0.0  # time since then [s]
 
@@ -91,7 +92,7 @@ class Bodies:
         task = _Task(xy, arc, ~self.solid if traversable is None else traversable, best_left=float(arc[-1]))
         old = self._tasks[i]
         if old is not None and np.hypot(*(old.xy[-1] - xy[-1])) < SAME_GOAL:
-            task.idle, task.offset = old.idle, old.offset
+            task.idle, task.offset, task.turning = old.idle, old.offset, old.turning
         self._tasks[i] = task
 
     def step(self, dt: float) -> None:
@@ -142,11 +143,12 @@ class Bodies:
             (x, y, heading),
             task.xy,
             task.arc,
-            (task.done, task.offset),
+            (task.done, task.offset, task.turning),
             self._sensed(i),
             limits,
         )
         task.done, task.offset = chosen.arc, chosen.offset
+        task.turning = 0.0 if chosen.speed > 0.0 else chosen.turn
         if task.left < task.best_left - PROGRESS:
             task.best_left, task.idle = task.left, 0.0
         else:

@@ -102,19 +102,21 @@ class MappingPlatform:
     def prepare(self, belief: MapBelief) -> None:
         """Survey the ground and find the stops; the slow part, before the round.
 
-        A robot that can get to none with its usual clearance looks for narrower ways.
+        A robot that finds none looks at the frontiers from close by, and then for narrower ways.
         """
         self._update_given_up(belief)
         self.ahead = self.max_stops if belief.gathering else 1
         least = max(LEAST_AREA, 0.5 * belief.frame.resolution**2)
+        model = self.model(belief)
         for clearance in CLEARANCES:
             self.ground = survey(belief, self.spec, self.x, self.y, self.obstacles, clearance)
-            stops = find_stops(
-                belief, self.ground, self.spec, self.model(belief), least, tours=self.ahead > 1
-            )
-            self.stops = self._without_left_alone(stops)
-            if np.isfinite(self.stops.first_leg).any():
-                break
+            for close in (False, True):
+                stops = find_stops(
+                    belief, self.ground, self.spec, model, least, tours=self.ahead > 1, close=close
+                )
+                self.stops = self._without_left_alone(stops)
+                if np.isfinite(self.stops.first_leg).any():
+                    return
 
     def _update_given_up(self, belief: MapBelief) -> None:
         """Give up frontiers that a visit did not change; take up again those whose surroundings changed."""

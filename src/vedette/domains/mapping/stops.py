@@ -21,6 +21,7 @@ ENOUGH = 0.35  # ... but no more than this [m^2]
 GAP = 2.0  # a gap that the body does not fit through must promise so many times as much
 MOST_STOPS = 40  # nearest first; the rest waits for a later round
 VIEW_REACH = 0.8  # how far from a frontier to look for a place to see it from [sensor ranges]
+CLOSE_VIEW = 1.0  # the same where the farther place leads nowhere [m]
 CLEARANCES = (0.05, 0.01)  # kept to all that is not known free [m]; the second where the first leads nowhere
 Disc = tuple[float, float, float]  # x, y, radius [m], team frame
 
@@ -85,16 +86,20 @@ def find_stops(
     least_area: float,
     *,
     tours: bool = True,
+    close: bool = False,
 ) -> Stops:
     """Turn the belief's frontiers into stops that reveal at least ``least_area`` [m^2] in expectation.
 
     In a large building a stop must promise more than in a small one, and a gap that the body does not fit
     through more than another: behind most of them is the inside of a wall or of furniture, and nothing leads
     on.  docs/theory.md (V66)
+    A frontier is looked at from the nearest place that sees its middle, however slantingly, or, if ``close``,
+    from one within a metre.
     Legs between stops are worked out for ``tours`` only; else they are infinite.
     """
     frame = belief.frame
-    reach = max(2, round(VIEW_REACH * spec.range / frame.resolution))
+    view = min(CLOSE_VIEW, VIEW_REACH * spec.range) if close else VIEW_REACH * spec.range
+    reach = max(2, round(view / frame.resolution))
     targets, views = coverage.viewpoints(
         ground.field, belief.classes, belief.frontier_cells, belief.frontier_starts, reach
     )
