@@ -286,4 +286,5 @@ def test_the_full_reproduction_is_no_smaller_than_the_quick_one() -> None:
     assert set(QUICK.teams) < set(FULL.teams)
     assert QUICK.trials < FULL.trials
     assert len(QUICK.mission_seeds) < len(FULL.mission_seeds)
+    assert set(QUICK.mission_planners) < set(FULL.mission_planners)
     assert FULL.office == QUICK.office == (30.0, 20.0)

@@ -16,6 +16,11 @@ from vedette.study.paper.run import Run
 from vedette.study.paper.scans import scan, spaced
 
 NAT = 0.2  # of a unit of a robot's log-odds
+HOW = {
+    "rate": "with negotiated single frontiers (`rate`)",
+    "tours": "with negotiated tours",
+    "nearest": "with the nearest frontier for everybody",
+}
 Float = NDArray[np.float64]
 
 
@@ -67,7 +72,7 @@ def c12(run: Run) -> Section:
     """Run missions to their end, look for anything worth doing that is left, and for work done twice."""
     rows: list[tuple[Value, ...]] = []
     for seed in run.scale.mission_seeds:
-        for planner in ("rate", "tours", "nearest"):
+        for planner in run.scale.mission_planners:
             mission = run.missions.get(Case(planner, seed, *run.scale.office))
             s = mission.report.summary
             left, stops = left_to_do(mission)
@@ -105,13 +110,14 @@ def c12(run: Run) -> Section:
             "in all. Such a frontier was visited and given up because nothing there changed; without "
             "giving up, slivers that no scan resolves would keep missions alive for ever. Some entropy "
             "always stays: cells inside walls, and what no robot can see.",
-            "Consistency, measured by what it is for: with negotiated single frontiers (`rate`) the three "
-            f"drive {mean('rate', 8):.0f} m in all and {100 * mean('rate', 7):.0f} % of the map is seen by "
-            f"two or more; with tours {mean('tours', 8):.0f} m and {100 * mean('tours', 7):.0f} %; if "
-            f"everybody goes to the nearest frontier, {mean('nearest', 8):.0f} m and "
-            f"{100 * mean('nearest', 7):.0f} %. 90 % are known after {mean('rate', 9):.0f} s, "
-            f"{mean('tours', 9):.0f} s and {mean('nearest', 9):.0f} s, the ends are at "
-            f"{mean('rate', 3):.0f} s, {mean('tours', 3):.0f} s and {mean('nearest', 3):.0f} s.",
+            "Consistency, measured by what it is for: "
+            + "; ".join(
+                f"{HOW[planner]}, the three drive {mean(planner, 8):.0f} m in all, "
+                f"{100 * mean(planner, 7):.0f} % of the map is seen by two or more, 90 % of it is known "
+                f"after {mean(planner, 9):.0f} s, and all after {mean(planner, 3):.0f} s"
+                for planner in run.scale.mission_planners
+            )
+            + ".",
         ),
         Verdict.HOLDS if complete == len(rows) else Verdict.IN_PART,
         f"{complete} of {len(rows)} missions end by themselves, coverage ≥ {100 * least:.2f} %; {left} "

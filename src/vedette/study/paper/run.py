@@ -21,6 +21,7 @@ class Scale:
     scan_offices: int  # offices that Fig. 3 scans
     scans: int  # places in each
     mission_seeds: tuple[int, ...]  # of the missions of claim C12, Fig. 6's first
+    mission_planners: tuple[str, ...]  # of the same, Fig. 6's among them
     targets: int  # drawn for claim C13
     office: tuple[float, float]  # width and height of that of the missions [m]
 
@@ -32,6 +33,7 @@ FULL = Scale(
     scan_offices=10,
     scans=60,
     mission_seeds=(0, 1, 2, 3),
+    mission_planners=("rate", "tours", "nearest"),
     targets=100_000,
     office=(30.0, 20.0),
 )
@@ -42,6 +44,7 @@ QUICK = Scale(
     scan_offices=4,
     scans=30,
     mission_seeds=(0,),
+    mission_planners=("rate", "tours"),
     targets=20_000,
     office=(30.0, 20.0),
 )
