@@ -7,6 +7,7 @@ import shutil
 import subprocess
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from itertools import count
 from types import TracebackType
 from typing import Any, Self
 
@@ -33,13 +34,16 @@ def missing() -> str | None:
     return None
 
 
+_MADE = count()  # names are not used twice: what was taken away may take a while to be gone
+
+
 @dataclass
 class Hosts:
     """So many hosts with cables between some of them, and one from each to this machine for the operator."""
 
     count: int
     cables: Sequence[Cable]
-    tag: str = field(default_factory=lambda: f"v{os.getpid() % 100_000}")
+    tag: str = field(default_factory=lambda: f"v{os.getpid() % 100_000}x{next(_MADE)}")
 
     def __enter__(self) -> Self:
         """Make them."""

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from agent_team import FRAME, Team, ground, state, toy, toy_agent, toy_team
 from vedette import Tree
 from vedette.agent import State
-from vedette.agent.driving import YIELD_LIMIT, Driver, remaining
+from vedette.agent.driving import ON_ITS_WAY, YIELD_LIMIT, Driver, remaining
 from vedette.agent.effects import Drive, Route
 from vedette.agent.events import Arrived, Event, Pose, Stuck
 from vedette.agent.mates import Mate
@@ -169,6 +169,27 @@ def test_the_higher_index_makes_room_in_a_corridor_and_goes_on_when_the_mate_has
     drive = driver.look_out(Pose(2.0, 2.1, 0.0), [mate(0, 3.5, 1.25, 3.9, 5.0)], wanted, 5.0)
     assert drive == Drive(wanted) or (drive is not None and drive.route is wanted)
     assert not driver.yielding
+
+
+def test_a_robot_that_makes_room_again_at_the_same_place_has_done_so_all_along() -> None:
+    driver = Driver(1, PlatformSpec(), FRAME)
+    wanted = Route(np.array([(2.0, 1.25), (0.3, 1.25)]), corridor(5))
+
+    def meet(x: float, now: float) -> None:
+        driver.look_out(Pose(x, 1.25, np.pi), [mate(0, x - 1.2, 1.25, x + 1.7, now)], wanted, now)
+        assert driver.yielding
+
+    def part(x: float, now: float) -> None:
+        driver.look_out(Pose(x, 1.25, np.pi), [mate(0, 4.5, 1.25, 4.9, now)], wanted, now)
+        assert not driver.yielding
+
+    driver.go(wanted)
+    meet(2.0, 0.0)
+    part(2.0, 5.0)
+    meet(1.9, 8.0)
+    assert driver.yielding_since == 3.0
+    part(1.9, 10.0)
+    assert driver._yielded_before(np.array((1.9, 1.25)) + ON_ITS_WAY) == 0.0
 
 
 def test_no_room_is_made_for_a_mate_that_has_been_silent() -> None:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from tests.small_missions import robots, run, small_maze, small_office
 from vedette.agent.rightofway import block_discs
+from vedette.domains.mapping.stops import CLEARANCES
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.record.links import parts
 from vedette.sim.exploration import ExploreSimulation
@@ -76,10 +77,10 @@ def _near_edge(solid: NDArray[np.bool_]) -> NDArray[np.bool_]:
 def covered(simulation: ExploreSimulation, report: Report) -> float:
     """Return the share known of what those who live can see from where they can go.
 
-    A robot that died in a doorway closes the room behind it.
+    A robot that died in a doorway closes the room behind it. Nobody plans to pass it by less than 1 cm.
     """
     world, bodies = simulation.world, simulation.robots.bodies
-    dead = [(x, y, spec.radius) for (x, y, _), spec in _robots(simulation, ~bodies.alive)]
+    dead = [(x, y, spec.radius + CLEARANCES[-1]) for (x, y, _), spec in _robots(simulation, ~bodies.alive)]
     closed = ~block_discs(~world.solid, world.frame.resolution, dead)
     living = _robots(simulation, bodies.alive)
     left = replace(world, solid=closed)

@@ -15,6 +15,7 @@ from vedette.maps import GridFrame
 from vedette.team import PlatformSpec
 
 YIELD_LIMIT = 12.0  # a robot that had to make room for so long looks for other work [s]
+ON_ITS_WAY = 1.0  # so far from where it had to make room a robot is on its way again [m]
 
 
 @dataclass
@@ -26,7 +27,8 @@ class Driver:
     frame: GridFrame  # of the map
     wanted: Route | None = None
     refuge: NDArray[np.float64] | None = None  # (L, 2) [m], team frame, while making room
-    yielding_since: float = 0.0
+    yielding_since: float = 0.0  # less what it did so before at the same place
+    yielded: tuple[NDArray[np.float64], float] | None = None  # (2,) where it last made room [m], how long [s]
 
     @property
     def yielding(self) -> bool:
@@ -59,11 +61,18 @@ class Driver:
             if not self.yielding:
                 return None
             self.refuge = None
+            self.yielded = here, now - self.yielding_since
             return Drive(self.wanted)
         if not self.yielding:
-            self.yielding_since = now
+            self.yielding_since = now - self._yielded_before(here)
         self.refuge = refuge + corner
         return Drive(Route(self.refuge, route.passable))
+
+    def _yielded_before(self, here: NDArray[np.float64]) -> float:
+        """Return how long it has made room here already [s], lest two let each other pass for ever."""
+        if self.yielded is None or np.hypot(*(here - self.yielded[0])) >= ON_ITS_WAY:
+            return 0.0
+        return self.yielded[1]
 
     def ahead(self, pose: Pose) -> NDArray[np.float64]:
         """Return what is left of the wanted path, ``(L, 2)`` [m], team frame, for the next few metres."""
