@@ -12,7 +12,8 @@ import numpy as np
 from bench.criteria import Criterion, Measurement
 from bench.half_known import half_known
 from vedette.domains.mapping.belief import MIN_FRONTIER
-from vedette.kernels import frontier, reference_frontier
+from vedette.kernels import frontier
+from vedette.kernels.reference import frontier as reference_frontier
 from vedette.sim.worlds import office
 from vedette.team import PlatformSpec
 

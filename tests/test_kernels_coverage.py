@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from vedette.domains.mapping import layers
 from vedette.kernels import coverage
-from vedette.kernels import reference_coverage as reference
 from vedette.kernels.coverage import LAYERS, Footprints
 from vedette.kernels.frontier import find_frontiers
-from vedette.kernels.reference_coverage import Problem, Sparse
+from vedette.kernels.reference import coverage as reference
+from vedette.kernels.reference.coverage import Problem, Sparse
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 
 seeds = st.integers(0, 2**32 - 1)

@@ -10,7 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from vedette.kernels import distance, reference_distance
+from vedette.kernels import distance
+from vedette.kernels.reference import distance as reference_distance
 
 seeds = st.integers(0, 2**32 - 1)
 

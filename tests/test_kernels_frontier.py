@@ -10,7 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from vedette.kernels import frontier, reference_frontier
+from vedette.kernels import frontier
+from vedette.kernels.reference import frontier as reference_frontier
 
 seeds = st.integers(0, 2**32 - 1)
 

@@ -10,7 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from vedette.kernels import lidar, reference_lidar
+from vedette.kernels import lidar
+from vedette.kernels.reference import lidar as reference_lidar
 
 seeds = st.integers(0, 2**32 - 1)
 RESOLUTION = 0.1

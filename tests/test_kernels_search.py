@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from vedette.kernels import reference_search, search
+from vedette.kernels import search
+from vedette.kernels.reference import search as reference_search
 from vedette.kernels.search import Paths, Stencil
 
 QUICK = settings(deadline=None, max_examples=40)

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from vedette.kernels import reference_tracking as reference
+from vedette.kernels.reference import tracking as reference
 from vedette.kernels.tracking import Measure, Motion, Sparse, chain_gradient, chain_values
 
 MEASURES: tuple[Measure, ...] = get_args(Measure)

@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from vedette.kernels import reference_visibility, visibility
+from vedette.kernels import visibility
+from vedette.kernels.reference import visibility as reference_visibility
 
 seeds = st.integers(0, 2**32 - 1)
 

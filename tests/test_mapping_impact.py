@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from vedette.domains.mapping.impact import MIN_SHARE, NOTHING, Impact, ImpactCodec, final_miss, quantise
-from vedette.kernels import reference_coverage as reference
 from vedette.kernels.coverage import LAYERS
+from vedette.kernels.reference import coverage as reference
 
 seeds = st.integers(0, 2**32 - 1)
 

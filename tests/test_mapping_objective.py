@@ -15,9 +15,9 @@ from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.impact import NOTHING, Impact
 from vedette.domains.mapping.layers import TimeLayers
 from vedette.domains.mapping.objective import MappingObjective
-from vedette.kernels import reference_coverage as reference
 from vedette.kernels.coverage import LAYERS
 from vedette.kernels.misses import CERTAIN
+from vedette.kernels.reference import coverage as reference
 from vedette.testing import check_objective
 
 seeds = st.integers(0, 2**32 - 1)

@@ -27,8 +27,8 @@ from vedette.domains.mapping.stops import (
     find_stops,
     survey,
 )
-from vedette.kernels import reference_coverage
 from vedette.kernels.coverage import LAYERS
+from vedette.kernels.reference import coverage as reference_coverage
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 
 ROOMS = [*CORRIDOR, (7.0, 7.1), (0.0, 4.0), (4.0, 4.0), (0.0, 10.0)]

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from vedette.kernels import motion
-from vedette.kernels import reference_motion as twin
+from vedette.kernels.reference import motion as twin
 from vedette.sim.body import Bodies
 from vedette.team import PlatformSpec
 

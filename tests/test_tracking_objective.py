@@ -23,7 +23,7 @@ from vedette.domains.tracking.objective import (
     objective,
 )
 from vedette.errors import InputError
-from vedette.kernels.reference_tracking import information
+from vedette.kernels.reference.tracking import information
 from vedette.problem import LogDet
 from vedette.testing import LawBroken, check_objective
 

@@ -19,8 +19,9 @@ from vedette.agent.events import Pose, Scan
 from vedette.domains.mapping.blur import blurred, displacement
 from vedette.domains.mapping.sightings import measured_model
 from vedette.domains.mapping.stops import CLEARANCES, find_stops, survey
-from vedette.kernels import lidar, reference_lidar
+from vedette.kernels import lidar
 from vedette.kernels.frontier import traversable
+from vedette.kernels.reference import lidar as reference_lidar
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.sim.localisation import CORRELATION_TIME, Localisation, displaced
 from vedette.team import PlatformSpec

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.kernels.reference_visibility import touched
+from vedette.kernels.reference.visibility import touched
 
 STRAIGHT, DIAGONAL, CONNECTION = 12, 17, 3
 

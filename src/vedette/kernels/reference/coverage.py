@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from vedette.kernels.coverage import LAYERS, Footprints
 from vedette.kernels.misses import CERTAIN, STEPS_PER_NAT, Keys, Misses
-from vedette.kernels.reference_lidar import crossings
+from vedette.kernels.reference.lidar import crossings
 
 FREE, OCCUPIED = 1, 2
 Sparse = tuple[Keys, Misses]
