@@ -16,7 +16,7 @@ from vedette.domains.mapping.baselines.greedy import GreedyPlatform
 from vedette.domains.mapping.planners import Planner
 from vedette.domains.mapping.platform import MappingPlatform
 from vedette.record.files import write_text
-from vedette.sim.exploration import ExploreSetup
+from vedette.sim.explore.simulation import ExploreSetup
 from vedette.study.bootstrap import Interval
 from vedette.study.compare import difference, mean
 from vedette.study.conduct import conduct

@@ -33,8 +33,8 @@ from tests.net_processes import (
 from vedette.cli.team import SPEED
 from vedette.net.launch import TeamProcesses
 from vedette.record.files import write_json
-from vedette.sim.exploration import ExploreSetup
-from vedette.sim.explore import explore, prepare
+from vedette.sim.explore.run import explore, prepare
+from vedette.sim.explore.simulation import ExploreSetup
 from vedette.sim.world import World
 from vedette.sim.worlds import office
 

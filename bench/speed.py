@@ -9,8 +9,8 @@ import numpy as np
 
 from vedette.maps import UNKNOWN
 from vedette.record.summary import Spread, Summary
-from vedette.sim.exploration import ExploreSetup
-from vedette.sim.explore import explore, prepare
+from vedette.sim.explore.run import explore, prepare
+from vedette.sim.explore.simulation import ExploreSetup
 from vedette.sim.worlds import office
 from vedette.team import PlatformSpec
 

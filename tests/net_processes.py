@@ -23,8 +23,8 @@ from vedette.net.report import Condition, read_report
 from vedette.net.team import TeamWatch
 from vedette.net.transport import Operator, Published
 from vedette.record.log import Snapshot
-from vedette.sim.exploration import ExploreSetup
-from vedette.sim.explore import Report
+from vedette.sim.explore.run import Report
+from vedette.sim.explore.simulation import ExploreSetup
 from vedette.sim.observer import Setting
 from vedette.sim.starts import choose_starts
 from vedette.sim.world import World

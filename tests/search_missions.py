@@ -9,10 +9,10 @@ import numpy as np
 
 from vedette.domains.search.belief import TargetPdf
 from vedette.domains.search.evidence import evidence_of_looks
+from vedette.missions.search.case import SearchCase, made
+from vedette.missions.search.scenario import SearchScenario
 from vedette.scenario import as_scenario
-from vedette.sim.search.case import SearchCase, made
 from vedette.sim.search.curves import Floats, predicted
-from vedette.sim.search.scenario import SearchScenario
 from vedette.sim.search.simulation import SearchSetup, SearchSimulation
 
 EYE = {"type": "exponential", "detection": 0.7, "range": 100, "sigma": 60}

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from vedette.maps import GridFrame
-from vedette.sim.exploration import ExploreSetup, ExploreSimulation
-from vedette.sim.explore import Report, explore, prepare
+from vedette.sim.explore.run import Report, explore, prepare
+from vedette.sim.explore.simulation import ExploreSetup, ExploreSimulation
 from vedette.sim.world import World
 from vedette.sim.worlds import maze, office
 from vedette.team import PlatformSpec

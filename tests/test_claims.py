@@ -35,9 +35,9 @@ from vedette.kernels.coverage import LAYERS
 from vedette.kernels.misses import SparseMisses
 from vedette.maps import GridFrame
 from vedette.maps.swept import most_cells_swept
-from vedette.missions.explore import Exploration
-from vedette.missions.search import Searching
-from vedette.missions.track import Tracking
+from vedette.missions.explore.exploration import Exploration
+from vedette.missions.search.searching import Searching
+from vedette.missions.track.tracking import Tracking
 from vedette.negotiation import Chooser, Claims, JacobiNode, TokenNode, decode
 from vedette.negotiation.messages import Gather, Outcome, Stop, Tally, Token, Up
 from vedette.team import PlatformSpec

@@ -195,7 +195,7 @@ def test_priors_of_every_kind_can_be_searched(vedette: Command, prior: list[dict
 
 def test_the_example_is_the_search_without_a_file(vedette: Command) -> None:
     root = Path(__file__).parents[1]
-    built_in = root / "src" / "vedette" / "sim" / "scenarios" / "search.yaml"
+    built_in = root / "src" / "vedette" / "missions" / "scenarios" / "search.yaml"
     assert (root / "examples" / "scenarios" / "search.yaml").read_bytes() == built_in.read_bytes()
     ran = vedette("search", "--max-time", 6, "--out", "out", "--json", *QUICK)
     assert json.loads(ran.out)["vehicles"] == 4

@@ -17,8 +17,8 @@ from vedette.agent.rightofway import block_discs
 from vedette.domains.mapping.stops import CLEARANCES
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.record.links import parts
-from vedette.sim.exploration import ExploreSimulation
-from vedette.sim.explore import Report
+from vedette.sim.explore.run import Report
+from vedette.sim.explore.simulation import ExploreSimulation
 from vedette.sim.faults import Schedule, faults_from_seed
 from vedette.sim.radio import Radio
 from vedette.sim.score import Reference

@@ -15,7 +15,7 @@ from vedette.fusion import ReplicatedEvidence
 from vedette.kernels.frontier import traversable
 from vedette.kernels.lidar import cast_rays
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
-from vedette.missions.explore import AVOID_TIME, TRIES, Exploration
+from vedette.missions.explore.exploration import AVOID_TIME, TRIES, Exploration
 from vedette.team import PlatformSpec
 
 HERE = Pose(-0.53, 7.12, 0.0)

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from small_missions import check_complete, robots, run, small_office
-from vedette.sim.explore import Report
+from vedette.sim.explore.run import Report
 
 GOLDEN: dict[str, Any] = {
     "schema_version": 2,

@@ -14,7 +14,7 @@ from vedette.agent.events import Pose, Sensed
 from vedette.domains.search.belief import freeze
 from vedette.domains.search.impact import NOTHING
 from vedette.errors import InputError
-from vedette.missions.search import Looks, Searching
+from vedette.missions.search.searching import Looks, Searching
 from vedette.record.search.summary import SearchOutcome
 from vedette.record.summary import Outcome
 from vedette.sim.search.curves import detected_at, dkw, ideal, wilson

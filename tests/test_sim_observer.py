@@ -17,7 +17,7 @@ from vedette.domains.mapping.impact import Impact
 from vedette.kernels.coverage import LAYERS
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
 from vedette.record import Link, Outcome, RobotSample, Traffic
-from vedette.sim.explore import views
+from vedette.sim.explore.run import views
 from vedette.sim.figures import RoundFigures
 from vedette.sim.observer import Observer, RobotFigures, RobotView, Setting, held_map, union_map
 from vedette.sim.world import World

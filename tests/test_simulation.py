@@ -10,8 +10,8 @@ from vedette.agent.effects import Send, Traffic
 from vedette.domains.mapping.planners import PLANNERS
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.negotiation import SCHEMES
-from vedette.sim.exploration import FUSIONS, ExploreSetup
-from vedette.sim.explore import explore, observer_of, prepare, views
+from vedette.sim.explore.run import explore, observer_of, prepare, views
+from vedette.sim.explore.simulation import FUSIONS, ExploreSetup
 from vedette.sim.links import Links
 from vedette.sim.score import Reference
 from vedette.sim.world import World

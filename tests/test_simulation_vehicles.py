@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from flight_team import LEAD, SPEED, STEP, TURN_RATE, FlightTeam, flight_team
 from vedette.agent import State
+from vedette.agent.body import TICK
 from vedette.agent.effects import Drive, Fly
 from vedette.agent.flight import FlightPlan, start_step
 from vedette.errors import InputError
 from vedette.record.summary import Outcome
-from vedette.sim.simulation import TICK
 from vedette.sim.vehicles import Vehicles
 
 

@@ -17,7 +17,7 @@ from rich.console import Console
 
 from vedette.cli.study import study
 from vedette.errors import InputError
-from vedette.sim.exploration import ExploreSetup
+from vedette.sim.explore.simulation import ExploreSetup
 from vedette.sim.worlds import maze
 from vedette.study import backends
 from vedette.study.combinations import runs_of

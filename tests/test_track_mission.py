@@ -18,11 +18,11 @@ from vedette.agent.events import Pose, Sensed
 from vedette.domains.tracking.impact import Impact
 from vedette.domains.tracking.platform import TrackingPlatform
 from vedette.errors import InputError
+from vedette.missions.track.scenario import default_scenario
 from vedette.record import Outcome
 from vedette.record.track.summary import nees_band
 from vedette.sim.flights import lead
 from vedette.sim.track.run import TrackReport
-from vedette.sim.track.scenario import default_scenario
 from vedette.sim.track.simulation import COORDINATIONS, TrackSetup, TrackSimulation
 
 SEEDS = range(3)

@@ -11,8 +11,8 @@ import yaml
 
 from track_scenes import content, scenario
 from vedette.errors import InputError
+from vedette.missions.track.scenario import TrackScenario, checked, default_scenario, read_scenario
 from vedette.scenario import as_scenario
-from vedette.sim.track.scenario import TrackScenario, checked, default_scenario, read_scenario
 
 ROOT = Path(__file__).parents[1]
 
@@ -124,7 +124,7 @@ def test_files_that_are_no_scenario_are_refused(text: str, word: str, tmp_path: 
 
 def test_the_default_scenario_is_the_example() -> None:
     examples = ROOT / "examples" / "scenarios"
-    shipped = ROOT / "src" / "vedette" / "sim" / "scenarios" / "track.yaml"
+    shipped = ROOT / "src" / "vedette" / "missions" / "scenarios" / "track.yaml"
     assert (examples / "track.yaml").read_bytes() == shipped.read_bytes()
     assert read_scenario(shipped) == default_scenario()
     for path in examples.glob("track*.yaml"):

@@ -18,7 +18,7 @@ from vedette.kernels.coverage import LAYERS
 from vedette.kernels.frontier import find_frontiers
 from vedette.kernels.lidar import cast_rays, integrate_scan
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
-from vedette.missions.explore import CLAMP, GAIN_HIT, GAIN_MISS, NUDGE
+from vedette.missions.explore.exploration import CLAMP, GAIN_HIT, GAIN_MISS, NUDGE
 from vedette.problem import Reach
 from vedette.team import PlatformSpec
 

@@ -22,8 +22,8 @@ from vedette.agent import Agent, step
 from vedette.agent import messages as wire
 from vedette.agent.effects import Drive, Effect, Fly, Job, Send, Traffic
 from vedette.agent.events import Event, JobDone, Message, Pose, TreeChanged
-from vedette.sim.exploration import ExploreSetup
-from vedette.sim.explore import prepare
+from vedette.sim.explore.run import prepare
+from vedette.sim.explore.simulation import ExploreSetup
 from vedette.sim.search.simulation import SearchSetup, SearchSimulation
 from vedette.sim.simulation import Simulation
 from vedette.sim.track.simulation import TrackSetup, TrackSimulation

@@ -16,10 +16,10 @@ from tests.fuzz.mutation import Mutate, mutate_bytes, mutate_text
 from tests.fuzz.target import Broken, Target
 from vedette.errors import InputError
 from vedette.maps import read_map
+from vedette.missions.search.case import read_case
+from vedette.missions.track.scenario import read_scenario
 from vedette.net.config import access_of, load_config
 from vedette.sim.faults import load_faults
-from vedette.sim.search.case import read_case
-from vedette.sim.track.scenario import read_scenario
 from vedette.study.combinations import runs_of
 from vedette.study.spec import load_spec
 from vedette.team import load_team
@@ -134,7 +134,7 @@ def _can(kind: str, mode: str) -> bool:
 
 
 def _packaged(name: str) -> bytes:
-    return resources.files("vedette.sim").joinpath("scenarios", name).read_bytes()
+    return resources.files("vedette.missions").joinpath("scenarios", name).read_bytes()
 
 
 def _read_plain(path: Path) -> object:

@@ -19,9 +19,9 @@ from vedette.cli.options import (
 from vedette.record.files import new_directory, output_directory
 from vedette.record.live import LiveView
 from vedette.record.mcap import McapWriter
-from vedette.sim.exploration import ExploreSetup, ExploreSimulation
-from vedette.sim.explore import Report, planning_frame, prepare
-from vedette.sim.explore import explore as run_mission
+from vedette.sim.explore.run import Report, planning_frame, prepare
+from vedette.sim.explore.run import explore as run_mission
+from vedette.sim.explore.simulation import ExploreSetup, ExploreSimulation
 from vedette.sim.radio import Radio
 
 

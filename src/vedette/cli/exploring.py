@@ -19,8 +19,8 @@ from vedette.record.animate import animate_gif
 from vedette.record.curves import curves_png
 from vedette.record.progress import progress_png
 from vedette.record.summary import Summary
-from vedette.sim.exploration import FUSIONS
-from vedette.sim.explore import Report
+from vedette.sim.explore.run import Report
+from vedette.sim.explore.simulation import FUSIONS
 from vedette.sim.starts import parse_starts
 from vedette.sim.world import World
 from vedette.sim.worlds import office

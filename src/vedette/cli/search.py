@@ -17,6 +17,7 @@ from vedette.cli.options import (
     parse_kills,
     seed_option,
 )
+from vedette.missions.search.case import default_case, read_case
 from vedette.negotiation import SCHEMES
 from vedette.record.files import new_directory, output_directory
 from vedette.record.search.detection import detection_png
@@ -26,7 +27,6 @@ from vedette.record.search.mcap import SearchMcapWriter
 from vedette.record.search.stages import pdf_png
 from vedette.record.search.summary import SearchOutcome, SearchSummary
 from vedette.sim.radio import Radio
-from vedette.sim.search.case import default_case, read_case
 from vedette.sim.search.run import SearchReport, scene_of
 from vedette.sim.search.run import search as run_search
 from vedette.sim.search.simulation import COORDINATIONS, FUSIONS, SearchSetup, SearchSimulation

@@ -22,7 +22,7 @@ from vedette.net.transport import Operator
 from vedette.record.files import new_directory, output_directory
 from vedette.record.live import LiveView
 from vedette.record.mcap import McapWriter
-from vedette.sim.exploration import ExploreSetup, scheme_of
+from vedette.sim.explore.simulation import ExploreSetup, scheme_of
 from vedette.sim.observer import Setting, planning_frame
 from vedette.sim.starts import choose_starts
 

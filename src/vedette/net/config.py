@@ -18,7 +18,7 @@ from vedette.net.access import Access
 from vedette.net.credentials import credentials
 from vedette.net.names import MOST_ROBOTS
 from vedette.scenario import load_scenario
-from vedette.sim.exploration import FUSIONS
+from vedette.sim.explore.simulation import FUSIONS
 from vedette.team import PlatformSpec
 
 OF_BODY = tuple(field.name for field in fields(PlatformSpec) if field.name not in ("name", "start"))

@@ -25,7 +25,7 @@ from vedette.net.endpoints import free_port
 from vedette.net.keys import issue_team
 from vedette.net.names import OPERATOR, robot_name
 from vedette.record.files import write_text
-from vedette.sim.exploration import Exploring
+from vedette.sim.explore.simulation import Exploring
 from vedette.sim.world import World
 from vedette.team import PlatformSpec
 

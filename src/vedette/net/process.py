@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from functools import partial
 
 from vedette.agent import Datagram, NetworkedAgent
+from vedette.agent.body import TICK
 from vedette.agent.effects import Drive, Fly, Job
 from vedette.agent.events import JobDone
 from vedette.agent.networked import Output
@@ -19,7 +20,6 @@ from vedette.net.names import Topic
 from vedette.net.transport import Published, Transport
 from vedette.net.witness import Witness
 from vedette.sim.own_body import OwnBody
-from vedette.sim.simulation import TICK
 
 UNSEEN = 2.0  # a body not told of for so long is taken away [s]
 REPORT_PERIOD = 0.5  # of mission time, but not more often than LEAST_REPORTS apart [s]

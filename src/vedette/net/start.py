@@ -16,7 +16,7 @@ from vedette.net.names import robot_name
 from vedette.net.process import AgentProcess, MissionClock
 from vedette.net.transport import Transport
 from vedette.net.witness import Witness
-from vedette.sim.exploration import explorer
+from vedette.sim.explore.simulation import explorer
 from vedette.sim.own_body import OwnBody
 from vedette.sim.starts import choose_starts
 from vedette.sim.world import World

@@ -20,7 +20,7 @@ from vedette.record.links import Link, links_of
 from vedette.record.log import RobotSample, Sink
 from vedette.record.summary import Outcome, Timing
 from vedette.record.summary import Spread as Statistics
-from vedette.sim.explore import Report
+from vedette.sim.explore.run import Report
 from vedette.sim.observer import Observer, RobotFigures, RobotView, Setting, planning_frame
 from vedette.sim.robots import NO_PROGRESS
 

@@ -10,7 +10,7 @@ from msgspec import structs
 
 from vedette.agent import GroundBehaviour, NetworkedAgent
 from vedette.maps import UNKNOWN
-from vedette.missions.explore import Exploration
+from vedette.missions.explore.exploration import Exploration
 from vedette.net import report as wire
 from vedette.net.report import Condition, LinkReport, Spread
 from vedette.net.transport import Transport

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.agent import Agent
+from vedette.agent.body import TICK
 from vedette.agent.effects import Drive, Fly, Job
 from vedette.agent.events import JobDone
 from vedette.maps import GridFrame
@@ -31,7 +32,6 @@ from vedette.sim.planted import PlantedTree
 from vedette.sim.radio import Radio
 from vedette.sim.world import World
 
-TICK = 0.1  # of bodies and poses [s]
 OPEN = World(GridFrame(1.0, 1, 1), np.zeros((1, 1), np.bool_), "open")  # no walls at all
 JOB_TIME = 0.03  # charged for preparing a round [s]
 

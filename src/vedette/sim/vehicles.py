@@ -8,12 +8,12 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from vedette.agent.body import TICK
 from vedette.agent.effects import Fly, Motion
 from vedette.agent.events import Event, Pose, Sensed
 from vedette.agent.flight import Flight
 from vedette.errors import InputError
 from vedette.record.summary import Outcome
-from vedette.sim.simulation import TICK
 
 Look: TypeAlias = Callable[[int, NDArray[np.float64], float], object]
 """``look(i, pose (3,), now)``: what vehicle i's sensor tells its mission, noise included; None: nothing."""

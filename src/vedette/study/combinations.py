@@ -13,7 +13,7 @@ from vedette.domains.mapping.planners import planner
 from vedette.errors import InputError, nearest_name
 from vedette.negotiation import SCHEMES
 from vedette.scenario import as_scenario
-from vedette.sim.exploration import FUSIONS, ExploreSetup
+from vedette.sim.explore.simulation import FUSIONS, ExploreSetup
 from vedette.sim.faults import Schedule, load_faults
 from vedette.sim.radio import Radio, parse_radio
 from vedette.sim.worlds.size import world_frame

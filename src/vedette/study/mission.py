@@ -10,8 +10,8 @@ import numpy as np
 from vedette.record.log import RunLog
 from vedette.record.plain import plain
 from vedette.record.summary import Outcome, Summary, Timing, Traffic
-from vedette.sim.exploration import ExploreSimulation
-from vedette.sim.explore import explore, prepare
+from vedette.sim.explore.run import explore, prepare
+from vedette.sim.explore.simulation import ExploreSimulation
 from vedette.study.bounds import Limit, limit
 from vedette.study.run import Run, Value
 from vedette.study.starts import spread, team

@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 import msgspec
 import numpy as np
 
-from vedette.sim.exploration import ExploreSetup
+from vedette.sim.explore.simulation import ExploreSetup
 from vedette.sim.world import World
 from vedette.sim.worlds import GENERATORS
 from vedette.team import PlatformSpec

@@ -13,7 +13,7 @@ from vedette.domains.search import bounds
 from vedette.domains.search.belief import TargetPdf
 from vedette.domains.search.detectors import Detector
 from vedette.kernels.search import propagate
-from vedette.sim.search.case import SearchCase
+from vedette.missions.search.case import SearchCase
 from vedette.sim.search.hidden import draw_places
 
 Floats = NDArray[np.float64]

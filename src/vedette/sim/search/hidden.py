@@ -7,11 +7,11 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from vedette.agent.body import TICK
 from vedette.domains.search.belief import TargetPdf
 from vedette.domains.search.detectors import Detector
-from vedette.missions.search import Looks
+from vedette.missions.search.searching import Looks
 from vedette.record.summary import Outcome
-from vedette.sim.simulation import TICK
 from vedette.sim.vehicles import Vehicles
 
 

@@ -8,17 +8,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from vedette.agent import FlightBehaviour
+from vedette.agent.body import TICK
 from vedette.domains.search.bounds import sweep_width
 from vedette.kernels.search import propagate
+from vedette.missions.search.case import SearchCase
 from vedette.record.search.curves import Curves
 from vedette.record.search.log import Floats, Scene, SearchLog, SearchSink, SearchSnapshot, VehicleSample
 from vedette.record.search.summary import Best, Quality, SearchOutcome, SearchSummary
 from vedette.record.summary import Outcome, Timing
 from vedette.sim.figures import negotiated, timing, traffic
-from vedette.sim.search.case import SearchCase
 from vedette.sim.search.curves import ideal, missed
 from vedette.sim.search.simulation import SearchSimulation
-from vedette.sim.simulation import TICK
 
 
 @dataclass(frozen=True, eq=False)

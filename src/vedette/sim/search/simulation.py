@@ -13,10 +13,10 @@ from vedette.agent import Agent, FlightBehaviour, Pace
 from vedette.domains.search.impact import Most
 from vedette.errors import InputError
 from vedette.fusion.steps import ReplicatedSteps, Sparse, SparseIntegers, StepEvidence, StepSums
-from vedette.missions.search import Declared, Searching, SearchPlan, SharedBeliefSearching
+from vedette.missions.search.case import SearchCase
+from vedette.missions.search.searching import Declared, Searching, SearchPlan, SharedBeliefSearching
 from vedette.record.summary import Outcome
 from vedette.sim.flights import FlightSetup, lead
-from vedette.sim.search.case import SearchCase
 from vedette.sim.search.hidden import Hidden, Searchers
 from vedette.sim.simulation import Simulation, random_streams
 

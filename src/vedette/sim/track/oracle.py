@@ -12,7 +12,7 @@ from vedette.domains.tracking.belief import Tracks
 from vedette.domains.tracking.courses import CHOICES, Course
 from vedette.domains.tracking.impact import Impact
 from vedette.domains.tracking.platform import TrackingPlatform
-from vedette.missions.track import Tracking
+from vedette.missions.track.tracking import Tracking
 from vedette.problem import exhaustive
 
 Joint: TypeAlias = tuple[tuple[Course, ...], Impact]  # some vehicles' courses and what they bring together

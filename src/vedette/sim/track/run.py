@@ -8,10 +8,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from vedette.agent import FlightBehaviour
+from vedette.agent.body import TICK
 from vedette.domains.tracking.belief import Tracks
 from vedette.domains.tracking.filter import nees, predict
 from vedette.domains.tracking.sensors import SENSORS
 from vedette.errors import InputError
+from vedette.missions.track.scenario import TrackScenario
 from vedette.record.summary import Outcome, Timing
 from vedette.record.track.log import Scene, TrackLog, TrackSink, TrackSnapshot, VehicleSample
 from vedette.record.track.summary import (
@@ -22,8 +24,6 @@ from vedette.record.track.summary import (
     squared_position_error,
 )
 from vedette.sim.figures import negotiated, timing, traffic
-from vedette.sim.simulation import TICK
-from vedette.sim.track.scenario import TrackScenario
 from vedette.sim.track.simulation import COORDINATIONS, TrackSetup, TrackSimulation, check_optimum
 
 

@@ -15,12 +15,12 @@ from vedette.domains.tracking.platform import TrackingPlatform
 from vedette.domains.tracking.sensing import Sensor
 from vedette.errors import InputError
 from vedette.fusion.gaussian import Information, Motion, track_fusion
-from vedette.missions.track import Bounds, Plan, SharedBeliefTracking, Tracking
+from vedette.missions.track.scenario import TrackScenario
+from vedette.missions.track.tracking import Bounds, Plan, SharedBeliefTracking, Tracking
 from vedette.record.summary import Outcome
 from vedette.sim.flights import FlightSetup, lead
 from vedette.sim.simulation import Simulation, random_streams
 from vedette.sim.track.oracle import MOST_JOINT, DictatedTracking, Oracle, joint_choices
-from vedette.sim.track.scenario import TrackScenario
 from vedette.sim.track.targets import Targets
 from vedette.sim.vehicles import Vehicles
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from vedette.record.log import Snapshot
 from vedette.record.summary import Outcome
-from vedette.sim.exploration import ExploreSetup
-from vedette.sim.explore import Report, explore, prepare
+from vedette.sim.explore.run import Report, explore, prepare
+from vedette.sim.explore.simulation import ExploreSetup
 from vedette.sim.world import World
 from vedette.sim.worlds import office
 from vedette.team import PlatformSpec

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from vedette.agent.driving import remaining
 from vedette.record.log import RobotSample, RunLog, Sink
 from vedette.record.summary import Summary, Timing, Traffic
-from vedette.sim.exploration import ExploreSetup, ExploreSimulation, scheme_of
+from vedette.sim.explore.simulation import ExploreSetup, ExploreSimulation, scheme_of
 from vedette.sim.figures import RoundFigures, timing, traffic_of
 from vedette.sim.observer import Observer, RobotFigures, RobotView, Setting, held_map, planning_frame
 from vedette.sim.starts import choose_starts

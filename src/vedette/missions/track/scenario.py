@@ -13,13 +13,13 @@ import yaml
 from msgspec import Meta, Struct
 from numpy.typing import NDArray
 
+from vedette.agent.body import TICK
 from vedette.domains.tracking.belief import Tracks, tracks
 from vedette.domains.tracking.models import STATE, TargetModel, constant_velocity, static
 from vedette.domains.tracking.sensing import Sensor
 from vedette.domains.tracking.sensors import sensor_of
 from vedette.errors import InputError
 from vedette.scenario import as_scenario, load_scenario
-from vedette.sim.simulation import TICK
 
 Name = Annotated[str, Meta(pattern=r"^[A-Za-z0-9._-]{0,64}$")]
 Metre = Annotated[float, Meta(ge=-1e6, le=1e6)]
@@ -139,7 +139,7 @@ class TrackScenario(Struct, forbid_unknown_fields=True, frozen=True, kw_only=Tru
 
 def default_scenario() -> TrackScenario:
     """Return the scenario of ``vedette track`` without a file; also ``examples/scenarios/track.yaml``."""
-    text = resources.files("vedette.sim").joinpath("scenarios", DEFAULT).read_text(encoding="utf-8")
+    text = resources.files("vedette.missions").joinpath("scenarios", DEFAULT).read_text(encoding="utf-8")
     return checked(as_scenario(yaml.safe_load(text), TrackScenario, DEFAULT), DEFAULT)
 
 

@@ -17,7 +17,7 @@ from vedette.domains.mapping.sightings import BINS
 from vedette.errors import InputError, nearest_name
 from vedette.fusion import ChannelFilter, Fusion, ReplicatedEvidence
 from vedette.maps import GridFrame
-from vedette.missions.explore import Exploration
+from vedette.missions.explore.exploration import Exploration
 from vedette.sim.robots import Robots
 from vedette.sim.simulation import Setup, Simulation, random_streams
 from vedette.sim.world import World

@@ -12,6 +12,7 @@ import numpy as np
 import yaml
 from numpy.typing import NDArray
 
+from vedette.agent.body import TICK
 from vedette.domains.search.belief import TargetPdf
 from vedette.domains.search.detectors import Detector, detector_from
 from vedette.domains.search.motion import TargetMotion
@@ -19,9 +20,8 @@ from vedette.domains.search.platform import SearchPlatform
 from vedette.domains.search.priors import GaussianPart, gaussians, heat_map, mixture, polygon, uniform
 from vedette.errors import InputError
 from vedette.maps import GridFrame
+from vedette.missions.search.scenario import Gaussian, Heat, Polygon, Prior, SearchScenario, Uniform
 from vedette.scenario import as_scenario, load_scenario
-from vedette.sim.search.scenario import Gaussian, Heat, Polygon, Prior, SearchScenario, Uniform
-from vedette.sim.simulation import TICK
 
 MOST_CELLS = 400_000
 DEFAULT = "search.yaml"
@@ -70,7 +70,7 @@ class SearchCase:
 
 def default_case() -> SearchCase:
     """Return the search of ``vedette search`` without a file; also ``examples/scenarios/search.yaml``."""
-    text = resources.files("vedette.sim").joinpath("scenarios", DEFAULT).read_text(encoding="utf-8")
+    text = resources.files("vedette.missions").joinpath("scenarios", DEFAULT).read_text(encoding="utf-8")
     return made(as_scenario(yaml.safe_load(text), SearchScenario, DEFAULT), Path(DEFAULT))
 
 
