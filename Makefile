@@ -82,7 +82,7 @@ $(KERNELS): $(RUST)
 	@echo "building the kernels"
 	@$(MAKE) --no-print-directory build
 
-$(PACKAGES): pyproject.toml constraints.txt
+$(PACKAGES): pyproject.toml reproduction/pyproject.toml constraints.txt
 	@python=$$(tools/preflight.sh) || exit 1; \
 	if ! $(PIP) --version >/dev/null 2>&1; then \
 		echo "making .venv" && "$$python" -m venv $(VENV); \
@@ -102,5 +102,5 @@ $(DEV_PACKAGES): $(PACKAGES)
 $(INSTALLED): $(PACKAGES)
 	@echo "building the kernels"
 	@rm -f $(KERNELS)
-	@PATH="$(CURDIR)/$(BIN):$$PATH" $(PIP) install --no-deps --no-build-isolation -e .
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(PIP) install --no-deps --no-build-isolation -e . -e ./reproduction
 	@touch $@

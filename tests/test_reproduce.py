@@ -18,19 +18,19 @@ from vedette.cli.reproduce import reproduce as command
 from vedette.domains.mapping.planners import DEFAULT
 from vedette.errors import InputError
 from vedette.problem import exhaustive
-from vedette.study.paper import reproduce as module
-from vedette.study.paper.claims_mapping import c11, c12
-from vedette.study.paper.content import Section, Table, Verdict, table, wall_table, write_csv
-from vedette.study.paper.contest import OBJECTIVE, make_scenes, selfish_choice
-from vedette.study.paper.figure_1 import figure_1
-from vedette.study.paper.figure_2 import MOST, NOISY, PERFECT, PRIOR, figure_2, posteriors
-from vedette.study.paper.figure_3 import analytic, figure_3
-from vedette.study.paper.figure_4 import figure_4
-from vedette.study.paper.figure_6 import figure_6, stages
-from vedette.study.paper.missions import Case, Mission, Missions
-from vedette.study.paper.report import About, report_html
-from vedette.study.paper.reproduce import Made, Progress, reproduce, verdicts
-from vedette.study.paper.run import FULL, QUICK, Run
+from vedette_reproduction import reproduce as module
+from vedette_reproduction.claims.mapping import c11, c12
+from vedette_reproduction.content import Section, Table, Verdict, table, wall_table, write_csv
+from vedette_reproduction.contest import OBJECTIVE, make_scenes, selfish_choice
+from vedette_reproduction.figures.figure_1 import figure_1
+from vedette_reproduction.figures.figure_2 import MOST, NOISY, PERFECT, PRIOR, figure_2, posteriors
+from vedette_reproduction.figures.figure_3 import analytic, figure_3
+from vedette_reproduction.figures.figure_4 import figure_4
+from vedette_reproduction.figures.figure_6 import figure_6, stages
+from vedette_reproduction.missions import Case, Mission, Missions
+from vedette_reproduction.report import About, report_html
+from vedette_reproduction.reproduce import Made, reproduce, verdicts
+from vedette_reproduction.run import FULL, QUICK, Run
 from vedette.study.provenance import Provenance
 
 SMALL = dataclasses.replace(
@@ -41,6 +41,19 @@ SOURCE = Provenance("vedette reproduce --quick", "2026-01-01", "0", "abc", "a ma
 
 def silent(text: str) -> None:
     """Say nothing."""
+
+
+class Quiet:
+    """Shows nothing."""
+
+    def begin(self, number: int, of: int, name: str) -> None:
+        """Show nothing."""
+
+    def tell(self, text: str) -> None:
+        """Show nothing."""
+
+    def end(self, seconds: float) -> None:
+        """Show nothing."""
 
 
 class FewMissions(Missions):
@@ -167,7 +180,7 @@ def interrupted(run: Run) -> Section:
 def folder_of(path: Path, contents: dict[str, Made], seed: int = 0) -> module.Result:
     """Reproduce some parts in a new folder."""
     path.mkdir()
-    return reproduce(path, SMALL, seed, SOURCE, contents=contents)
+    return reproduce(path, SMALL, seed, SOURCE, Quiet(), contents)
 
 
 class Tags(HTMLParser):
@@ -239,7 +252,7 @@ def test_a_failed_run_leaves_nothing_behind(tmp_path: Path) -> None:
 def test_progress_hears_of_every_part(tmp_path: Path) -> None:
     heard: list[str] = []
 
-    class Listener(Progress):
+    class Listener(Quiet):
         def begin(self, number: int, of: int, name: str) -> None:
             heard.append(f"{number}/{of} {name}")
 

@@ -11,27 +11,27 @@ import pytest
 
 from vedette import Tree
 from vedette.problem import Coverage, LogDet, exhaustive
-from vedette.study.paper import teams
-from vedette.study.paper.claims_asynchrony import c9, leave_one_out_is_exact
-from vedette.study.paper.claims_convergence import c3, two_robots
-from vedette.study.paper.claims_cost import c4_to_c7
-from vedette.study.paper.claims_definition import c1, c2, expected_entropy, miss_of, outcomes
-from vedette.study.paper.claims_fusion import Look, c10, central_update
-from vedette.study.paper.claims_iterations import COUPLING, c8
-from vedette.study.paper.claims_search import c13
-from vedette.study.paper.content import Section, Table, Verdict
-from vedette.study.paper.costs import SCHEMES
-from vedette.study.paper.links import sweep, team_on
-from vedette.study.paper.missions import Missions
-from vedette.study.paper.post import SparseCodec, record
-from vedette.study.paper.quadratic import (
+from vedette_reproduction import teams
+from vedette_reproduction.claims.asynchrony import c9, leave_one_out_is_exact
+from vedette_reproduction.claims.convergence import c3, two_robots
+from vedette_reproduction.claims.cost import c4_to_c7
+from vedette_reproduction.claims.definition import c1, c2, expected_entropy, miss_of, outcomes
+from vedette_reproduction.claims.fusion import Look, c10, central_update
+from vedette_reproduction.claims.iterations import COUPLING, c8
+from vedette_reproduction.claims.search import c13
+from vedette_reproduction.content import Section, Table, Verdict
+from vedette_reproduction.costs import SCHEMES
+from vedette_reproduction.links import sweep, team_on
+from vedette_reproduction.missions import Missions
+from vedette_reproduction.post import SparseCodec, record
+from vedette_reproduction.quadratic import (
     jacobi_step,
     random_hessian,
     spectral_radius,
     steps_to_optimum,
     token_step,
 )
-from vedette.study.paper.run import QUICK, Run
+from vedette_reproduction.run import QUICK, Run
 
 
 def silent(text: str) -> None:

@@ -1,6 +1,7 @@
-"""Print what pyproject.toml asks for, one requirement a line: to build, to run, and of the extras named.
+"""Print what is asked for to build, to run, and by the extras named, one requirement a line.
 
-Installing these apart from the package lets `make` add the developers' tools without compiling again.
+Installing these apart from the packages lets `make` add the developers' tools without compiling again. The
+reproduction runs on what Vedette brings, and has a build backend of its own.
 """
 
 from __future__ import annotations
@@ -8,15 +9,21 @@ from __future__ import annotations
 import sys
 import tomllib
 from pathlib import Path
+from typing import Any
 
 
-def requirements(pyproject: Path, extras: list[str]) -> list[str]:
-    """Return the requirements to build and to run the project, then those of ``extras``."""
-    table = tomllib.loads(pyproject.read_text(encoding="utf-8"))
-    project = table["project"]
+def requirements(root: Path, extras: list[str]) -> list[str]:
+    """Return the requirements to build both packages and to run the project, then those of ``extras``."""
+    main, reproduction = _pyproject(root), _pyproject(root / "reproduction")
+    project = main["project"]
     optional = [line for extra in extras for line in project["optional-dependencies"][extra]]
-    return [*table["build-system"]["requires"], *project["dependencies"], *optional]
+    build = [line for each in (main, reproduction) for line in each["build-system"]["requires"]]
+    return [*build, *project["dependencies"], *optional]
+
+
+def _pyproject(folder: Path) -> dict[str, Any]:
+    return tomllib.loads((folder / "pyproject.toml").read_text(encoding="utf-8"))
 
 
 if __name__ == "__main__":
-    print("\n".join(requirements(Path(__file__).parents[1] / "pyproject.toml", sys.argv[1:])))
+    print("\n".join(requirements(Path(__file__).parents[1], sys.argv[1:])))

@@ -1,4 +1,4 @@
-"""``vedette reproduce``: the paper's figures and claims, made anew."""
+"""``vedette reproduce``: the paper's figures and claims, made anew by a package that robots do not carry."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ import shlex
 import sys
 import time
 from datetime import datetime
+from importlib.util import find_spec
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 from rich.console import Console
@@ -14,11 +16,12 @@ from rich.live import Live
 from rich.text import Text
 
 from vedette.cli.options import seed_option
+from vedette.errors import InputError
 from vedette.record.files import new_directory, output_directory
-from vedette.study.paper.reproduce import Progress, Result
-from vedette.study.paper.reproduce import reproduce as run_all
-from vedette.study.paper.run import FULL, QUICK
 from vedette.study.provenance import provenance
+
+if TYPE_CHECKING:
+    from vedette_reproduction.reproduce import Result
 
 COMPLETE, INTERRUPTED = 0, 130
 
@@ -36,6 +39,11 @@ def reproduce(out: Path | None, quick: bool, seed: int, force: bool) -> None:
     DIR gets report.html, which holds everything, and the pictures and data as files. Exit status: 0 complete,
     2 bad input, 130 interrupted: then the report has what was done until then.
     """
+    _require()
+    # This need not be installed.
+    from vedette_reproduction.reproduce import reproduce as run_all
+    from vedette_reproduction.run import FULL, QUICK
+
     folder = new_directory("runs", "reproduce") if out is None else output_directory(out, force)
     made = datetime.now().astimezone().isoformat(" ", "seconds")
     source = provenance(shlex.join(["vedette", *sys.argv[1:]]), made)
@@ -43,6 +51,18 @@ def reproduce(out: Path | None, quick: bool, seed: int, force: bool) -> None:
         result = run_all(folder, QUICK if quick else FULL, seed, source, progress)
     click.echo(_closing(result))
     raise SystemExit(COMPLETE if result.complete else INTERRUPTED)
+
+
+def _require() -> None:
+    """Check that the reproduction is installed.
+
+    Raises:
+        InputError: it is not.
+    """
+    if find_spec("vedette_reproduction") is None:
+        raise InputError(
+            "vedette-reproduction is not installed; in a clone of Vedette, run: pip install ./reproduction"
+        )
 
 
 def _closing(result: Result) -> str:
@@ -58,8 +78,8 @@ def _closing(result: Result) -> str:
 _PLURAL = {"holds": "hold", "holds in part": "hold in part", "does not hold": "do not hold"}
 
 
-class LineProgress(Progress):
-    """A line a part; on a terminal the last one tells what is under way."""
+class LineProgress:
+    """A line a part; on a terminal the last one tells what is under way; ``Progress`` of the reproduction."""
 
     def __init__(self, console: Console) -> None:
         """Write to a console."""

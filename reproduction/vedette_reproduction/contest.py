@@ -14,9 +14,9 @@ from vedette.domains.mapping.layers import rate
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.platform import MappingPlatform
 from vedette.problem import exhaustive
-from vedette.study.paper.missions import Case, Mission, specs
-from vedette.study.paper.run import Run
-from vedette.study.paper.scans import scan, spaced
+from vedette_reproduction.missions import Case, Mission, specs
+from vedette_reproduction.run import Run
+from vedette_reproduction.scans import scan, spaced
 
 MOMENTS = np.linspace(0.15, 0.60, 16)  # that are tried: shares of the mission's coverage
 OBJECTIVE = MappingObjective()

@@ -11,9 +11,9 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from vedette.record.canvas import DPI, picture, save
-from vedette.study.paper.content import Section, Table, table
-from vedette.study.paper.plots import colour, tidy
-from vedette.study.paper.run import Run
+from vedette_reproduction.content import Section, Table, table
+from vedette_reproduction.plots import colour, tidy
+from vedette_reproduction.run import Run
 
 PRIOR = 0.35  # P(occupied), away from 1/2 so that the prior is seen to stay
 MOST = 6  # sensors

@@ -20,8 +20,8 @@ from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save
 from vedette.record.raster import known_window
 from vedette.record.signs import DASHES
-from vedette.study.paper.content import Section, Table, Value, table
-from vedette.study.paper.contest import (
+from vedette_reproduction.content import Section, Table, Value, table
+from vedette_reproduction.contest import (
     MOMENTS,
     OBJECTIVE,
     Scene,
@@ -29,9 +29,9 @@ from vedette.study.paper.contest import (
     selfish_choice,
     share_of_selfish,
 )
-from vedette.study.paper.missions import specs
-from vedette.study.paper.plots import FAINT, INK, colour
-from vedette.study.paper.run import Run
+from vedette_reproduction.missions import specs
+from vedette_reproduction.plots import FAINT, INK, colour
+from vedette_reproduction.run import Run
 
 PICTURE = "figure-4.png"
 _WIDEST, _HIGHEST, _NARROWEST, _GAP = 5.1, 5.4, 9.6, 0.12  # panels, figure, between panels [inch]

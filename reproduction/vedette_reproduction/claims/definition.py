@@ -11,10 +11,10 @@ import numpy as np
 
 from vedette.negotiation import Tree
 from vedette.problem import CountedCoverage, counted
-from vedette.study.paper.content import Section, Verdict, table
-from vedette.study.paper.links import sweep, team_on
-from vedette.study.paper.run import Run
-from vedette.study.paper.teams import fixed_area
+from vedette_reproduction.content import Section, Verdict, table
+from vedette_reproduction.links import sweep, team_on
+from vedette_reproduction.run import Run
+from vedette_reproduction.teams import fixed_area
 
 LN2 = float(np.log(2.0))
 Ray = Sequence[int]  # cells in the order in which a beam crosses them

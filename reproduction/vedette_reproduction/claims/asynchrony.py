@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from vedette.negotiation import Tree
 from vedette.problem import CountedCoverage, Coverage, counted
-from vedette.study.paper.content import Section, Table, Verdict, table
-from vedette.study.paper.links import Member, members_of, team_on, tell
-from vedette.study.paper.post import record
-from vedette.study.paper.run import Run
-from vedette.study.paper.teams import constant_density, fixed_area
+from vedette_reproduction.content import Section, Table, Verdict, table
+from vedette_reproduction.links import Member, members_of, team_on, tell
+from vedette_reproduction.post import record
+from vedette_reproduction.run import Run
+from vedette_reproduction.teams import constant_density, fixed_area
 
 Float = NDArray[np.float64]
 LAPS = 40  # of news around a ring

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from vedette.negotiation import Tree
 from vedette.problem import LogDet, Objective
-from vedette.study.paper.content import Section, Verdict, table
-from vedette.study.paper.links import sweep, team_on
-from vedette.study.paper.post import record
-from vedette.study.paper.run import Run
+from vedette_reproduction.content import Section, Verdict, table
+from vedette_reproduction.links import sweep, team_on
+from vedette_reproduction.post import record
+from vedette_reproduction.run import Run
 
 Float = NDArray[np.float64]
 SENSORS = 6  # platforms in the Gaussian example

@@ -16,11 +16,11 @@ from vedette.maps import FREE, UNKNOWN
 from vedette.record.canvas import DPI, picture, save
 from vedette.sim.world import standable
 from vedette.sim.worlds import office
-from vedette.study.paper.content import Section, table
-from vedette.study.paper.missions import Case, specs
-from vedette.study.paper.plots import colour, tidy
-from vedette.study.paper.run import Run
-from vedette.study.paper.scans import scan, spaced
+from vedette_reproduction.content import Section, table
+from vedette_reproduction.missions import Case, specs
+from vedette_reproduction.plots import colour, tidy
+from vedette_reproduction.run import Run
+from vedette_reproduction.scans import scan, spaced
 
 RANGE = 8.0  # of the figure and the sensor [m]
 CELL = 0.1  # [m]

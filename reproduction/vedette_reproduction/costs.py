@@ -8,9 +8,9 @@ import numpy as np
 
 from vedette.negotiation import Tree
 from vedette.problem import Coverage
-from vedette.study.paper import teams
-from vedette.study.paper.post import Recording, SparseCodec, record
-from vedette.study.paper.run import Run
+from vedette_reproduction import teams
+from vedette_reproduction.post import Recording, SparseCodec, record
+from vedette_reproduction.run import Run
 
 TREES = ("chain", "star", "random")
 SCHEMES = {"jacobi": "the paper's", "token": "token"}

@@ -9,18 +9,18 @@ from matplotlib.figure import Figure
 from vedette.negotiation import Negotiation, Tree, negotiate
 from vedette.problem import Coverage
 from vedette.record.canvas import DPI, picture, save
-from vedette.study.paper import teams
-from vedette.study.paper.content import Section, Table, Verdict, column, table
-from vedette.study.paper.plots import colour, over_team_size, tidy
-from vedette.study.paper.quadratic import (
+from vedette_reproduction import teams
+from vedette_reproduction.content import Section, Table, Verdict, column, table
+from vedette_reproduction.plots import colour, over_team_size, tidy
+from vedette_reproduction.quadratic import (
     MOST_STEPS,
     jacobi_step,
     random_hessian,
     spectral_radius,
     steps_to_optimum,
 )
-from vedette.study.paper.run import Run
-from vedette.study.paper.teams import Kind
+from vedette_reproduction.run import Run
+from vedette_reproduction.teams import Kind
 
 OBJECTIVE = Coverage()
 MAX_SWEEPS = 60

@@ -17,9 +17,9 @@ from vedette.record.canvas import DPI, picture, save
 from vedette.record.log import RunLog, Snapshot
 from vedette.record.raster import Window, enlarge, paint
 from vedette.record.signs import DASHES, FAINT, badge, draw_vehicle, legend_line, scale_bar
-from vedette.study.paper.content import Section, Table, Value, table
-from vedette.study.paper.missions import Case, Mission
-from vedette.study.paper.run import Run
+from vedette_reproduction.content import Section, Table, Value, table
+from vedette_reproduction.missions import Case, Mission
+from vedette_reproduction.run import Run
 
 PAPERS = "rate"
 STAGES = (0.30, 0.65, 1.0)  # shares of the final coverage

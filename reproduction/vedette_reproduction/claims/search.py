@@ -20,8 +20,8 @@ from vedette.domains.search.platform import SearchPlatform
 from vedette.domains.search.priors import GaussianPart, gaussians
 from vedette.maps import GridFrame
 from vedette.negotiation import Tree, negotiate
-from vedette.study.paper.content import Section, Value, Verdict, table
-from vedette.study.paper.run import Run
+from vedette_reproduction.content import Section, Value, Verdict, table
+from vedette_reproduction.run import Run
 from vedette.testing import LawBroken, check_objective
 
 SEA = GridFrame(20.0, 60, 70, -300.0, 100.0)  # 1400 m x 1200 m

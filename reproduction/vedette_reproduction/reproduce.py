@@ -8,25 +8,26 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Protocol
 
 from vedette.record.files import write_text
-from vedette.study.paper.claims_asynchrony import c9
-from vedette.study.paper.claims_convergence import c3
-from vedette.study.paper.claims_cost import c4_to_c7
-from vedette.study.paper.claims_definition import c1, c2
-from vedette.study.paper.claims_fusion import c10
-from vedette.study.paper.claims_iterations import c8
-from vedette.study.paper.claims_mapping import c11, c12
-from vedette.study.paper.claims_search import c13
-from vedette.study.paper.content import Section, Table, table, wall_table, write_csv
-from vedette.study.paper.figure_1 import figure_1
-from vedette.study.paper.figure_2 import figure_2
-from vedette.study.paper.figure_3 import figure_3
-from vedette.study.paper.figure_4 import figure_4
-from vedette.study.paper.figure_6 import figure_6
-from vedette.study.paper.missions import Missions
-from vedette.study.paper.report import About, report_html
-from vedette.study.paper.run import Run, Scale
+from vedette_reproduction.claims.asynchrony import c9
+from vedette_reproduction.claims.convergence import c3
+from vedette_reproduction.claims.cost import c4_to_c7
+from vedette_reproduction.claims.definition import c1, c2
+from vedette_reproduction.claims.fusion import c10
+from vedette_reproduction.claims.iterations import c8
+from vedette_reproduction.claims.mapping import c11, c12
+from vedette_reproduction.claims.search import c13
+from vedette_reproduction.content import Section, Table, table, wall_table, write_csv
+from vedette_reproduction.figures.figure_1 import figure_1
+from vedette_reproduction.figures.figure_2 import figure_2
+from vedette_reproduction.figures.figure_3 import figure_3
+from vedette_reproduction.figures.figure_4 import figure_4
+from vedette_reproduction.figures.figure_6 import figure_6
+from vedette_reproduction.missions import Missions
+from vedette_reproduction.report import About, report_html
+from vedette_reproduction.run import Run, Scale
 from vedette.study.provenance import Provenance
 
 Made = Callable[[Run], Section | list[Section]]
@@ -51,8 +52,8 @@ CONTENTS: dict[str, Made] = {
 REPORT, FIGURES, DATA, TIMING = "report.html", "figures", "data", "timing"
 
 
-class Progress:
-    """What the caller may show; this one shows nothing."""
+class Progress(Protocol):
+    """What the caller shows of how far it is."""
 
     def begin(self, number: int, of: int, name: str) -> None:
         """Part ``number`` (from 1) of so many begins."""
@@ -83,7 +84,7 @@ def reproduce(
     scale: Scale,
     seed: int,
     source: Provenance,
-    progress: Progress | None = None,
+    progress: Progress,
     contents: dict[str, Made] | None = None,
 ) -> Result:
     """Run all parts and leave ``report.html``, ``figures``, ``data`` and ``timing`` in an existing folder.
@@ -99,7 +100,6 @@ def reproduce(
         progress: is told how far it is.
         contents: the parts by name, other than all.
     """
-    progress = progress or Progress()
     parts = contents or CONTENTS
     with _workshop(folder) as workshop:
         run = Run(scale, seed, workshop / FIGURES, Missions(progress.tell), progress.tell)
@@ -146,8 +146,8 @@ def verdicts(sections: Sequence[Section]) -> Table:
     """Return the claims with how they fared."""
     rows = [
         (
-            section.title.split(":")[0],
-            section.title.split(": ", 1)[1],
+            section.name,
+            section.statement,
             section.verdict.value,
             section.evidence,
         )

@@ -9,11 +9,11 @@ from vedette.domains.mapping.belief import freeze
 from vedette.domains.mapping.layers import plain as plain_layers
 from vedette.domains.mapping.platform import MappingPlatform
 from vedette.domains.mapping.sightings import empty_counts
-from vedette.study.paper.content import Section, Value, Verdict, table
-from vedette.study.paper.figure_2 import MOST, NOISY, PERFECT, posteriors
-from vedette.study.paper.missions import Case, Mission, specs
-from vedette.study.paper.run import Run
-from vedette.study.paper.scans import scan, spaced
+from vedette_reproduction.content import Section, Value, Verdict, table
+from vedette_reproduction.figures.figure_2 import MOST, NOISY, PERFECT, posteriors
+from vedette_reproduction.missions import Case, Mission, specs
+from vedette_reproduction.run import Run
+from vedette_reproduction.scans import scan, spaced
 
 NAT = 0.2  # of a unit of a robot's log-odds
 HOW = {

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from vedette.study.paper.missions import Missions
+from vedette_reproduction.missions import Missions
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from vedette.record.canvas import DPI, picture, save
-from vedette.study.paper import teams
-from vedette.study.paper.content import Section, Value, Verdict, table, wall_table
-from vedette.study.paper.costs import FIXED, GROWING, SCHEMES, TREES, Cost, measure
-from vedette.study.paper.plots import colour, log_scale, over_team_size, tidy
-from vedette.study.paper.run import Run
+from vedette_reproduction import teams
+from vedette_reproduction.content import Section, Value, Verdict, table, wall_table
+from vedette_reproduction.costs import FIXED, GROWING, SCHEMES, TREES, Cost, measure
+from vedette_reproduction.plots import colour, log_scale, over_team_size, tidy
+from vedette_reproduction.run import Run
 
 PICTURE = "claims-4-to-7.png"
 MOST_ON_A_CHAIN = 6.0  # combinations of a platform with two neighbours, an iterate

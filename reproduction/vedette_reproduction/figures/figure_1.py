@@ -16,10 +16,10 @@ from vedette.negotiation import Tree
 from vedette.problem import CountedCoverage, counted
 from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save
-from vedette.study.paper.content import Section, Table, table
-from vedette.study.paper.plots import FAINT, INK, colour
-from vedette.study.paper.post import Letter, Recording, record
-from vedette.study.paper.run import Run
+from vedette_reproduction.content import Section, Table, table
+from vedette_reproduction.plots import FAINT, INK, colour
+from vedette_reproduction.post import Letter, Recording, record
+from vedette_reproduction.run import Run
 
 N, CELLS = 3, 8
 OBJECTIVE = CountedCoverage()

@@ -1,0 +1,1 @@
+"""What the paper claims, each tried by a computation of its own."""
