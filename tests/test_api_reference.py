@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-SOURCES = ROOT / "src" / "vedette"
+SOURCES = (ROOT / "src" / "vedette", ROOT / "reproduction" / "vedette_reproduction")
 
 
 @pytest.mark.slow
@@ -19,8 +19,9 @@ def test_every_module_has_its_page_with_its_own_words(tmp_path: Path) -> None:
     command = [sys.executable, str(ROOT / "tools" / "api_reference.py"), str(tmp_path)]
     subprocess.run(command, check=True, capture_output=True, timeout=600)
     assert "negotiate" in (tmp_path / "index.html").read_text() + (tmp_path / "vedette.html").read_text()
-    for source in SOURCES.rglob("*.py"):
-        name = source.relative_to(SOURCES.parent).with_suffix("")
+    sources = [(path, folder.parent) for folder in SOURCES for path in folder.rglob("*.py")]
+    for source, parent in sources:
+        name = source.relative_to(parent).with_suffix("")
         if name.name == "__init__" or "stonesoup" in name.parts:
             continue
         page = (tmp_path / name).with_suffix(".html")

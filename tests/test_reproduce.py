@@ -18,6 +18,7 @@ from vedette.cli.reproduce import reproduce as command
 from vedette.domains.mapping.planners import DEFAULT
 from vedette.errors import InputError
 from vedette.problem import exhaustive
+from vedette.study.provenance import Provenance
 from vedette_reproduction import reproduce as module
 from vedette_reproduction.claims.mapping import c11, c12
 from vedette_reproduction.content import Section, Table, Verdict, table, wall_table, write_csv
@@ -31,7 +32,6 @@ from vedette_reproduction.missions import Case, Mission, Missions
 from vedette_reproduction.report import About, report_html
 from vedette_reproduction.reproduce import Made, reproduce, verdicts
 from vedette_reproduction.run import FULL, QUICK, Run
-from vedette.study.provenance import Provenance
 
 SMALL = dataclasses.replace(
     QUICK, teams=(2, 4), largest_dense=4, trials=2, scan_offices=2, scans=4, office=(10.0, 10.0), targets=1000

@@ -10,15 +10,22 @@ from pathlib import Path
 import pdoc
 
 import vedette
+import vedette_reproduction
 
+PACKAGES = (vedette, vedette_reproduction)
 OPTIONAL = ("vedette.stonesoup",)  # needs its extra
 
 
 def modules() -> list[str]:
-    """Return the names of all modules that can be imported here, the package itself first."""
-    found = [module.name for module in pkgutil.walk_packages(vedette.__path__, "vedette.")]
+    """Return the names of all modules that can be imported here, the packages themselves first."""
+    tops = [package.__name__ for package in PACKAGES]
+    found = [
+        module.name
+        for package in PACKAGES
+        for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}.")
+    ]
     compiled = "vedette._kernels"
-    return ["vedette", *(name for name in found if name != compiled and not _lacks_its_extra(name))]
+    return [*tops, *(name for name in found if name != compiled and not _lacks_its_extra(name))]
 
 
 def _lacks_its_extra(name: str) -> bool:

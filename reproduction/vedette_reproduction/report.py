@@ -9,8 +9,8 @@ from pathlib import Path
 
 from vedette.study.page import heading, page, paragraph, picture
 from vedette.study.page import table as html_table
-from vedette_reproduction.content import Section, Table, Value, Verdict
 from vedette.study.provenance import Provenance
+from vedette_reproduction.content import Section, Table, Value, Verdict
 
 SHORT, MOST_ROWS = 12, 40  # rows of a table: more are folded away; more than that are left to the CSV
 PAPER = (

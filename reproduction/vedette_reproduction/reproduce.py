@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Protocol
 
 from vedette.record.files import write_text
+from vedette.study.provenance import Provenance
 from vedette_reproduction.claims.asynchrony import c9
 from vedette_reproduction.claims.convergence import c3
 from vedette_reproduction.claims.cost import c4_to_c7
@@ -28,7 +29,6 @@ from vedette_reproduction.figures.figure_6 import figure_6
 from vedette_reproduction.missions import Missions
 from vedette_reproduction.report import About, report_html
 from vedette_reproduction.run import Run, Scale
-from vedette.study.provenance import Provenance
 
 Made = Callable[[Run], Section | list[Section]]
 

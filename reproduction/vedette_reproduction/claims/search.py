@@ -20,9 +20,9 @@ from vedette.domains.search.platform import SearchPlatform
 from vedette.domains.search.priors import GaussianPart, gaussians
 from vedette.maps import GridFrame
 from vedette.negotiation import Tree, negotiate
+from vedette.testing import LawBroken, check_objective
 from vedette_reproduction.content import Section, Value, Verdict, table
 from vedette_reproduction.run import Run
-from vedette.testing import LawBroken, check_objective
 
 SEA = GridFrame(20.0, 60, 70, -300.0, 100.0)  # 1400 m x 1200 m
 HORIZON, DT = 8, 2.0  # steps, and the length of one [s]
