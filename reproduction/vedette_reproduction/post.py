@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.negotiation import Chooser, JacobiNode, Outcome, Send, TokenNode, Tree, messages
+from vedette.negotiation import Chooser, Negotiator, Outcome, Send, Tree, messages, node_of
 from vedette.negotiation.messages import Message
 from vedette.problem import Invertible, Objective
 
@@ -131,10 +131,8 @@ def record(
     ]
     parents = tree.parents(root)
     remove = objective.remove if inverse and isinstance(objective, Invertible) else None
-    nodes: list[TokenNode[Any] | JacobiNode[Any]] = [
-        TokenNode(tree.neighbours(i), parents[i], seat, max_sweeps=max_sweeps)
-        if scheme == "token"
-        else JacobiNode(tree.neighbours(i), parents[i], seat, max_sweeps=max_sweeps, remove=remove)
+    nodes = [
+        node_of(scheme, tree.neighbours(i), parents[i], seat, max_sweeps=max_sweeps, remove=remove)
         for i, seat in enumerate(seats)
     ]
     letters, seconds = _carry(nodes, codec, shuffle)
@@ -151,7 +149,7 @@ def record(
 
 
 def _carry(
-    nodes: Sequence[TokenNode[Any] | JacobiNode[Any]], codec: Any, shuffle: np.random.Generator | None
+    nodes: Sequence[Negotiator[Any]], codec: Any, shuffle: np.random.Generator | None
 ) -> tuple[list[Letter], Float]:
     """Start all nodes, and carry letters until there are none."""
     letters: list[Letter] = []

@@ -3,8 +3,9 @@
 from vedette.negotiation.chooser import Chooser
 from vedette.negotiation.jacobi import JacobiNode
 from vedette.negotiation.messages import Message, Outcome, decode, encode
-from vedette.negotiation.negotiate import SCHEMES, Negotiation, Step, negotiate
+from vedette.negotiation.negotiate import Negotiation, Step, negotiate
 from vedette.negotiation.node import Claims, Negotiator, Participant, Send
+from vedette.negotiation.schemes import SCHEMES, node_of
 from vedette.negotiation.token import TokenNode
 from vedette.negotiation.tree import Tree
 
@@ -25,4 +26,5 @@ __all__ = [
     "decode",
     "encode",
     "negotiate",
+    "node_of",
 ]

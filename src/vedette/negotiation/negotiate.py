@@ -10,18 +10,17 @@ from functools import reduce
 
 import msgspec
 
-from vedette.errors import InputError, nearest_name
+from vedette.errors import InputError
 from vedette.negotiation import messages
 from vedette.negotiation.chooser import Chooser
 from vedette.negotiation.jacobi import JacobiNode
 from vedette.negotiation.node import Negotiator, Send
+from vedette.negotiation.schemes import node_of
 from vedette.negotiation.token import TokenNode
 from vedette.negotiation.tree import Tree
 from vedette.problem.checked import check_candidates, value_of
 from vedette.problem.objective import BeliefT, Codec, ImpactT, Invertible, Objective
 from vedette.problem.reach import Clippable, Reach, behind, join
-
-SCHEMES = ("token", "jacobi")
 
 
 @dataclass(frozen=True)
@@ -87,7 +86,7 @@ def negotiate(
     Raises:
         InputError: bad arguments, or an objective whose value is not a finite number.
     """
-    _check(candidates, tree, scheme, start, epsilon, max_sweeps)
+    _check(candidates, tree, start, epsilon, max_sweeps)
     _check_reach(objective, tree, scheme, reach)
     remove = _remover(objective, tree, scheme) if inverse else None
     seats = [
@@ -98,14 +97,19 @@ def negotiate(
     parents = tree.parents(root)
     before = reduce(objective.combine, (seat.impact for seat in seats))
     reaches, told, told_size = tell_reaches(tree, parents, reach)
-    nodes: list[TokenNode[ImpactT] | JacobiNode[ImpactT]] = []
-    for i, seat in enumerate(seats):
-        links, parent = tree.neighbours(i), parents[i]
-        nodes.append(
-            TokenNode(links, parent, seat, epsilon=epsilon, max_sweeps=max_sweeps, reaches=reaches[i])
-            if scheme == "token"
-            else JacobiNode(links, parent, seat, epsilon=epsilon, max_sweeps=max_sweeps, remove=remove)
+    nodes = [
+        node_of(
+            scheme,
+            tree.neighbours(i),
+            parents[i],
+            seat,
+            epsilon=epsilon,
+            max_sweeps=max_sweeps,
+            reaches=reaches[i],
+            remove=remove,
         )
+        for i, seat in enumerate(seats)
+    ]
     sent, size = _deliver(nodes, codec)
     outcome = nodes[root].finished
     assert outcome is not None  # max_sweeps ends every round
@@ -221,14 +225,11 @@ def _check_reach(
 def _check(
     candidates: Sequence[Sequence[ImpactT]],
     tree: Tree,
-    scheme: str,
     start: Sequence[int] | None,
     epsilon: float,
     max_sweeps: int,
 ) -> None:
     """Raise ``InputError`` for arguments that cannot be negotiated."""
-    if scheme not in SCHEMES:
-        raise InputError(f"unknown scheme {scheme!r}; {nearest_name(scheme, SCHEMES)}")
     check_candidates(candidates)
     if len(candidates) != tree.n:
         raise InputError(f"candidates has {len(candidates)} lists for a tree of {tree.n}; give one each")

@@ -1,0 +1,41 @@
+"""How platforms take turns, by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+from vedette.errors import InputError, nearest_name
+from vedette.negotiation.jacobi import JacobiNode
+from vedette.negotiation.node import Claims, Participant
+from vedette.negotiation.token import TokenNode
+from vedette.problem.objective import ImpactT
+from vedette.problem.reach import Reach
+
+SCHEMES = ("token", "jacobi")
+
+
+def node_of(
+    scheme: str,
+    neighbours: Sequence[int],
+    parent: int | None,
+    own: Participant[ImpactT],
+    *,
+    epsilon: float = 1e-9,
+    max_sweeps: int = 50,
+    reaches: Mapping[int, Reach] | None = None,
+    remove: Callable[[ImpactT, ImpactT], ImpactT] | None = None,
+    claims: Claims[ImpactT] | None = None,
+) -> TokenNode[ImpactT] | JacobiNode[ImpactT]:
+    """Return a platform's part in a round of one of the ``SCHEMES``; InputError for another name.
+
+    ``reaches`` are for ``token`` alone, ``remove`` is for ``jacobi`` alone; all else as the nodes take it.
+    """
+    if scheme == "token":
+        return TokenNode(
+            neighbours, parent, own, epsilon=epsilon, max_sweeps=max_sweeps, reaches=reaches, claims=claims
+        )
+    if scheme == "jacobi":
+        return JacobiNode(
+            neighbours, parent, own, epsilon=epsilon, max_sweeps=max_sweeps, remove=remove, claims=claims
+        )
+    raise InputError(f"unknown scheme {scheme!r}; {nearest_name(scheme, SCHEMES)}")
