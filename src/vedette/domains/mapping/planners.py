@@ -29,9 +29,9 @@ class Planner:
 
     summary: str
     layers: TimeLayers
-    hidden: float  # area expected behind a frontier [m^2]
-    return_price: float  # more for a frontier far from others [m^2 a metre]
     platform: Callable[[PlatformSpec], MappingPlatform]
+    hidden: float = 0.0  # area expected behind a frontier [m^2]
+    return_price: float = 0.0  # more for a frontier far from others [m^2 a metre]
     turn: float = math.inf  # prices and tours count once frontiers promise less than this [m^2]; 0: never
     alone: str | None = None  # the planner of a team of one; None: the same
     scheme: str | None = None  # the negotiation that is part of the planner; None: any
@@ -50,13 +50,18 @@ def _tours(
     return Planner(
         summary,
         layers.rate(start=5.0),
-        HIDDEN_AREA,
-        return_price,
         lambda spec: kind(spec, max_stops=6, measured="unknown"),
+        hidden=HIDDEN_AREA,
+        return_price=return_price,
         turn=turn,
         alone=alone,
         scheme=scheme,
     )
+
+
+def _single(spec: PlatformSpec) -> MappingPlatform:
+    """Return a platform that considers one frontier, as the paper's do."""
+    return MappingPlatform(spec, max_stops=1, measured="distance")
 
 
 PLANNERS = {
@@ -68,24 +73,15 @@ PLANNERS = {
     "rate": Planner(
         "one frontier each by the rate of uncertainty reduction, negotiated (the paper, eq. 42)",
         layers.rate(),
-        0.0,
-        0.0,
-        lambda spec: MappingPlatform(spec, max_stops=1, measured="distance"),
+        _single,
     ),
     "entropy": Planner(
         "one frontier each by expected posterior entropy, negotiated (the paper, eq. 41)",
         layers.plain(),
-        0.0,
-        0.0,
-        lambda spec: MappingPlatform(spec, max_stops=1, measured="distance"),
+        _single,
     ),
     "jacobi": Planner(
-        "as rate, all replying at once (the paper, Table 1)",
-        layers.rate(),
-        0.0,
-        0.0,
-        lambda spec: MappingPlatform(spec, max_stops=1, measured="distance"),
-        scheme="jacobi",
+        "as rate, all replying at once (the paper, Table 1)", layers.rate(), _single, scheme="jacobi"
     ),
     "greedy": _tours(
         "as tours, each replying once to those before it (sequential greedy)",
@@ -95,36 +91,26 @@ PLANNERS = {
     "optimal": Planner(
         f"as rate, the joint optimum by search; at most {MOST_ROBOTS} robots",
         layers.rate(),
-        0.0,
-        0.0,
         lambda spec: OptimalPlatform(spec, max_stops=1, measured="distance"),
         most_robots=MOST_ROBOTS,
     ),
-    "nearest": Planner(
-        "nearest frontier, uncoordinated (Yamauchi)", layers.plain(), 0.0, 0.0, NearestPlatform
-    ),
+    "nearest": Planner("nearest frontier, uncoordinated (Yamauchi)", layers.plain(), NearestPlatform),
     "cost-utility": Planner(
         "area against path length, uncoordinated (Gonzalez-Banos & Latombe)",
         layers.plain(),
-        0.0,
-        0.0,
         CostUtilityPlatform,
     ),
     "burgard": Planner(
-        "coordinated assignment of frontiers (Burgard et al.)", layers.plain(), 0.0, 0.0, BurgardPlatform
+        "coordinated assignment of frontiers (Burgard et al.)", layers.plain(), BurgardPlatform
     ),
     "hungarian": Planner(
         "assignment of frontiers with the least total path (Kuhn; Wurm et al.)",
         layers.plain(),
-        0.0,
-        0.0,
         HungarianPlatform,
     ),
     "makespan": Planner(
         "routes through all frontiers, the longest as short as can be (min-max salesmen)",
         layers.plain(),
-        0.0,
-        0.0,
         MakespanPlatform,
     ),
 }
