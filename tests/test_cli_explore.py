@@ -121,6 +121,28 @@ def test_a_run_leaves_every_file_and_says_where_the_pictures_are(vedette: Comman
     assert summary["world"] == world.name
 
 
+def test_what_may_be_meant_otherwise_is_told_once_and_the_mission_goes_on(
+    vedette: Command, tmp_path: Path
+) -> None:
+    """A room of 4 x 4 m on ground of grey 205, which free_thresh 0.25 makes free: the team starts inside."""
+    pixels = np.full((120, 120), 205, np.uint8)
+    pixels[39:81, 39:81] = 0
+    pixels[40:80, 40:80] = 254
+    Image.fromarray(pixels).save(tmp_path / "room.png")
+    (tmp_path / "room.yaml").write_text(
+        "{image: room.png, resolution: 0.1, origin: [0, 0, 0], occupied_thresh: 0.65, free_thresh: 0.25}"
+    )
+    ran = vedette("explore", "room.yaml", "--robots", 1, "--out", "out", "--json")
+    assert ran.status == 0
+    assert ran.err == (
+        "vedette: room.yaml: free_thresh 0.25 makes grey 205 (12636 pixels) free, which map savers write for "
+        "unknown; if it is unknown, set free_thresh to 0.196\n"
+    )
+    known = read_map(Path("out") / "map.yaml")[1] != UNKNOWN
+    assert known[40:80, 40:80].mean() > 0.99
+    assert not known[:38].any()
+
+
 def test_json_prints_the_summary_alone(vedette: Command, world: Path) -> None:
     ran = vedette("explore", world / "map.yaml", "--robots", 1, "--out", "out", "--json")
     assert (ran.status, ran.err) == (0, "")

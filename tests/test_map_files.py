@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import warnings
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -13,10 +15,11 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from PIL import Image
 
-from vedette.errors import InputError
+from vedette.errors import InputError, InputWarning
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame, read_map, write_map
 
 U, F, X = UNKNOWN, FREE, OCCUPIED
+pytestmark = pytest.mark.filterwarnings("ignore::vedette.errors.InputWarning")
 
 
 def pair(folder: Path, pixels: np.ndarray, suffix: str = ".png", **fields: object) -> Path:
@@ -66,31 +69,129 @@ def test_the_written_pair_is_map_savers_with_the_top_row_first(tmp_path: Path) -
     assert sorted(path.name for path in tmp_path.iterdir()) == ["m.pgm", "m.yaml"]
 
 
-def trinary_as_map_server(pixel: int, negate: bool, occupied: float, free: float) -> int:
-    occ = pixel / 255.0 if negate else (255 - pixel) / 255.0
-    return X if occ > occupied else F if occ < free else U
+def as_nav2(pixel: int, mode: str, negate: bool, occupied: float, free: float) -> int:
+    """Class a grey level as Nav2's map_io does since April 2025, one pixel at a time, all in float32."""
+    if mode == "raw":
+        occ = np.float32(pixel / 100) if pixel <= 100 else np.float32(np.nan)
+    else:
+        occ = np.float32(pixel) / np.float32(255)
+        occ = occ if negate else np.float32(1) - occ
+    return F if occ <= np.float32(free) else X if occ >= np.float32(occupied) else U
+
+
+@pytest.mark.parametrize("mode", ["trinary", "scale", "raw"])
+@pytest.mark.parametrize("negate", [0, 1])
+@pytest.mark.parametrize(
+    ("occupied", "free"), [(0.65, 0.196), (0.45, 0.3), (0.9, 0.5), (0.6, 0.2), (1.0, 0.0)]
+)
+def test_every_grey_level_is_classed_as_nav2_does(
+    tmp_path: Path, mode: str, negate: int, occupied: float, free: float
+) -> None:
+    levels = np.arange(256, dtype=np.uint8).reshape(16, 16)
+    fields = {"mode": mode, "negate": negate, "occupied_thresh": occupied, "free_thresh": free}
+    expected = [[as_nav2(int(p), mode, bool(negate), occupied, free) for p in row] for row in levels[::-1]]
+    np.testing.assert_array_equal(read_map(pair(tmp_path, levels, ".pgm", **fields))[1], expected)
+
+
+def test_a_level_that_is_just_a_threshold_is_free_or_occupied(tmp_path: Path) -> None:
+    pixels = np.array([[255, 254, 1, 0]], np.uint8)
+    assert read_map(pair(tmp_path, pixels, free_thresh=0, occupied_thresh=1))[1].tolist() == [[F, U, U, X]]
+
+
+def with_alpha(grey: np.ndarray, opacity: int) -> Iterator[np.ndarray]:
+    """The same levels as grey with alpha and as colour with alpha."""
+    alpha = np.full_like(grey, opacity)
+    yield np.stack([grey, alpha], axis=-1)
+    yield np.stack([grey, grey, grey, alpha], axis=-1)
 
 
 @pytest.mark.parametrize("negate", [0, 1])
-@pytest.mark.parametrize(("occupied", "free"), [(0.65, 0.196), (0.45, 0.3), (0.9, 0.5)])
-def test_every_grey_level_is_classed_as_map_server_does(
-    tmp_path: Path, negate: int, occupied: float, free: float
+@pytest.mark.parametrize("mode", ["trinary", "scale", "raw"])
+def test_an_opaque_alpha_channel_changes_nothing_and_what_is_not_opaque_is_unknown(
+    tmp_path: Path, mode: str, negate: int
 ) -> None:
-    levels = np.arange(256, dtype=np.uint8).reshape(16, 16)
-    path = pair(tmp_path, levels, ".pgm", negate=negate, occupied_thresh=occupied, free_thresh=free)
-    expected = [[trinary_as_map_server(int(p), bool(negate), occupied, free) for p in row] for row in levels]
-    np.testing.assert_array_equal(read_map(path)[1], expected[::-1])
+    grey = np.arange(256, dtype=np.uint8).reshape(16, 16)
+    plain = read_map(pair(tmp_path, grey, mode=mode, negate=negate))[1]
+    assert {F, X, U} == set(plain.ravel())
+    for pixels in with_alpha(grey, 255):
+        np.testing.assert_array_equal(read_map(pair(tmp_path, pixels, mode=mode, negate=negate))[1], plain)
+    for opacity in (0, 128, 254):
+        for pixels in with_alpha(grey, opacity):
+            assert not read_map(pair(tmp_path, pixels, mode=mode, negate=negate))[1].any()
 
 
-def test_trinary_averages_alpha_in_and_scale_takes_transparency_as_unknown(tmp_path: Path) -> None:
-    pixels = np.array([[[255, 255, 255, 255], [0, 0, 0, 255], [0, 0, 0, 0], [255, 255, 255, 0]]], np.uint8)
-    assert read_map(pair(tmp_path, pixels))[1].tolist() == [[F, X, X, U]]  # shades 1, 1/4, 0, 3/4
-    assert read_map(pair(tmp_path, pixels, mode="scale"))[1].tolist() == [[F, X, U, U]]
+def test_a_level_that_a_png_declares_transparent_is_unknown(tmp_path: Path) -> None:
+    for name, pixels, clear in (
+        ("wide", np.array([[0, 52685, 65535]], np.uint16), 52685),
+        ("grey", np.array([[0, 205, 255]], np.uint8), 205),
+        ("colour", np.array([[[0, 0, 0], [9, 8, 7], [255, 255, 255]]], np.uint8), (9, 8, 7)),
+    ):
+        path = pair(tmp_path, np.zeros((1, 1), np.uint8), image=f"{name}.png", free_thresh=0.3)
+        Image.fromarray(pixels).save(tmp_path / f"{name}.png", transparency=clear)
+        assert read_map(path)[1].tolist() == [[X, U, F]], name
+
+
+@pytest.mark.parametrize(
+    ("colour", "luma"),
+    [((255, 0, 0), 76), ((0, 255, 0), 149), ((0, 0, 255), 29), ((255, 255, 0), 225), ((200, 150, 7), 148)],
+)
+def test_a_colour_counts_as_its_luma(tmp_path: Path, colour: tuple[int, int, int], luma: int) -> None:
+    """0.299 R + 0.587 G + 0.114 B, cut to a whole level."""
+    assert math.floor(0.299 * colour[0] + 0.587 * colour[1] + 0.114 * colour[2]) == luma
+    for level, expected in ((luma, F), (luma + 1, U)):
+        free = float(np.float32(1) - np.float32(level) / np.float32(255))
+        path = pair(tmp_path, np.array([[colour]], np.uint8), free_thresh=free, occupied_thresh=1)
+        assert read_map(path)[1].tolist() == [[expected]]
 
 
 def test_raw_pixels_are_percent_and_above_100_unknown(tmp_path: Path) -> None:
-    pixels = np.array([[0, 19, 20, 65, 66, 100, 101, 255]], np.uint8)
+    pixels = np.array([[0, 19, 20, 64, 65, 100, 101, 255]], np.uint8)
     assert read_map(pair(tmp_path, pixels, mode="raw"))[1].tolist() == [[F, F, U, U, X, X, U, U]]
+
+
+@pytest.mark.parametrize(
+    ("level", "negate", "free", "remedy"),
+    [
+        (205, 0, 0.25, 0.196),
+        (206, 0, 0.196, 0.192),
+        (128, 0, 0.6, 0.498),
+        (127, 0, 0.6, 0.501),
+        (255 - 205, 1, 0.25, 0.196),
+    ],
+)
+def test_grey_that_savers_write_for_unknown_is_told_where_it_is_free(
+    tmp_path: Path, level: int, negate: int, free: float, remedy: float
+) -> None:
+    light = 0 if negate else 254
+    pixels = np.array([[level, level, 100], [light, level, 255 - light]], np.uint8)
+    fields = {"negate": negate, "free_thresh": free}
+    path = pair(tmp_path, pixels, **fields)
+    with pytest.warns(InputWarning) as told:
+        classes = read_map(path)[1]
+    assert (classes == FREE).sum() == 4
+    assert [str(line.message) for line in told] == [
+        f"{path}: free_thresh {free} makes grey {level} (3 pixels) free, which map savers write for unknown; "
+        f"if it is unknown, set free_thresh to {remedy}"
+    ]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert (read_map(pair(tmp_path, pixels, **fields | {"free_thresh": remedy}))[1] == FREE).sum() == 1
+
+
+def test_a_plain_image_with_such_grey_is_told_too(tmp_path: Path) -> None:
+    Image.fromarray(np.array([[0, 206, 254], [205, 206, 254]], np.uint8)).save(tmp_path / "m.png")
+    told = r"m\.png: .* grey 205 \(1 pixels\) and grey 206 \(2 pixels\) too, .* 'free_thresh: 0\.192'"
+    with pytest.warns(InputWarning, match=told):
+        assert read_map(tmp_path / "m.png", 0.1)[1].tolist() == [[F, F, F], [X, F, F]]
+
+
+def test_grey_that_is_all_the_free_there_is_or_a_soft_edge_is_not_worth_a_word(tmp_path: Path) -> None:
+    pixels = np.full((50, 50), 254, np.uint8)
+    pixels[0, :2] = 205, 128
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        read_map(pair(tmp_path, np.array([[205, 205, 0]], np.uint8), free_thresh=0.25))
+        read_map(pair(tmp_path, pixels, free_thresh=0.6))
 
 
 def test_sixteen_bit_and_ascii_images_are_read(tmp_path: Path) -> None:

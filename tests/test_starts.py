@@ -9,9 +9,10 @@ import pytest
 
 from vedette.errors import InputError
 from vedette.maps import GridFrame
-from vedette.sim.starts import choose_starts, clearance, parse_starts
-from vedette.sim.world import World, reachable_poses
-from vedette.sim.worlds import office
+from vedette.sim.components import largest
+from vedette.sim.starts import choose_starts, clearance, indoors, parse_starts
+from vedette.sim.world import World, reachable_poses, standable
+from vedette.sim.worlds import GENERATORS, office
 from vedette.team import PlatformSpec
 
 
@@ -74,6 +75,46 @@ def test_the_others_join_the_first_given_start() -> None:
 def test_without_a_given_start_the_larger_area_is_chosen() -> None:
     for seed in range(10):
         assert (choose_starts(two_rooms(), [spec(1), spec(2)], rng(seed))[:, 0] < 14.0).all()
+
+
+def building(door: int) -> World:
+    """A room of 4 x 3 m, its door so many cells wide, and a shed of 2 m², on open ground of 12 x 12 m."""
+    solid = np.zeros((120, 120), np.bool_)
+    for row, col, rows, cols in ((40, 30, 31, 41), (90, 90, 15, 21)):
+        solid[row : row + rows, col : col + cols] = True
+        solid[row + 1 : row + rows - 1, col + 1 : col + cols - 1] = False
+    solid[40, 50 : 50 + door] = False
+    return World(GridFrame(0.1, 120, 120), solid, "house")
+
+
+@pytest.mark.parametrize("door", [0, 1, 9])
+def test_a_team_starts_inside_though_the_map_calls_the_outside_free(door: int) -> None:
+    world = building(door)
+    inside = np.zeros_like(world.solid)
+    inside[41:70, 31:70] = True
+    assert (indoors(world, 0.2) <= inside).all()
+    assert (
+        indoors(world, 0.2).sum() > (0.8 if door > 1 else 0.999) * 25 * 35
+    )  # not where the door is opposite
+    for seed in range(10):
+        starts = choose_starts(world, [spec(i + 1) for i in range(3)], rng(seed))
+        assert all(inside[world.frame.cell(x, y)] for x, y, _ in starts)
+
+
+def test_where_nothing_is_between_walls_a_team_starts_in_the_largest_area() -> None:
+    solid = np.zeros((30, 40), np.bool_)
+    solid[:, 10] = True
+    world = World(GridFrame(0.1, 30, 40), solid, "fence")
+    np.testing.assert_array_equal(indoors(world, 0.2), largest(standable(world, 0.2)))
+    assert indoors(world, 0.2)[:, 11:].any()
+
+
+@pytest.mark.parametrize("kind", GENERATORS)
+@pytest.mark.parametrize("radius", [0.1, 0.2, 0.35])
+def test_in_a_generated_world_the_largest_area_is_indoors(kind: str, radius: float) -> None:
+    for seed in range(3):
+        world = GENERATORS[kind](rng(seed), 20.0, 15.0, 0.1)
+        np.testing.assert_array_equal(indoors(world, radius), largest(standable(world, radius)))
 
 
 def test_a_team_of_many_sizes_fits_each_to_its_own_radius() -> None:

@@ -1,4 +1,4 @@
-"""The one exception for what a user can get wrong."""
+"""What a user can get wrong: an exception for what cannot be, a warning for what may be meant otherwise."""
 
 from __future__ import annotations
 
@@ -10,6 +10,13 @@ class InputError(ValueError):
     """Bad input, told in one line that names the file or field, the value and the remedy.
 
     The command line prints the line and exits with status 2; a library caller sees a ``ValueError``.
+    """
+
+
+class InputWarning(UserWarning):
+    """Input that can be used but may be meant otherwise, told in one line as an `InputError` is.
+
+    The command line prints the line, once, and goes on; a library caller sees a warning.
     """
 
 

@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import os
 import sys
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from importlib import import_module
+from typing import Any
 
 import click
 
-from vedette.errors import InputError
+from vedette.errors import InputError, InputWarning
 
 BAD_INPUT, INTERRUPTED = 2, 130
 
@@ -43,13 +47,37 @@ def commands() -> None:
 def main() -> None:
     """Run the command line: one clear line and status 2 for bad input, 130 for Ctrl-C, never a traceback."""
     try:
-        sys.exit(commands.main(standalone_mode=False))
+        with _remarks():
+            sys.exit(commands.main(standalone_mode=False))
     except (click.Abort, KeyboardInterrupt):
         sys.exit(INTERRUPTED)
     except (click.ClickException, InputError) as error:
         text = error.format_message() if isinstance(error, click.ClickException) else str(error)
-        click.echo(f"vedette: {' '.join(text.split())}", err=True)
+        _say(text)
         sys.exit(BAD_INPUT)
     except BrokenPipeError:  # the reader of our output has gone
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(1)
+
+
+@contextmanager
+def _remarks() -> Iterator[None]:
+    """Say each `InputWarning` in one line, once; other warnings are Python's."""
+    said: set[str] = set()
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", InputWarning)
+        show_other = warnings.showwarning
+
+        def show(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
+            if not issubclass(category, InputWarning):
+                show_other(message, category, *where, **more)
+            elif str(message) not in said:
+                said.add(str(message))
+                _say(str(message))
+
+        warnings.showwarning = show
+        yield
+
+
+def _say(text: str) -> None:
+    click.echo(f"vedette: {' '.join(text.split())}", err=True)

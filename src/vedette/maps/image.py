@@ -20,9 +20,13 @@ _FORMATS = ("PPM", "PNG", "BMP", "JPEG")
 class Levels:
     """Grey levels of an image, bottom row first."""
 
-    colour: NDArray[np.uint16]  # (rows, cols): sum over the colour channels
-    full: int  # the sum of a white pixel
+    grey: NDArray[np.uint16]  # (rows, cols)
+    full: int  # level of a white pixel: 255 or 65535
     alpha: NDArray[np.uint8] | None  # (rows, cols), 255 opaque; None: the image has no alpha
+
+    def eight_bits(self) -> NDArray[np.uint8]:
+        """Return the levels as 0 to 255, ``(rows, cols)``; finer ones are cut, as GraphicsMagick does."""
+        return (self.grey // (self.full // 255)).astype(np.uint8)
 
 
 def read_levels(path: Path) -> Levels:
@@ -60,9 +64,11 @@ def _check_sides(path: Path, image: Image.Image) -> None:
 
 def _levels(image: Image.Image) -> Levels:
     if image.mode.startswith("I"):  # 16 bits of grey
-        pixels = np.asarray(image)[::-1]
-        return Levels(np.ascontiguousarray(pixels, np.uint16), 65535, None)
-    alpha: NDArray[np.uint8] | None = None
+        wide = np.ascontiguousarray(np.asarray(image)[::-1], np.uint16)
+        clear = image.info.get("transparency")  # a PNG's level that stands for no pixel
+        alpha = None if clear is None else np.where(wide == clear, 0, 255).astype(np.uint8)
+        return Levels(wide, 65535, alpha)
+    alpha = None
     if "A" in image.mode or "transparency" in image.info:
         image = image.convert("RGBA")
         alpha = np.ascontiguousarray(np.asarray(image.getchannel("A"))[::-1])
@@ -70,6 +76,12 @@ def _levels(image: Image.Image) -> Levels:
     elif image.mode not in ("L", "RGB"):
         image = image.convert("L" if image.mode == "1" else "RGB")
     pixels = np.asarray(image)[::-1]
-    if pixels.ndim == 2:
-        return Levels(pixels.astype(np.uint16), 255, alpha)
-    return Levels(pixels.sum(axis=2, dtype=np.uint16), 3 * 255, alpha)
+    return Levels(pixels.astype(np.uint16) if pixels.ndim == 2 else _luma(pixels), 255, alpha)
+
+
+def _luma(pixels: NDArray[np.uint8]) -> NDArray[np.uint16]:
+    """``0.299 R + 0.587 G + 0.114 B`` of each pixel: rounded to 16 bits, cut to 8, as GraphicsMagick does."""
+    thousands = np.full(pixels.shape[:2], 500, np.uint32)  # the half that rounds
+    for channel, share in enumerate((299, 587, 114)):
+        thousands += np.multiply(pixels[..., channel], 257 * share, dtype=np.uint32)
+    return (thousands // 1000 // 257).astype(np.uint16)

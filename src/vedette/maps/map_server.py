@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
 from pathlib import Path
-from reprlib import repr as repr_short
-from typing import Any
 
 import numpy as np
 import yaml
@@ -14,30 +10,15 @@ from numpy.typing import NDArray
 
 from vedette.errors import InputError, nearest_name
 from vedette.maps.atomic import atomic_path
-from vedette.maps.frame import FREE, OCCUPIED, UNKNOWN, GridFrame
+from vedette.maps.classes import classes_of_pair, classes_of_plain
+from vedette.maps.frame import GridFrame
 from vedette.maps.image import read_levels
-from vedette.yaml_file import read_yaml
+from vedette.maps.meta import checked_resolution, read_meta
 
-RESOLUTIONS = (0.005, 10.0)  # accepted [m]
-MAX_ORIGIN = 1e6  # accepted [m]: farther out, metres lose the millimetres
-_MODES = ("trinary", "scale", "raw")
 _PIXELS = {  # grey level of UNKNOWN, FREE and OCCUPIED, as map_saver writes them
     "trinary": np.array([205, 254, 0], np.uint8),
     "raw": np.array([255, 0, 100], np.uint8),
 }
-
-
-@dataclass(frozen=True)
-class MapMeta:
-    """What the ``.yaml`` of a map_server pair says."""
-
-    image: Path
-    resolution: float | None  # [m]; None: the file gives none
-    origin: tuple[float, float]  # of the lower-left pixel's corner [m], team frame
-    negate: bool
-    occupied_thresh: float
-    free_thresh: float
-    mode: str
 
 
 def read_map(path: Path | str, resolution: float | None = None) -> tuple[GridFrame, NDArray[np.uint8]]:
@@ -52,10 +33,13 @@ def read_map(path: Path | str, resolution: float | None = None) -> tuple[GridFra
 
     Raises:
         InputError: the path is missing, a folder, unreadable or not a map, or a value in it is out of range.
+
+    Warns:
+        InputWarning: grey that map savers write for unknown is free.
     """
     path = Path(path)
     if resolution is not None:
-        resolution = _checked_resolution(resolution, "--resolution")
+        resolution = checked_resolution(resolution, "--resolution")
     if path.is_dir():
         raise InputError(f"{path} is a folder; give a map's .yaml or an image")
     if path.suffix.lower() not in (".yaml", ".yml"):
@@ -64,7 +48,7 @@ def read_map(path: Path | str, resolution: float | None = None) -> tuple[GridFra
     resolution = resolution if resolution is not None else meta.resolution
     if resolution is None:
         raise InputError(f"{path}: no resolution; add 'resolution: 0.05' [m per pixel] or give --resolution")
-    classes = _classify(meta)
+    classes = classes_of_pair(meta, read_levels(meta.image))
     rows, cols = classes.shape
     return GridFrame(resolution, rows, cols, *meta.origin), classes
 
@@ -102,121 +86,14 @@ def write_map(stem: Path | str, frame: GridFrame, classes: NDArray[np.uint8], mo
         )
 
 
-def read_meta(path: Path) -> MapMeta:
-    """Read and check the ``.yaml`` of a map_server pair.
-
-    Raises:
-        InputError: as :func:`read_map`.
-    """
-    content = _load_yaml(path)
-    image = content.get("image")
-    if not isinstance(image, str) or not image:
-        raise InputError(f"{path} is not a map: it has no 'image: FILE' line")
-    resolution = content.get("resolution")
-    if resolution is not None:
-        resolution = _checked_resolution(resolution, f"{path}: resolution")
-    mode = content.get("mode", "trinary")
-    if mode not in _MODES:
-        raise InputError(f"{path}: unknown mode {repr_short(mode)}; {nearest_name(repr_short(mode), _MODES)}")
-    negate = content.get("negate", 0)
-    if negate not in (0, 1):
-        raise InputError(f"{path}: negate must be 0 or 1; got {repr_short(negate)}")
-    free, occupied = _thresholds(path, content)
-    return MapMeta(
-        image=path.parent / image,
-        resolution=resolution,
-        origin=_origin(path, content.get("origin", [0.0, 0.0, 0.0])),
-        negate=bool(negate),
-        occupied_thresh=occupied,
-        free_thresh=free,
-        mode=mode,
-    )
-
-
-def _load_yaml(path: Path) -> dict[str, Any]:
-    content = read_yaml(path, "map", "it is not a map without an 'image: FILE' line")
-    if not isinstance(content, dict):
-        raise InputError(f"{path} is not a map: it has no 'image: FILE' line")
-    return content
-
-
-def _checked_resolution(value: Any, what: str) -> float:
-    low, high = RESOLUTIONS
-    number = _number(value)
-    if not low <= number <= high:
-        raise InputError(f"{what} must be {low} to {high:g} m per pixel; got {repr_short(value)}")
-    return number
-
-
-def _thresholds(path: Path, content: dict[str, Any]) -> tuple[float, float]:
-    thresholds = []
-    for name, default in (("free_thresh", 0.196), ("occupied_thresh", 0.65)):
-        value = content.get(name, default)
-        thresholds.append(_number(value))
-        if not 0.0 <= thresholds[-1] <= 1.0:
-            raise InputError(f"{path}: {name} must be 0 to 1; got {repr_short(value)}")
-    free, occupied = thresholds
-    if free >= occupied:
-        raise InputError(f"{path}: free_thresh must be below occupied_thresh; got {free:g} and {occupied:g}")
-    return free, occupied
-
-
-def _origin(path: Path, value: Any) -> tuple[float, float]:
-    numbers = [_number(part) for part in value] if isinstance(value, list) else []
-    if len(numbers) not in (2, 3) or not all(abs(number) <= MAX_ORIGIN for number in numbers):
-        raise InputError(f"{path}: origin must be [x, y, yaw] [m, m, rad]; got {repr_short(value)}")
-    if len(numbers) == 3 and numbers[2] != 0.0:
-        raise InputError(f"{path}: yaw {numbers[2]:g} is not supported; turn the image and set the yaw to 0")
-    return numbers[0], numbers[1]
-
-
-def _number(value: Any) -> float:
-    """Return the value as a float; NaN, which no range holds, where it is none."""
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return math.nan
-    try:
-        return float(value)
-    except OverflowError:  # a whole number of hundreds of digits
-        return math.nan
-
-
 def _read_plain(path: Path, resolution: float | None) -> tuple[GridFrame, NDArray[np.uint8]]:
     levels = read_levels(path)
     if resolution is None:
         pair = path.with_suffix(".yaml")
         remedy = f"give {pair.name} instead, or " if pair.is_file() else ""
         raise InputError(f"{path}: an image alone has no resolution; {remedy}add --resolution [m per pixel]")
-    shade = np.arange(levels.full + 1) / levels.full
-    classes = np.where(shade >= 128 / 255, FREE, OCCUPIED).astype(np.uint8)[levels.colour]
-    if levels.alpha is not None:
-        classes[levels.alpha < 128] = UNKNOWN
-    rows, cols = classes.shape
-    return GridFrame(resolution, rows, cols), classes
-
-
-def _classify(meta: MapMeta) -> NDArray[np.uint8]:
-    """Return the classes that map_server gives to each pixel, bottom row first.
-
-    Trinary averages alpha in with the colours, scale takes any transparency as unknown, as map_server does. A
-    graded value (scale, raw) is known only beyond the thresholds.
-    """
-    levels = read_levels(meta.image)
-    level, full = levels.colour, levels.full
-    if meta.mode == "trinary" and levels.alpha is not None:
-        level, full = level + levels.alpha, full + 255
-    shade = np.arange(full + 1) / full
-    if meta.mode == "raw":
-        percent = np.round(shade * 255)
-        occupied = np.where(percent <= 100, percent / 100, np.nan)
-    else:
-        occupied = shade if meta.negate else 1.0 - shade
-    table = np.full(full + 1, UNKNOWN, np.uint8)
-    table[occupied > meta.occupied_thresh] = OCCUPIED
-    table[occupied < meta.free_thresh] = FREE
-    classes = table[level]
-    if meta.mode == "scale" and levels.alpha is not None:
-        classes[levels.alpha < 255] = UNKNOWN
-    return classes
+    rows, cols = levels.grey.shape
+    return GridFrame(resolution, rows, cols), classes_of_plain(path, levels)
 
 
 def _quoted(name: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import warnings
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -11,6 +12,7 @@ from typing import Any, TypeAlias
 import msgspec
 import numpy as np
 
+from vedette.errors import InputWarning
 from vedette.sim.explore.simulation import ExploreSetup
 from vedette.sim.world import World
 from vedette.sim.worlds import GENERATORS
@@ -75,8 +77,10 @@ class MapWorld:
         return {"map": self.digest}
 
     def build(self) -> World:
-        """Read it."""
-        return World.from_map(self.path, self.scale)
+        """Read it again; what there is to say of it was said when it was first read."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", InputWarning)
+            return World.from_map(self.path, self.scale)
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from vedette.errors import InputError
 from vedette.kernels.distance import distance_field
-from vedette.sim.components import largest
+from vedette.sim.starts import indoors
 from vedette.sim.world import World, standable
 from vedette.team import PlatformSpec
 
@@ -28,13 +28,13 @@ def team(platform: PlatformSpec, robots: int) -> list[PlatformSpec]:
 def spread(world: World, specs: Sequence[PlatformSpec], rng: np.random.Generator) -> list[PlatformSpec]:
     """Return the team with starts apart: random places, each the farthest by path of a few from the others.
 
-    The first is anywhere; all are in the largest area that the largest robot can stand in.
+    The first is anywhere; all are indoors, where the largest robot can stand.
 
     Raises:
         InputError: the team does not fit.
     """
     radius = max(spec.radius for spec in specs)
-    area = largest(standable(world, radius))
+    area = indoors(world, radius)
     roomy = area & standable(world, radius + _AT_EASE)
     places = np.flatnonzero(roomy if roomy.any() else area)
     if not places.size:

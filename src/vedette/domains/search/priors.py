@@ -116,7 +116,7 @@ def heat_map(frame: GridFrame, path: Path) -> NDArray[np.float64]:
         InputError: an image that cannot be read, or is black all over.
     """
     levels = read_levels(path)
-    grey = levels.colour.astype(np.float32)
+    grey = levels.grey.astype(np.float32)
     if levels.alpha is not None:
         grey *= levels.alpha / np.float32(255.0)
     rows, cols = (_overlap(n, size) for n, size in zip(frame.shape, grey.shape, strict=True))
