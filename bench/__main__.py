@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict
 from pathlib import Path
 
 import click
@@ -27,6 +26,7 @@ QUICK_EFFORT = {SMALL: Effort(1, 200, 2), LARGE: Effort(1, 50, 1)}
 def bench(quick: bool, date: str | None, out: Path) -> None:
     """Measure what the project has to reach, and say MET or MISSED. Exit status 0 either way.
 
+    A smoke run measures too little for some verdicts and says NOT MEASURED.
     The scale table comes last: ``python -m bench.scale`` makes it alone.
     Teams of processes have a bench of their own, ``python -m bench.network``.
     """
@@ -108,11 +108,7 @@ def sent(criterion: Criterion, runs: Sequence[Run], kilobytes: Callable[[Run], f
 
 def report(about: dict[str, str], quick: bool, measurements: Sequence[Measurement]) -> dict[str, object]:
     """Return what is written as JSON."""
-    rows = [
-        asdict(each.criterion) | {"measured": each.measured, "verdict": each.verdict, "note": each.note}
-        for each in measurements
-    ]
-    return about | {"quick": quick, "measurements": rows}
+    return about | {"quick": quick, "measurements": [each.plain() for each in measurements]}
 
 
 if __name__ == "__main__":

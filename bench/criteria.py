@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 from bench.table import figure, markdown
 
@@ -36,29 +36,38 @@ class Measurement:
     """One criterion's figure, with a note on what stands behind it."""
 
     criterion: Criterion
-    measured: float
+    measured: float | None  # None: nothing was measured that the criterion could be held against
     note: str
 
     @property
     def verdict(self) -> str:
-        """MET or MISSED."""
+        """MET, MISSED, or NOT MEASURED."""
+        if self.measured is None:
+            return "NOT MEASURED"
         return "MET" if self.criterion.met(self.measured) else "MISSED"
 
     def cells(self) -> tuple[str, str, str, str, str, str]:
         """Return the row of :func:`verdicts`."""
         criterion = self.criterion
-        ratio = criterion.ratio(self.measured) if criterion.asked else math.nan
+        measured = math.nan if self.measured is None else self.measured
+        ratio = criterion.ratio(measured) if criterion.asked else math.nan
         return (
             criterion.name,
             criterion.limit(),
-            f"{figure(self.measured)} {criterion.unit}".rstrip(),
+            f"{figure(measured)} {criterion.unit}".rstrip() if math.isfinite(measured) else "-",
             figure(ratio),
             self.verdict,
             self.note,
         )
 
+    def plain(self) -> dict[str, object]:
+        """Return what is written as JSON; what is not a finite number becomes null."""
+        finite = self.measured is not None and math.isfinite(self.measured)
+        measured = self.measured if finite else None
+        return asdict(self.criterion) | {"measured": measured, "verdict": self.verdict, "note": self.note}
+
 
 def verdicts(measurements: list[Measurement]) -> str:
-    """Return the table asked | measured | ratio | MET or MISSED."""
+    """Return the table asked | measured | ratio | verdict."""
     header = ("", "asked", "measured", "ratio", "", "")
     return markdown(header, [measurement.cells() for measurement in measurements], "lrrrll")

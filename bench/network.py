@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from dataclasses import asdict
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -64,12 +63,8 @@ def network(quick: bool, speed: float, date: str | None, out: Path) -> None:
     measurements = measure(quick, speed, progress)
     about |= {"load_after": _load()}
     click.echo(f"\nload {about['load_before']} before, {about['load_after']} after\n{verdicts(measurements)}")
-    rows = [
-        asdict(each.criterion) | {"measured": each.measured, "verdict": each.verdict, "note": each.note}
-        for each in measurements
-    ]
     path = folder / ("network-quick.json" if quick else "network.json")
-    write_json(path, about | {"quick": quick, "measurements": rows})
+    write_json(path, about | {"quick": quick, "measurements": [each.plain() for each in measurements]})
     click.echo(f"written: {path}")
 
 

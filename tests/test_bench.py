@@ -96,6 +96,21 @@ def test_nothing_measured_of_a_thing_asked_to_be_none_is_met() -> None:
     assert Measurement(Criterion("collisions", 0.0, ""), 1.0, "").verdict == "MISSED"
 
 
+@pytest.mark.parametrize(
+    ("measured", "verdict"), [(None, "NOT MEASURED"), (math.nan, "MISSED"), (math.inf, "MISSED")]
+)
+def test_what_has_no_number_is_shown_and_written_as_none(measured: float | None, verdict: str) -> None:
+    without = Measurement(Criterion("growth", 1.25, "x"), measured, "why")
+    assert cells(verdicts([without]).splitlines()[2])[2:] == [
+        "-",
+        "0" if measured == math.inf else "-",
+        verdict,
+        "why",
+    ]
+    assert json.loads(json.dumps(without.plain(), allow_nan=False))["measured"] is None
+    assert without.plain()["verdict"] == verdict
+
+
 def test_a_table_has_lines_of_equal_length_and_marks_the_columns_on_the_right() -> None:
     text = markdown(("a", "number"), [("long name", "1"), ("b", "22")], "lr")
     assert len({len(line) for line in text.splitlines()}) == 1

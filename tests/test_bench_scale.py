@@ -14,7 +14,16 @@ from numpy.typing import NDArray
 from bench.scale import mapping, report, series, trees
 from bench.scale.edges import whole_sizes
 from bench.scale.post import run_round
-from bench.scale.series import DOMAINS, FIXED, SQUARE, STRIP, Row
+from bench.scale.series import (
+    DOMAINS,
+    FIXED,
+    QUICK_SIZES,
+    SIZES,
+    SQUARE,
+    STRIP,
+    WHOLE_UP_TO,
+    Row,
+)
 from bench.scale.tables import brief, full
 from bench.scale.team import Lots, Team
 from bench.scale.verdicts import judge
@@ -216,24 +225,52 @@ def test_a_series_ends_before_a_round_that_would_take_too_long(monkeypatch: pyte
 
 
 def test_the_worst_tree_is_judged_and_one_that_took_too_long_is_missed() -> None:
-    dense = [replace(ROW, area=STRIP, clipped=True, n=n, edge_median=100.0) for n in (16, 32, 64)]
-    flat = [replace(ROW, n=n, tree=tree) for n in (16, 64) for tree in ("chain", "star")]
-    grown = [replace(row, bytes_mean=1.5) if (row.n, row.tree) == (64, "star") else row for row in flat]
+    dense = [replace(ROW, area=STRIP, clipped=True, n=n, edge_median=100.0) for n in (16, 256, 512)]
+    flat = [replace(ROW, n=n, tree=tree) for n in (16, 512) for tree in ("chain", "star")]
+    grown = [replace(row, bytes_mean=1.5) if (row.n, row.tree) == (512, "star") else row for row in flat]
     by_name = {each.criterion.name: each for each in judge(grown + dense)}
-    worst = by_name["mapping, fixed area: bytes, n=64 to 16"]
+    worst = by_name["mapping, fixed area: bytes, n=512 to 16"]
     assert (worst.measured, worst.verdict, worst.note) == (
         1.5,
         "MISSED",
         "chain 1.00, star 1.50; at most 1.50 on the way",
     )
-    assert by_name["mapping, fixed area: messages, n=64 to 16"].verdict == "MET"
-    assert by_name["mapping, constant density: median link, n=64 to 32"].verdict == "MET"
+    assert by_name["mapping, fixed area: messages, n=512 to 16"].verdict == "MET"
+    assert by_name["mapping, constant density: median link, n=512 to 256"].verdict == "MET"
     short = judge([*flat[:-1], *dense])
+    assert short[0].measured is not None
     assert math.isnan(short[0].measured)
     assert (short[0].verdict, short[0].note) == (
         "MISSED",
         "chain 1.00; at most 1.00 on the way; took too long: star",
     )
+
+
+@pytest.mark.parametrize(
+    ("sizes", "open_verdicts"),
+    [
+        (SIZES, []),
+        (QUICK_SIZES, ["constant density: median link, from n=256 on"]),
+        (
+            (4, 8),
+            [
+                "fixed area: messages, from n=16 on",
+                "fixed area: bytes, from n=16 on",
+                "fixed area: CPU, mean, from n=16 on",
+                "constant density: median link, from n=256 on",
+            ],
+        ),
+    ],
+)
+def test_a_verdict_on_sizes_that_were_not_measured_says_so_and_all_others_are_given(
+    sizes: tuple[int, ...], open_verdicts: list[str]
+) -> None:
+    kinds = ((FIXED, "star", False), (SQUARE, "balanced", True), (STRIP, "chain", True))
+    judged = judge([replace(ROW, n=n, area=a, tree=tree, clipped=c) for n in sizes for a, tree, c in kinds])
+    verdicts = {each.criterion.name.removeprefix("mapping, "): each.verdict for each in judged}
+    assert len(verdicts) == 5
+    assert [name for name, verdict in verdicts.items() if verdict == "NOT MEASURED"] == open_verdicts
+    assert all(verdict == "MET" for name, verdict in verdicts.items() if name not in open_verdicts)
 
 
 def test_the_tables_hold_every_row_and_say_what_is_not_flat() -> None:
@@ -251,14 +288,16 @@ def test_the_report_is_written_as_json_table_and_picture(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(series, "DOMAINS", {"tracking": DOMAINS["tracking"]})
-    monkeypatch.setattr(report, "QUICK_SIZES", (2, 4))
     text = report.run(tmp_path, {"machine": "m"}, True, lambda _: None)
-    assert "tracking, fixed area: bytes, n=4 to 2" in text
+    assert "tracking, fixed area: bytes, n=64 to 16" in text
     written = json.loads((tmp_path / "scale-quick.json").read_text())
     assert written["machine"] == "m"
-    assert len(written["rows"]) == 2 * (4 + 2 * 5)
-    assert {each["verdict"] for each in written["measurements"]} <= {"MET", "MISSED"}
-    assert (tmp_path / "scale-quick.md").read_text().count("\n| chain") == 2 * 5
+    clipped, whole = len(QUICK_SIZES), sum(n <= WHOLE_UP_TO for n in QUICK_SIZES)
+    assert len(written["rows"]) == 4 * clipped + 5 * (clipped + whole)
+    assert [each["name"] for each in written["measurements"] if each["verdict"] == "NOT MEASURED"] == [
+        "tracking, constant density: median link, from n=256 on"
+    ]
+    assert (tmp_path / "scale-quick.md").read_text().count("\n| chain") == clipped + 2 * (clipped + whole)
     assert (tmp_path / "scale-quick.png").read_bytes().startswith(b"\x89PNG")
 
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from pathlib import Path
 
-from bench.criteria import Measurement, verdicts
+from bench.criteria import verdicts
 from bench.scale.picture import scale_png
 from bench.scale.series import QUICK_SIZES, SIZES, rows
 from bench.scale.tables import brief, full
@@ -25,15 +24,10 @@ def run(folder: Path, about: Mapping[str, str], quick: bool, progress: Callable[
         {
             **about,
             "quick": quick,
-            "measurements": [_plain(each) for each in judged],
+            "measurements": [each.plain() for each in judged],
             "rows": [asdict(row) for row in table],
         },
     )
     write_text(path.with_suffix(".md"), f"{full(table)}\n{verdicts(judged)}")
     scale_png(table, path.with_suffix(".png"))
     return f"{brief(table)}\n{verdicts(judged)}\nwritten: {path}, and beside it .md and .png"
-
-
-def _plain(each: Measurement) -> dict[str, object]:
-    measured = each.measured if math.isfinite(each.measured) else None
-    return asdict(each.criterion) | {"measured": measured, "verdict": each.verdict, "note": each.note}

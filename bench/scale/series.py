@@ -17,6 +17,7 @@ from vedette.negotiation import Tree
 
 SIZES = tuple(2**k for k in range(1, 11))
 QUICK_SIZES = (4, 16, 64)
+FIXED_FROM, DENSE_FROM = 16, 256  # sizes that the largest is judged against: area covered; mostly middle
 FIXED, SQUARE, STRIP = "fixed", "square", "strip"  # the area stays; grows both ways; grows one way
 WHOLE_UP_TO = 32  # rounds with whole messages over an area that grows are not run beyond
 MOST_SWEEPS = 20

@@ -6,9 +6,8 @@ import math
 from collections.abc import Callable, Sequence
 
 from bench.criteria import Criterion, Measurement
-from bench.scale.series import FIXED, SQUARE, STRIP, Row
+from bench.scale.series import DENSE_FROM, FIXED, FIXED_FROM, SQUARE, STRIP, Row
 
-FIXED_FROM, DENSE_FROM = 16, 256  # compared with the largest: area covered; less border than middle
 FRAME = 60  # of a message around its impact at most [bytes]
 FLAT, FLAT_CPU = 1.25, 1.5
 FOLLOW_SPACE = ((STRIP, "chain"), (SQUARE, "balanced"))  # trees whose branches are compact in space
@@ -21,24 +20,27 @@ def judge(rows: Sequence[Row]) -> list[Measurement]:
 
 def _domain(name: str, rows: Sequence[Row]) -> list[Measurement]:
     own = [row for row in rows if row.domain == name]
-    largest = max(row.n for row in own)
     fixed = [row for row in own if row.area == FIXED]
     dense = [row for row in own if row.clipped and (row.area, row.tree) in FOLLOW_SPACE]
-    start, dense_start = min(FIXED_FROM, largest // 2), min(DENSE_FROM, largest // 2)
+    sizes = {row.n for row in own}
+    largest = max(sizes)
 
     def growth(what: str, limit: float, of: Callable[[Row], float], first: int, on: list[Row]) -> Measurement:
-        area = "fixed area" if on is fixed else "constant density"
-        criterion = Criterion(f"{name}, {area}: {what}, n={largest} to {first}", limit, "x")
+        title = f"{name}, {'fixed area' if on is fixed else 'constant density'}: {what}"
+        if first not in sizes - {largest}:
+            criterion = Criterion(f"{title}, from n={first} on", limit, "x")
+            return Measurement(criterion, None, f"teams up to {largest}")
+        criterion = Criterion(f"{title}, n={largest} to {first}", limit, "x")
         return _worst_growth(criterion, on, of, first, largest)
 
     biggest = max(fixed, key=lambda row: row.edge_largest)
     size = Criterion(f"{name}, fixed area: largest message", float(biggest.bound + FRAME), "B")
     return [
-        growth("messages", FLAT, lambda row: row.messages_mean, start, fixed),
-        growth("bytes", FLAT, lambda row: row.bytes_mean, start, fixed),
-        growth("CPU, mean", FLAT_CPU, lambda row: row.cpu_mean, start, fixed),
+        growth("messages", FLAT, lambda row: row.messages_mean, FIXED_FROM, fixed),
+        growth("bytes", FLAT, lambda row: row.bytes_mean, FIXED_FROM, fixed),
+        growth("CPU, mean", FLAT_CPU, lambda row: row.cpu_mean, FIXED_FROM, fixed),
         Measurement(size, biggest.edge_largest, f"{biggest.tree}, n={biggest.n}; asked: the codec's bound"),
-        growth("median link", FLAT, lambda row: row.edge_median, dense_start, dense),
+        growth("median link", FLAT, lambda row: row.edge_median, DENSE_FROM, dense),
     ]
 
 

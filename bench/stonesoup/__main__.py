@@ -133,10 +133,7 @@ def report(
     about: Mapping[str, str], rows: Sequence[Row], measurements: Sequence[Measurement]
 ) -> dict[str, object]:
     """Return what is written as JSON."""
-    criteria = [
-        asdict(each.criterion) | {"measured": each.measured, "verdict": each.verdict, "note": each.note}
-        for each in measurements
-    ]
+    criteria = [each.plain() for each in measurements]
     return {**about, "rows": [asdict(row) for row in rows], "measurements": criteria}
 
 
