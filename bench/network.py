@@ -16,7 +16,7 @@ import numpy as np
 
 from bench import RESULTS, command, machine
 from bench.criteria import Criterion, Measurement, verdicts
-from tests.net_processes import (
+from tests.support.net_processes import (
     Chain,
     Diary,
     Fault,

@@ -10,14 +10,14 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from tests.agent_team import Post, nested_kind
 from tests.fuzz.keep import Kept
 from tests.fuzz.scripts import Script, Stage, Told, scripted
 from tests.fuzz.target import Target
-from tests.search_missions import case
-from tests.small_missions import robots as equal_robots
-from tests.small_missions import small_maze
-from tests.track_scenes import scenario
+from tests.support.agent_team import Post, nested_kind
+from tests.support.search_missions import case
+from tests.support.small_missions import robots as equal_robots
+from tests.support.small_missions import small_maze
+from tests.support.track_scenes import scenario
 from vedette.agent import Agent, step
 from vedette.agent import messages as wire
 from vedette.agent.effects import Drive, Effect, Fly, Job, Send, Traffic

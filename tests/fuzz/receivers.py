@@ -11,7 +11,7 @@ import numpy as np
 from tests.fuzz.keep import Kept
 from tests.fuzz.scripts import Script, Stage, Told, scripted
 from tests.fuzz.target import Target
-from tests.step_network import Exchange
+from tests.support.step_network import Exchange
 from vedette.fusion import ChannelFilter, ReplicatedEvidence
 from vedette.fusion.gaussian import WAYS, Information, Motion, TrackFusion, track_fusion
 from vedette.fusion.steps import ReplicatedSteps, Sparse, SparseIntegers, StepSums

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from tests.support.places import ROOT
+
 OWN = ROOT / "reproduction"
 WITHOUT = "import sys; sys.modules['vedette_reproduction'] = None; "  # as if it were not installed
 

@@ -1,0 +1,348 @@
+"""``vedette search``: the files and the status of a run, and one clear line for whatever is wrong."""
+
+from __future__ import annotations
+
+import json
+import signal
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+from mcap.reader import make_reader
+from PIL import Image
+
+from tests.cli.test_explore import Command, refused, start
+from tests.support.places import ROOT
+from tests.support.search_missions import SMALL
+from vedette.record.summary import Traffic
+
+FILES = {"summary.json", "timing.json", "pdf.png", "detection.png", "run.mcap"}
+FIELDS = [
+    "schema_version", "completed", "outcome", "seed", "scenario", "coordination", "scheme", "fusion", "worth",
+    "radio", "faults", "vehicles", "time_s", "found_s", "found_by", "declared_m", "target_m", "error_m",
+    "detection_then",
+    "duration_s", "detection", "t50_s", "t90_s", "mean_time_s", "counted", "bound", "koopman", "path_m",
+    "rounds", "sweeps", "bound_ratio", "messages", "bytes", "comparison",
+]  # fmt: skip
+ALARMS = {"type": "exponential", "range": 100, "sigma": 60, "noise": 10, "false_alarm": 0.02}
+QUICK = ("--no-compare", "--trials", 50)
+
+
+@pytest.fixture
+def vedette(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> Command:
+    """The command, run in an empty folder."""
+    monkeypatch.chdir(tmp_path)
+    return Command(monkeypatch, capsys)
+
+
+def scenario(**changes: Any) -> str:
+    """Write the small scenario with other fields; return its name."""
+    Path("small.yaml").write_text(yaml.safe_dump(SMALL | changes))
+    return "small.yaml"
+
+
+def check_files(folder: Path) -> None:
+    """Everything is there and loads."""
+    assert {path.name for path in folder.iterdir()} >= FILES
+    for name in ("pdf.png", "detection.png"):
+        with Image.open(folder / name) as image:
+            image.load()
+            assert min(image.size) > 100
+    with (folder / "run.mcap").open("rb") as file:
+        assert sum(1 for _ in make_reader(file).iter_messages()) > 0
+    json.loads((folder / "timing.json").read_text())
+    assert list(json.loads((folder / "summary.json").read_text())) == FIELDS
+
+
+# -- what a run leaves --------------------------------------------------------------------------------
+
+
+def test_a_search_that_finds_leaves_every_file_and_says_where_the_pictures_are(vedette: Command) -> None:
+    ran = vedette("search", scenario(), "--seed", 1, "--out", "out")
+    assert ran.status == 0, ran
+    assert ran.err == ""
+    assert "found after" in ran.out
+    assert str(Path("out") / "detection.png") in ran.out
+    check_files(Path("out"))
+    assert {path.name for path in Path("out").iterdir()} == FILES
+    summary = json.loads((Path("out") / "summary.json").read_text())
+    assert summary["completed"] is True
+    assert summary["found_s"] == summary["time_s"]
+    assert summary["found_by"] in summary["path_m"]
+    assert list(summary["comparison"]) == ["none", "shared", "negotiated"]
+    own = {field: summary[field] for field in ("detection", "t50_s", "t90_s", "mean_time_s")}
+    assert summary["comparison"]["negotiated"] == own
+    counted = summary["counted"]
+    assert (counted["trials"], counted["of"], counted["mistaken"]) == (1000, "looks", 0)
+    assert counted["detection_low"] <= counted["detection"] <= counted["detection_high"]
+    assert abs(counted["detection"] - own["detection"]) <= counted["band"]
+    assert own["detection"] <= summary["bound"]["detection"]
+    assert own["mean_time_s"] >= summary["bound"]["mean_time_s"]
+    assert summary["detection_then"] <= own["detection"] + 1e-6
+    for name in summary["path_m"]:
+        assert set(summary["bytes"][name]) == set(Traffic.__dataclass_fields__)
+
+
+def test_json_prints_the_summary_alone(vedette: Command) -> None:
+    ran = vedette("search", scenario(), "--max-time", 6, "--out", "out", "--json", *QUICK)
+    assert (ran.status, ran.err) == (1, "")
+    assert ran.out == (Path("out") / "summary.json").read_text()
+    summary = json.loads(ran.out)
+    assert summary["outcome"] == "time_limit"
+    assert summary["found_s"] is None
+    assert summary["duration_s"] == 6.0
+    assert list(summary["comparison"]) == ["negotiated"]
+    check_files(Path("out"))
+
+
+def test_a_search_shorter_than_a_step_leaves_every_file(vedette: Command) -> None:
+    ran = vedette("search", scenario(), "--max-time", 1, "--out", "out", *QUICK)
+    assert ran.status == 1, ran
+    assert json.loads((Path("out") / "summary.json").read_text())["mean_time_s"] == 0.0
+    check_files(Path("out"))
+
+
+def test_options_reach_the_search(vedette: Command) -> None:
+    ran = vedette(
+        "search", scenario(worth="mean-time"), "--coordination", "shared", "--scheme", "jacobi", "--fusion",
+        "sums", "--seed", 4, "--max-time", 8, "--trials", 0, "--no-compare", "--json", "--out", "out",
+    )  # fmt: skip
+    summary = json.loads(ran.out)
+    named = [summary[name] for name in ("coordination", "scheme", "fusion", "worth", "seed")]
+    assert named == ["shared", "jacobi", "sums", "mean-time", 4]
+    assert summary["counted"] is None
+
+
+def test_faults_are_survived_and_all_files_are_there(vedette: Command) -> None:
+    ran = vedette(
+        "search", scenario(), "--kill", "1@6", "--link-loss", 0.05, "--link-delay", 0.05, "--json", "--out",
+        "out", *QUICK,
+    )  # fmt: skip
+    assert ran.status in (0, 1)
+    summary = json.loads(ran.out)
+    first, *others = summary["path_m"].values()
+    assert first == pytest.approx(180.0, abs=4.0)
+    assert min(others) > first
+    check_files(Path("out"))
+
+
+def test_a_team_that_dies_has_status_1_and_all_files(vedette: Command) -> None:
+    kills = [word for k in (1, 2, 3) for word in ("--kill", f"{k}@{k}")]
+    ran = vedette("search", scenario(), *kills, "--out", "out", *QUICK)
+    assert ran.status == 1
+    assert "team lost" in ran.out
+    check_files(Path("out"))
+
+
+def test_with_false_alarms_each_trial_is_a_search_of_its_own(vedette: Command) -> None:
+    arguments = ("--no-compare", "--trials", 3, "--json", "--out", "out")
+    ran = vedette("search", scenario(detector=ALARMS, duration=24), *arguments)
+    summary = json.loads(ran.out)
+    assert (summary["counted"]["trials"], summary["counted"]["of"]) == (3, "runs")
+    check_files(Path("out"))
+
+
+def test_a_declared_place_that_is_wrong_is_a_mistake_with_status_1(vedette: Command) -> None:
+    wrong = {"declare": {"probability": 0.3, "radius": 150}, "target": {"start": [1150, 750]}}
+    ran = vedette(
+        "search", scenario(detector=ALARMS, **wrong), "--json", "--out", "out", *QUICK[:1], "--trials", 0
+    )
+    assert ran.status == 1
+    summary = json.loads(ran.out)
+    assert summary["outcome"] == "mistaken"
+    assert summary["completed"] is False
+    assert summary["error_m"] > 150.0
+    assert summary["found_by"] is None
+
+
+def test_animate_adds_a_gif_and_without_out_a_new_folder_is_made(vedette: Command) -> None:
+    assert vedette("search", scenario(), "--max-time", 4, "--animate", *QUICK).status == 1
+    folder = Path("runs") / "small-001"
+    check_files(folder)
+    with Image.open(folder / "mission.gif") as image:
+        assert image.format == "GIF"
+        assert getattr(image, "n_frames", 0) >= 2
+
+
+def test_the_record_has_the_pdf_the_vehicles_and_the_truth(vedette: Command) -> None:
+    vedette("search", scenario(), "--max-time", 8, "--out", "out", *QUICK)
+    with (Path("out") / "run.mcap").open("rb") as file:
+        topics = {channel.topic for _, channel, _ in make_reader(file).iter_messages()}
+    own = {"/vehicle_1/pose", "/vehicle_1/path", "/vehicle_1/state"}
+    assert (
+        topics
+        >= {"/pdf", "/pdf_full", "/tf", "/target/truth", "/metrics/detection", "/metrics/entropy"} | own
+    )
+
+
+@pytest.mark.parametrize(
+    "prior",
+    [
+        [{"type": "polygon", "corners": [[100, 100], [900, 150], [500, 700]]}],
+        [{"type": "image", "file": "heat.png"}, {"type": "uniform", "weight": 0.2}],
+        [{"type": "gaussian", "mean": [500, 400], "covariance": [[9000, 3000], [3000, 6000]]}],
+    ],
+)
+def test_priors_of_every_kind_can_be_searched(vedette: Command, prior: list[dict[str, Any]]) -> None:
+    shade = np.zeros((30, 40), np.uint8)
+    shade[10:20, 5:25] = 200
+    Image.fromarray(shade).save("heat.png")
+    ran = vedette("search", scenario(prior=prior), "--max-time", 4, "--out", "out", *QUICK)
+    assert ran.status in (0, 1), ran.err
+    check_files(Path("out"))
+
+
+def test_the_example_is_the_search_without_a_file(vedette: Command) -> None:
+    built_in = ROOT / "src" / "vedette" / "missions" / "scenarios" / "search.yaml"
+    assert (ROOT / "examples" / "scenarios" / "search.yaml").read_bytes() == built_in.read_bytes()
+    ran = vedette("search", "--max-time", 6, "--out", "out", "--json", *QUICK)
+    assert json.loads(ran.out)["vehicles"] == 4
+
+
+# -- bad input ----------------------------------------------------------------------------------------
+
+ONE = SMALL["vehicles"][0]
+GAUSSIAN = SMALL["prior"][0]
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"prior": []}, ["prior", "length >= 1"]),
+        ({"prior": [{"type": "gaussain", "mean": [1, 1]}]}, ["prior[0].type", "gaussain", "'gaussian'"]),
+        ({"prior": [GAUSSIAN | {"sigma": -5}]}, ["prior[0].sigma", "-5"]),
+        ({"prior": [GAUSSIAN | {"sigma": float("nan")}]}, ["prior[0].sigma", "finite"]),
+        ({"prior": [GAUSSIAN | {"mean": [90000, 0]}]}, ["prior[0]", "90000", "0.0%"]),
+        (
+            {"prior": [GAUSSIAN | {"covariance": [[1, 0], [0, 1]]}]},
+            ["prior[0]", "either sigma or covariance"],
+        ),
+        ({"prior": [{"type": "gaussian", "mean": [500, 400]}]}, ["prior[0]", "sigma or covariance"]),
+        (
+            {"prior": [{"type": "gaussian", "mean": [500, 400], "covariance": [[1, 2], [2, 1]]}]},
+            ["prior[0]", "positive definite"],
+        ),
+        ({"prior": [{"type": "polygon", "corners": [[0, 0], [9, 9]]}]}, ["prior[0].corners", "length >= 3"]),
+        (
+            {"prior": [{"type": "polygon", "corners": [[-90, -90], [-50, -90], [-50, -50]]}]},
+            ["prior[0]", "nothing of the polygon"],
+        ),
+        ({"prior": [{"type": "image", "file": "missing.png"}]}, ["prior[0]", "missing.png"]),
+        ({"prior": [{"type": "image", "file": "black.png"}]}, ["prior[0]", "no mass"]),
+        ({"prior": [GAUSSIAN | {"weight": 0}]}, ["prior[0].weight", "0"]),
+        ({"detector": {"type": "definit"}}, ["detector", "definit", "'definite'"]),
+        ({"detector": {"type": "definite", "rnage": 4}}, ["detector", "rnage", "'range'"]),
+        ({"detector": {"range": 50}}, ["detector", "type"]),
+        (
+            {"vehicles": [ONE | {"detector": {"type": "exponential", "sigma": -1}}]},
+            ["vehicles[0].detector", "-1"],
+        ),
+        ({"vehicles": []}, ["vehicles", "length >= 1"]),
+        ({"vehicles": [ONE | {"start": [5000, 100, 0]}]}, ["vehicles[0].start", "5000", "outside"]),
+        ({"vehicles": [ONE | {"start": [100, 100]}]}, ["vehicles[0].start", "length 3"]),
+        ({"vehicles": [ONE | {"spede": 30}]}, ["vehicles[0]", "spede", "'speed'"]),
+        ({"vehicles": [ONE | {"turn_rate": 0}]}, ["vehicles[0].turn_rate", "0"]),
+        ({"vehicles": [ONE | {"name": "a"}, ONE | {"name": "a"}]}, ["vehicles[1].name", "twice"]),
+        ({"vehicels": []}, ["vehicels", "'vehicles'"]),
+        ({"area": [0, 0, 0, 800]}, ["area"]),
+        ({"cell": 0.5}, ["cell", "at most"]),
+        ({"step": 0.25}, ["step", "multiple"]),
+        ({"duration": 1}, ["duration", "at least a step"]),
+        ({"horizon": 2}, ["horizon", "plan more than"]),
+        ({"target": {"diffusion": -1}}, ["target.diffusion", "-1"]),
+        ({"target": {"drift": [1e6, 0]}}, ["small.yaml", "cells"]),
+        ({"target": {"start": [5000, 0]}}, ["target.start", "outside"]),
+        ({"worth": "plian"}, ["worth", "plian", "'plain'"]),
+        ({"declare": {"probability": 1.5}}, ["declare.probability", "1.5"]),
+    ],
+)
+def test_scenarios_that_make_no_sense_are_refused(
+    vedette: Command, changes: dict[str, Any], words: list[str]
+) -> None:
+    Image.new("L", (8, 8), 0).save("black.png")
+    ran = vedette("search", scenario(**changes), "--out", "out")
+    refused(ran, *words)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--coordination", "negociated"], ["coordination", "'negotiated'"]),
+        (["--scheme", "tokens"], ["scheme", "'token'"]),
+        (["--fusion", "sum"], ["fusion", "'sums'"]),
+        (["--max-time", "0"], ["--max-time"]),
+        (["--trials", "-1"], ["--trials"]),
+        (["--kill", "4@10"], ["no robot 4"]),
+        (["--link-loss", "2"], ["--link-loss"]),
+        (["--frobnicate"], ["--frobnicate"]),
+    ],
+)
+def test_options_that_make_no_sense_are_refused(
+    vedette: Command, arguments: list[str], words: list[str]
+) -> None:
+    refused(vedette("search", scenario(), "--out", "out", *arguments), *words)
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (None, ["cannot read"]),
+        ("prior: [\n", ["not valid YAML"]),
+        ("[1]", ["pairs"]),
+        ("", ["required field"]),
+    ],
+)
+def test_a_file_that_is_no_scenario_is_refused(
+    vedette: Command, content: str | None, words: list[str]
+) -> None:
+    if content is not None:
+        Path("bad.yaml").write_text(content)
+    refused(vedette("search", "bad.yaml", "--out", "out"), "bad.yaml", *words)
+
+
+# -- interruption and determinism, in processes of their own --------------------------------------------
+
+
+def test_ctrl_c_leaves_every_file_valid_and_has_status_130(tmp_path: Path) -> None:
+    process = start(["search", "--seed", "2", "--out", "out"], tmp_path)
+    assert process.stdout is not None
+    for line in process.stdout:
+        if b"10." in line:  # the search is under way
+            break
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 130, err
+    assert b"Traceback" not in err
+    assert b"interrupted" in out
+    check_files(tmp_path / "out")
+    assert json.loads((tmp_path / "out" / "summary.json").read_text())["outcome"] == "interrupted"
+    assert {path.name for path in (tmp_path / "out").iterdir()} == FILES
+
+
+def test_summary_and_record_are_the_same_bytes_whatever_the_threads_and_the_hash_seed(tmp_path: Path) -> None:
+    (tmp_path / "small.yaml").write_text(
+        yaml.safe_dump(SMALL | {"duration": 20, "target": {"diffusion": 2.0}})
+    )
+    runs = []
+    for number, threads, hashes in ((1, "1", "0"), (2, "2", "1"), (3, "1", "random")):
+        out = f"out-{number}"
+        arguments = [
+            "search",
+            "small.yaml",
+            "--link-loss",
+            "0.05",
+            "--trials",
+            "100",
+            "--no-compare",
+            "--out",
+            out,
+        ]
+        variables = {f"{name}_NUM_THREADS": threads for name in ("OMP", "OPENBLAS", "RAYON", "MKL")}
+        runs.append((out, start(arguments, tmp_path, PYTHONHASHSEED=hashes, **variables)))
+    for _, process in runs:
+        assert process.wait(timeout=120) in (0, 1)
+    for name in ("summary.json", "run.mcap"):
+        first, *others = [(tmp_path / out / name).read_bytes() for out, _ in runs]
+        assert others == [first, first], name

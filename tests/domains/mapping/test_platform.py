@@ -1,0 +1,197 @@
+"""A mapping robot: its tours' impacts and values, and which frontiers it goes back to."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from tests.support.mapping_scenes import CORRIDOR, FRAME, SPEC, explored, frozen, placed
+from vedette.domains.mapping.impact import NOTHING, Impact
+from vedette.domains.mapping.layers import TimeLayers, plain, rate
+from vedette.domains.mapping.objective import MappingObjective
+from vedette.domains.mapping.platform import STAY, STICKINESS, MappingPlatform, Tour
+from vedette.domains.mapping.stops import Stops
+from vedette.kernels import coverage
+from vedette.kernels.coverage import LAYERS
+from vedette.maps import FREE, UNKNOWN
+
+OBJECTIVE = MappingObjective()
+
+
+def ready(x: float = -0.5, max_stops: int = 6) -> MappingPlatform:
+    platform = MappingPlatform(SPEC, max_stops=max_stops)
+    placed(platform, frozen(), x)
+    return platform
+
+
+def stops_of(platform: MappingPlatform) -> Stops:
+    assert platform.stops is not None
+    return platform.stops
+
+
+def random_team(rng: np.random.Generator, platform: MappingPlatform) -> Impact:
+    """What others might have promised: parts of this robot's own footprints, and more."""
+    cells = np.unique(stops_of(platform).footprints.cells)
+    keys = np.flatnonzero(rng.random(len(cells) * LAYERS) < 0.1)
+    keys = cells[keys // LAYERS].astype(np.int64) * LAYERS + keys % LAYERS
+    return Impact(keys.astype(np.uint32), rng.integers(1, 80, len(keys)).astype(np.uint8))
+
+
+def random_tour(rng: np.random.Generator, platform: MappingPlatform) -> Tour:
+    return platform.tour(rng.permutation(len(stops_of(platform)))[: rng.integers(1, 7)])
+
+
+@pytest.mark.parametrize("worth", [rate(start=5.0), rate(start=40.0), rate(), plain()])
+def test_the_kernel_values_a_tour_as_the_objective_values_its_impact(worth: TimeLayers) -> None:
+    belief = dataclasses.replace(frozen(), layers=worth)
+    platform = ready()
+    stops = stops_of(platform)
+    for seed in range(25):
+        rng = np.random.default_rng(seed)
+        others, tour = random_team(rng, platform), random_tour(rng, platform)
+        _, _, gain = coverage.best_tour(
+            belief.weights,
+            belief.layers.weights,
+            belief.layers.edges,
+            others.sparse,
+            stops.footprints,
+            stops.first_leg,
+            stops.legs,
+            tour.stops,
+            6,
+        )
+        team = OBJECTIVE.combine(others, platform.impact(belief, tour))
+        assert gain == pytest.approx(
+            OBJECTIVE.value(belief, team) - OBJECTIVE.value(belief, others), rel=1e-4
+        )
+
+
+def test_arrivals_at_a_layers_edge_fall_into_the_same_layer_for_kernel_and_impact() -> None:
+    belief, platform = frozen(), ready(max_stops=2)
+    stops, edge = stops_of(platform), np.float32(belief.layers.edges[0])
+    for first in np.arange(0.1, float(edge), 0.1, dtype=np.float32):
+        second = edge - first
+        if first + second == edge < np.float64(first) + np.float64(second):
+            break  # the arrival is at the edge in single precision, and past it in double
+    else:
+        pytest.fail("no such legs")
+    first_leg, legs = np.full_like(stops.first_leg, first), np.full_like(stops.legs, second)
+    platform.stops = dataclasses.replace(stops, first_leg=first_leg, legs=legs)
+    tour = platform.tour(np.array([0, 5]))
+    assert belief.layers.layer(float(tour.arrivals[1])) == 0
+
+
+def test_no_tour_adds_more_than_the_slack() -> None:
+    belief, platform = frozen(), ready()
+    for seed in range(25):
+        rng = np.random.default_rng(seed)
+        others = random_team(rng, platform)
+        best = platform.reply(belief, others, STAY)
+        for tour in (best, random_tour(rng, platform)):
+            team = OBJECTIVE.combine(others, platform.impact(belief, tour))
+            gain = OBJECTIVE.value(belief, team) - OBJECTIVE.value(belief, others)
+            assert platform.slack(belief, others) >= gain * (1 - 1e-5)
+
+
+def test_a_robot_turns_away_from_its_stop_if_and_only_if_another_gains_clearly_more() -> None:
+    belief, platform = frozen(), ready(max_stops=1)
+    singles = [platform.tour(np.array([stop])) for stop in range(len(stops_of(platform)))]
+    for seed in range(10):
+        others = random_team(np.random.default_rng(seed), platform)
+        gains = OBJECTIVE.values(belief, others, [platform.impact(belief, tour) for tour in singles])
+        gains -= OBJECTIVE.value(belief, others)
+        for tour, gain in zip(singles, gains, strict=True):
+            if abs(gains.max() / gain - 1.0 - STICKINESS) > 1e-3:  # not on the edge
+                kept = platform.reply(belief, others, tour) is tour
+                assert kept == (gains.max() <= gain * (1.0 + STICKINESS))
+
+
+def test_a_tour_ends_before_the_first_stop_that_cannot_be_reached() -> None:
+    platform = ready()
+    first_leg, legs = stops_of(platform).first_leg.copy(), stops_of(platform).legs.copy()
+    first_leg[3] = legs[:, 3] = np.inf
+    platform.stops = dataclasses.replace(stops_of(platform), first_leg=first_leg, legs=legs)
+    tour = platform.tour(np.array([2, 5, 3, 1]))
+    assert tour.stops.tolist() == [2, 5]
+    assert tour.arrivals.tolist() == [first_leg[2], np.float32(first_leg[2] + legs[2, 5])]
+    assert len(platform.tour(np.array([3]))) == 0
+
+
+def test_carrying_over_keeps_places_and_order_and_leaves_out_what_vanished() -> None:
+    platform = ready()
+    old = platform.tour(np.array([2, 13, 4, 16]))
+    shift = np.array([[0.05, 0], [30, 0], [0, -0.05], [0, 0.02]])
+    moved = dataclasses.replace(old, targets=old.targets + shift)
+    placed(platform, frozen(), x=0.5)
+    again = platform.carry_over(moved)
+    assert again.stops.tolist() == [old.stops[0], old.stops[2], old.stops[3]]
+    assert again.arrivals[0] == stops_of(platform).first_leg[old.stops[0]] != old.arrivals[0]
+    assert len(platform.carry_over(STAY)) == 0
+
+
+def test_carrying_over_skips_a_stop_that_cannot_be_reached_any_more() -> None:
+    platform = ready()
+    old = platform.tour(np.array([2, 4, 13]))
+    x, y = old.targets[1]
+    platform.avoided.append((x, y, 99.0))
+    placed(platform, frozen())
+    assert platform.carry_over(old).stops.tolist() == [2, 13]
+
+
+def reachable_near(platform: MappingPlatform, x: float, y: float) -> NDArray[np.bool_]:
+    stops = stops_of(platform)
+    near = np.hypot(stops.targets[:, 0] - x, stops.targets[:, 1] - y) < 0.4
+    return np.isfinite(stops.first_leg[near])
+
+
+def test_a_frontier_that_a_visit_did_not_change_stays_given_up_until_the_map_near_it_changes() -> None:
+    platform, classes = ready(), explored(CORRIDOR)
+    x, y = stops_of(platform).targets[2].tolist()
+    unknown = int(stops_of(platform).unknown[2])
+    platform.visited.append((x, y, unknown))
+    for _ in range(3):
+        placed(platform, frozen(classes))
+        assert not reachable_near(platform, x, y).any()
+        assert platform.reply(frozen(classes), NOTHING, STAY).stops.tolist().count(2) == 0
+    row, col = FRAME.cell(x, y)
+    window = classes[row - 6 : row + 7, col - 6 : col + 7]
+    far_unknown = np.argwhere(window == UNKNOWN)
+    far_unknown = far_unknown[np.argsort(-np.hypot(*(far_unknown - 6).T))][: unknown // 8 + 3]
+    window[tuple(far_unknown.T)] = FREE
+    placed(platform, frozen(classes))
+    assert not platform.given_up
+    assert reachable_near(platform, x, y).all()
+    assert len(reachable_near(platform, x, y))
+
+
+def test_a_frontier_whose_visit_changed_the_map_is_not_given_up() -> None:
+    platform = ready()
+    x, y = stops_of(platform).targets[2].tolist()
+    platform.visited.append((x, y, 2 * int(stops_of(platform).unknown[2])))
+    placed(platform, frozen())
+    assert not platform.given_up
+    assert reachable_near(platform, x, y).all()
+
+
+def test_an_avoided_frontier_is_left_alone_for_its_time() -> None:
+    platform = ready()
+    x, y = stops_of(platform).targets[2].tolist()
+    platform.avoided.append((x, y, 20.0))
+    placed(platform, frozen(), now=19.9)
+    assert not reachable_near(platform, x, y).any()
+    placed(platform, frozen(), now=20.0)
+    assert reachable_near(platform, x, y).all()
+    assert not platform.avoided
+
+
+def test_a_robot_with_nothing_to_see_stays() -> None:
+    classes = np.where(explored(CORRIDOR) == UNKNOWN, 2, explored(CORRIDOR)).astype(np.uint8)
+    belief, platform = frozen(classes), MappingPlatform(SPEC)
+    placed(platform, belief)
+    assert len(stops_of(platform)) == 0
+    assert platform.reply(belief, NOTHING, STAY) is STAY
+    assert platform.impact(belief, STAY) == NOTHING
+    assert platform.slack(belief, NOTHING) == 0.0

@@ -1,0 +1,225 @@
+"""A robot's mission: what goes into its map and what does not, and two robots that tell each other."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tests.support.mapping_scenes import BEAMS, FRAME, RESOLUTION, SPEC, building
+from vedette.agent.events import Pose, Scan
+from vedette.agent.mates import Mate
+from vedette.domains.mapping.planners import planner
+from vedette.domains.mapping.sightings import BINS
+from vedette.domains.mapping.stops import CLEARANCES
+from vedette.fusion import ReplicatedEvidence
+from vedette.kernels.frontier import traversable
+from vedette.kernels.lidar import cast_rays
+from vedette.maps import FREE, OCCUPIED, UNKNOWN
+from vedette.missions.explore.exploration import AVOID_TIME, TRIES, Exploration
+from vedette.team import PlatformSpec
+
+HERE = Pose(-0.53, 7.12, 0.0)
+THERE = Pose(3.04, 7.08, 0.0)
+
+
+def explorer(robot: int = 0) -> Exploration:
+    fusion = ReplicatedEvidence(robot, 1 + robot, FRAME.shape, 4 * BINS)
+    return Exploration(FRAME, SPEC, planner("tours"), fusion)
+
+
+def mate_at(x: float, y: float, radius: float = 0.2, heard: float = 0.0) -> Mate:
+    return Mate(1, x, y, 0.0, np.empty((0, 2)), 0.0, radius, 0.5, heard)
+
+
+def scan_from(pose: Pose, rng: np.random.Generator, mates: tuple[Mate, ...] = ()) -> Scan:
+    """Scan the building as the simulator does: walls, discs, noise on what came back."""
+    discs = np.array([(m.x - FRAME.origin_x, m.y - FRAME.origin_y, m.radius) for m in mates]).reshape(-1, 3)
+    x, y = pose.x - FRAME.origin_x, pose.y - FRAME.origin_y
+    ranges = cast_rays(building(), RESOLUTION, x, y, BEAMS, SPEC.range, discs)
+    return Scan(BEAMS, ranges + rng.normal(0.0, 0.01, ranges.shape))
+
+
+def look(mission: Exploration, pose: Pose, times: int = 10, seed: int = 0) -> None:
+    rng = np.random.default_rng(seed)
+    for _ in range(times):
+        mission.observe(scan_from(pose, rng), pose, [], 0.0)
+    mission.publish(0.0)
+
+
+def occupied_near(mission: Exploration, mate: Mate) -> NDArray[np.bool_]:
+    mission.publish(0.0)
+    away = np.hypot(*(FRAME.centres(np.arange(FRAME.size)) - (mate.x, mate.y)).T)
+    near = np.flatnonzero(away < mate.radius + 0.1)
+    return np.equal(mission.fusion.classes.flat[near], OCCUPIED)
+
+
+def test_team_mates_of_any_size_do_not_get_into_the_map() -> None:
+    for mate in (mate_at(1.0, 7.2), mate_at(1.4, 7.1, radius=0.45)):
+        aware, unaware = explorer(), explorer()
+        rng = np.random.default_rng(0)
+        for _ in range(10):
+            scan = scan_from(HERE, rng, mates=(mate,))
+            aware.observe(scan, HERE, [mate], 0.1)
+            unaware.observe(scan, HERE, [], 0.1)
+        assert occupied_near(unaware, mate).any()
+        assert not occupied_near(aware, mate).any()
+
+
+def test_a_mate_that_drove_on_since_its_beacon_does_not_get_into_the_map() -> None:
+    mission, told, there = explorer(), mate_at(1.0, 7.2), mate_at(1.15, 7.2)
+    mission.observe(scan_from(HERE, np.random.default_rng(0), mates=(there,)), HERE, [told], 0.3)
+    assert not occupied_near(mission, there).any()
+
+
+def test_what_noisy_scans_show_is_right_up_to_one_cell_from_the_true_walls() -> None:
+    mission = explorer()
+    look(mission, HERE, times=20)
+    classes, solid = mission.fusion.classes, np.pad(building(), 1, mode="edge")
+    around = [solid[1 + r : 102 + r, 1 + c : 144 + c] for r in (-1, 0, 1) for c in (-1, 0, 1)]
+    deep_in_walls, deep_in_rooms = np.all(around, axis=0), ~np.any(around, axis=0)
+    assert not (classes[deep_in_walls] == FREE).any()
+    assert not (classes[deep_in_rooms] == OCCUPIED).any()
+    assert np.count_nonzero(classes == FREE) > 1000
+    assert np.count_nonzero(classes == OCCUPIED) > 50
+
+
+def test_sightings_are_counted_only_of_what_was_unknown() -> None:
+    mission = explorer()
+    look(mission, HERE, times=1)
+    first = mission.counts.copy()
+    tried, seen = first[[0, 2]], first[[1, 3]]
+    assert np.all(seen <= tried)
+    assert np.all(seen[:, 0] == tried[:, 0])  # everything near was seen
+    assert not tried[0, int(SPEC.range / 0.25) :].any()
+    look(mission, HERE, times=1, seed=1)
+    assert (mission.counts[1] - first[1]).sum() < 0.2 * first[1].sum()
+
+
+def exchange(one: Exploration, other: Exploration) -> None:
+    one.fusion.set_neighbours([1])
+    other.fusion.set_neighbours([0])
+    for step in range(6):
+        for sender, receiver, name in ((one, other, 0), (other, one, 1)):
+            payload = sender.fusion.outgoing(1 - name, float(step))
+            if payload is not None:
+                receiver.fusion.receive(name, payload, float(step))
+
+
+def test_two_robots_that_exchange_hold_the_same_map_and_freeze_the_same_belief() -> None:
+    one, other = explorer(0), explorer(1)
+    look(one, HERE)
+    look(other, THERE, seed=1)
+    assert one.fusion.digest != other.fusion.digest
+    exchange(one, other)
+    assert one.fusion.digest == other.fusion.digest
+    np.testing.assert_array_equal(one.fusion.counts, (one.counts + other.counts).ravel())
+    a, b = one.freeze(0.0), other.freeze(0.0)
+    for name in ("classes", "weights", "frontier_cells", "frontier_starts", "counts"):
+        np.testing.assert_array_equal(getattr(a, name), getattr(b, name))
+    known = np.count_nonzero(one.fusion.classes != UNKNOWN)
+    assert known > np.count_nonzero(one.log_odds) > 0
+
+
+def prepared(mission: Exploration, now: float = 0.0) -> None:
+    belief = mission.freeze(0.0)
+    mission.prepare(belief, HERE, [], False, now)
+    mission.strategy = mission.reply(belief, mission.nothing(belief), mission.strategy)
+
+
+def reachable(mission: Exploration, target: list[float]) -> bool:
+    stops = mission.platform.stops
+    assert stops is not None
+    return bool(np.isfinite(stops.first_leg[stops.targets.tolist().index(target)]))
+
+
+def at(place: NDArray[np.float64]) -> Pose:
+    return Pose(float(place[0]), float(place[1]), 0.0)
+
+
+def test_a_released_stop_is_left_alone_for_a_while_and_a_reached_one_is_followed_by_the_next() -> None:
+    mission = explorer()
+    look(mission, HERE)
+    prepared(mission)
+    first, second = mission.strategy.targets[:2].tolist()
+    mission.reached(at(mission.strategy.views[0]), [], 1.0)
+    assert mission.strategy.targets[0].tolist() == second
+    mission.release(1.0)
+    assert mission.goal() is None
+    prepared(mission, now=1.0 + 0.5 * AVOID_TIME)
+    assert not reachable(mission, second)  # avoided
+    assert not reachable(mission, first)  # given up: the visit changed nothing
+    prepared(mission, now=1.1 + AVOID_TIME)
+    assert reachable(mission, second)
+    assert not reachable(mission, first)
+
+
+def test_a_goal_is_served_when_a_mate_has_seen_most_of_what_it_was_to_reveal() -> None:
+    mission = explorer()
+    look(mission, HERE)
+    prepared(mission)
+    assert not mission.served()
+    x, y = mission.strategy.targets[0].tolist()
+    row, col = FRAME.cell(x, y)
+    mission.log_odds[row - 6 : row + 7, col - 6 : col + 7] = -4
+    mission.fusion.publish(mission.log_odds, None, None)
+    assert mission.served()
+
+
+def before_a_passage(width: int) -> NDArray[np.uint8]:
+    """Return the map of a room that has one way on, a passage of so many cells into the unknown."""
+    classes = np.full(FRAME.shape, OCCUPIED, np.uint8)
+    classes[30:70, 10:60] = FREE
+    classes[45 : 45 + width, 60:115] = FREE
+    classes[45 : 45 + width, 115:] = UNKNOWN
+    return classes
+
+
+def broad_explorer(classes: NDArray[np.uint8]) -> Exploration:
+    """Return the mission of a robot 0.48 m across that knows this map."""
+    fusion = ReplicatedEvidence(0, 1, FRAME.shape, 4 * BINS)
+    fusion.publish(np.array([0, -20, 20], np.int8)[classes], None, None)
+    spec = PlatformSpec(range=4.0, radius=0.24)
+    return Exploration(FRAME, spec, planner("tours"), fusion)
+
+
+def test_a_robot_takes_a_narrow_way_where_there_is_no_wider_one_and_none_that_its_body_does_not_fit() -> None:
+    for width, fits in ((3, False), (4, False), (5, True), (8, True)):
+        mission = broad_explorer(before_a_passage(width))
+        prepared(mission)
+        assert (mission.goal() is not None) == fits, width
+        deep = (FRAME.origin_x + 11.0, FRAME.origin_y + 4.5 + 0.05 * width)
+        assert (mission.route(HERE, deep, [], False, 0.0) is not None) == fits, width
+
+
+def test_a_robot_keeps_its_usual_clearance_wherever_that_leads_to_something() -> None:
+    classes = before_a_passage(8)
+    classes[60:65, 60:115] = FREE  # another way on, for the lesser clearance only
+    classes[60:65, 115:] = UNKNOWN
+    mission = broad_explorer(classes)
+    prepared(mission)
+    ground, goal = mission.platform.ground, mission.goal()
+    assert ground is not None
+    assert goal is not None
+    usual = traversable(classes, mission.spec.radius + CLEARANCES[0], RESOLUTION)
+    assert ground.passable.sum() == usual.sum()
+    route = mission.route(HERE, goal, [], False, 0.0)
+    assert route is not None
+    np.testing.assert_array_equal(route.passable, usual)
+
+
+def test_a_stop_that_cannot_be_carried_out_is_left_alone_longer_each_time_and_given_up_in_the_end() -> None:
+    mission = explorer()
+    look(mission, HERE)
+    prepared(mission)
+    now, waits = 0.0, []
+    tour = mission.strategy
+    for _ in range(TRIES - 1):
+        mission.strategy = tour
+        mission.release(now)
+        waits.append(mission.platform.avoided[-1][2] - now)
+        now += waits[-1] + 1.0
+    assert waits == sorted(set(waits))
+    assert not mission.platform.given_up
+    mission.strategy = tour
+    mission.release(now)
+    assert [(spot.x, spot.y) for spot in mission.platform.given_up] == [tuple(tour.targets[0])]

@@ -1,0 +1,84 @@
+"""One small mission, frozen: its figures change only when somebody means them to.
+
+``python -m tests.missions.test_golden`` prints the figures anew, to be put in place of those below.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+
+from tests.support.small_missions import check_complete, robots, run, small_office
+from vedette.sim.explore.run import Report
+
+GOLDEN: dict[str, Any] = {
+    "schema_version": 2,
+    "completed": True,
+    "outcome": "complete",
+    "seed": 7,
+    "robots": 2,
+    "planner": "tours",
+    "scheme": "token",
+    "fusion": "replicated",
+    "world": "office",
+    "radio": None,
+    "faults": None,
+    "time_s": 90.6,
+    "t50_s": 5.0,
+    "t90_s": 26.5,
+    "t95_s": 54.0,
+    "t99_s": 55.5,
+    "auc_s": 13.015055,
+    "coverage": 0.999889,
+    "map_errors": 0,
+    "map_error_share": 0.0,
+    "path_m": {"robot-1": 35.354265, "robot-2": 40.749873},
+    "overlap": 0.581395,
+    "collisions": 0,
+    "min_clearance_m": 0.025075,
+    "rounds": 30,
+    "sweeps": 47,
+    "bound_ratio": 0.770378,
+    "apart_s": 0.0,
+    "messages": {
+        "robot-1": {"negotiation": 107, "fusion": 70, "beacons": 304, "overlay": 0},
+        "robot-2": {"negotiation": 102, "fusion": 73, "beacons": 304, "overlay": 0},
+    },
+    "bytes": {
+        "robot-1": {"negotiation": 21748, "fusion": 7246, "beacons": 7935, "overlay": 0},
+        "robot-2": {"negotiation": 28554, "fusion": 7643, "beacons": 8369, "overlay": 0},
+    },
+}
+
+APPROXIMATE = 1e-3  # relative: other machines may round the last bits otherwise
+
+
+def golden_mission() -> Report:
+    """Two robots in a small office."""
+    _, report = run(small_office(seed=1), robots(2), seed=7)
+    return report
+
+
+def figures(report: Report) -> dict[str, Any]:
+    """All of ``summary.json``."""
+    plain: dict[str, Any] = json.loads(report.summary.to_json())
+    return plain
+
+
+def test_the_frozen_mission_has_its_figures() -> None:
+    report = golden_mission()
+    check_complete(report)
+    measured = figures(report)
+    assert list(measured) == list(GOLDEN)
+    for name, value in measured.items():
+        wanted = GOLDEN[name]
+        if isinstance(wanted, float) or name == "path_m":
+            assert value == pytest.approx(wanted, rel=APPROXIMATE), name
+        else:
+            assert value == wanted, name
+
+
+if __name__ == "__main__":
+    print("GOLDEN: dict[str, Any] =", figures(golden_mission()))

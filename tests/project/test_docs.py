@@ -1,0 +1,168 @@
+"""The README and the docs do what they say: their fenced blocks are run, in order, in a copy of the tree.
+
+``sh`` and ``console`` blocks are commands (in ``console`` those after ``$``; the rest is output), ``python``
+blocks are programs; other languages are left alone. Lines that call make, or git to clone, are left out. The
+blocks of one document share a directory, so they run in one process: with pytest-xdist, ``--dist loadfile``.
+A block under the line ``<!-- slow -->`` runs with the slow tests.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from tests.support.places import ROOT
+
+DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+SHELL, CONSOLE, PYTHON = "sh", "console", "python"
+LEFT_OUT = re.compile(r"\s*(make|git clone)\b")
+MADE = shutil.ignore_patterns(".*", "target", "runs", "build", "dist", "__pycache__", "*.so")
+TIMEOUT_S = 600  # a block that hangs, not one that is slow where the host has other work to do
+
+FENCE = re.compile(
+    r"^(?P<slow><!-- slow -->[ ]*\n)?"
+    r"(?P<indent>[ ]*)(?P<ticks>```+)(?P<language>\w*)[^\n]*\n"
+    r"(?P<body>.*?)"
+    r"^(?P=indent)(?P=ticks)[ ]*$",
+    re.MULTILINE | re.DOTALL,
+)
+
+
+@dataclass(frozen=True)
+class Block:
+    """A fenced block of a document."""
+
+    document: str  # relative to the root
+    line: int  # of its first line, from 1
+    language: str
+    body: str
+    slow: bool
+
+
+def blocks(document: str, text: str) -> list[Block]:
+    """Return the blocks of a document that can be run, in order."""
+    found = []
+    for match in FENCE.finditer(text):
+        if match["language"] in (SHELL, CONSOLE, PYTHON):
+            body = re.sub(rf"^{match['indent']}", "", match["body"], flags=re.MULTILINE)
+            line = text.count("\n", 0, match.start("body")) + 1
+            found.append(Block(document, line, match["language"], body, match["slow"] is not None))
+    return found
+
+
+def commands(block: Block) -> str:
+    """Return the shell script of a block: its commands, without those left out."""
+    lines = block.body.splitlines()
+    if block.language == CONSOLE:
+        lines = [line.removeprefix("$ ") for line in lines if line.startswith("$ ")]
+        assert lines, f"{block.document}:{block.line}: a console block has its commands after '$ '"
+    return "\n".join(line for line in lines if not LEFT_OUT.match(line))
+
+
+def program(block: Block) -> list[str]:
+    """Return the command line that runs a block; a shell shows each line and stops at one that fails."""
+    if block.language == PYTHON:
+        return [sys.executable, "-c", block.body]
+    return ["bash", "-e", "-x", "-o", "pipefail", "-c", commands(block)]
+
+
+def cases() -> Sequence[object]:
+    """Return a test case for every block."""
+    found = []
+    for path in DOCUMENTS:
+        document = path.relative_to(ROOT).as_posix()
+        for block in blocks(document, path.read_text(encoding="utf-8")):
+            marks = [pytest.mark.slow] if block.slow else []
+            found.append(pytest.param(block, id=f"{document}:{block.line}", marks=marks))
+    return found
+
+
+@pytest.fixture(scope="module")
+def copies() -> dict[str, Path]:
+    """Where each document's blocks run, filled as they come."""
+    return {}
+
+
+@pytest.fixture
+def directory(block: Block, copies: dict[str, Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the copy of the tree that the blocks of this document share."""
+    if block.document not in copies:
+        copies[block.document] = tmp_path_factory.mktemp("docs") / "vedette"
+        shutil.copytree(ROOT, copies[block.document], ignore=MADE)
+    return copies[block.document]
+
+
+@pytest.mark.parametrize("block", cases())
+def test_a_documented_block_runs(block: Block, directory: Path) -> None:
+    binaries = Path(sys.executable).parent
+    result = subprocess.run(
+        program(block),
+        cwd=directory,
+        env=os.environ | {"PATH": f"{binaries}{os.pathsep}{os.environ['PATH']}"},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=TIMEOUT_S,
+        check=False,
+    )
+    assert result.returncode == 0, f"{block.document}:{block.line} failed\n{result.stdout[-4000:]}"
+
+
+EXAMPLE = """\
+# Title
+```sh
+git clone https://example.org/vedette && cd vedette
+make explore
+vedette --version  # says which
+```
+<!-- slow -->
+```console
+$ echo one
+one
+$ echo two
+```
+  ```python
+  print("indented")
+  ```
+```text
+not run
+```
+```
+not run either
+```
+"""
+
+
+def test_blocks_are_found_with_their_place_language_and_speed() -> None:
+    found = [(block.line, block.language, block.slow) for block in blocks("example.md", EXAMPLE)]
+    assert found == [(3, SHELL, False), (9, CONSOLE, True), (14, PYTHON, False)]
+
+
+def test_commands_are_what_a_reader_would_type_but_for_make_and_clone() -> None:
+    shell, console, python = blocks("example.md", EXAMPLE)
+    assert commands(shell) == "vedette --version  # says which"
+    assert commands(console) == "echo one\necho two"
+    assert python.body == 'print("indented")\n'
+
+
+@pytest.mark.parametrize("text", ["", "# No blocks\n", "```sh\nnever closed\n"])
+def test_a_document_without_blocks_has_none(text: str) -> None:
+    assert blocks("example.md", text) == []
+
+
+def test_a_command_that_fails_stops_its_block_with_a_failure(tmp_path: Path) -> None:
+    block = Block("example.md", 1, SHELL, "echo before\nfalse | cat\necho after\n", slow=False)
+    result = subprocess.run(
+        program(block), cwd=tmp_path, capture_output=True, text=True, check=False, timeout=20
+    )
+    assert result.returncode != 0
+    assert result.stdout == "before\n"

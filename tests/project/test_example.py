@@ -1,0 +1,23 @@
+"""The example of an own problem: short, runs, and keeps the laws."""
+
+from __future__ import annotations
+
+import runpy
+
+import pytest
+
+from tests.support.places import ROOT
+from vedette.testing import check_objective
+
+EXAMPLE = ROOT / "examples" / "own_problem.py"
+
+
+def test_own_problem_takes_at_most_forty_lines_and_reports_choice_value_and_bound(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert len(EXAMPLE.read_text().splitlines()) <= 40
+    names = runpy.run_path(str(EXAMPLE))
+    out = capsys.readouterr().out
+    assert [line.split()[0] for line in out.splitlines()] == ["posts", "value", "optimum"]
+    assert names["agreed"].value <= names["best"].value + 1e-9 <= names["agreed"].bound + 2e-9
+    check_objective(names["Watch"](), names["worth"], [own[0] for own in names["candidates"]])

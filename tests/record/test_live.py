@@ -1,0 +1,150 @@
+"""The live view: pictures in a terminal, lines elsewhere, silence when asked."""
+
+from __future__ import annotations
+
+import io
+import itertools
+import re
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from tests.support.record_mission import frames, mission, rooms
+from vedette.record import Link, Snapshot
+from vedette.record.live import LiveView
+from vedette.record.marks import together
+from vedette.record.screen import screen
+from vedette.team import PlatformSpec
+
+SOLID = rooms(80, 120)
+FRAME, PLANNING = frames(SOLID, 0.1, (0.0, 0.0))
+SPECS = [PlatformSpec(name=name, range=2.5) for name in ("ada", "bob")]
+
+
+@pytest.fixture(scope="module")
+def snapshots() -> list[Snapshot]:
+    run = mission(SOLID, SPECS, np.random.default_rng(4), (3.0, 3.0), limit=23.0, kill=(1, 15.0))
+    return [Snapshot(**(vars(s) | {"classes": s.classes.copy()})) for s in run]
+
+
+def _terminal(width: int = 100, height: int = 40, colours: bool = True) -> Console:
+    return Console(
+        file=io.StringIO(), force_terminal=True, width=width, height=height, legacy_windows=False,
+        color_system="truecolor" if colours else None, _environ={"TERM": "xterm-256color"},
+    )  # fmt: skip
+
+
+def _text(console: Console) -> str:
+    """Return what the console was sent, without colours and cursor moves."""
+    assert isinstance(console.file, io.StringIO)
+    return re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", console.file.getvalue())
+
+
+def _picture(console: Console, snapshot: Snapshot) -> list[str]:
+    console.print(screen(console, "rooms", FRAME, PLANNING, snapshot, [1.5, 2.5]))
+    return _text(console).splitlines()
+
+
+def test_without_a_terminal_there_is_a_line_every_ten_seconds_and_at_last(
+    snapshots: list[Snapshot],
+) -> None:
+    console = Console(file=io.StringIO(), width=40)
+    with LiveView("rooms", FRAME, PLANNING, console=console) as view:
+        for snapshot in snapshots:
+            view.update(snapshot)
+    lines = _text(console).splitlines()
+    assert [float(line.split()[0]) for line in lines] == [0.0, 10.0, 20.0, 23.0]
+    assert f"known {100 * snapshots[10].known_fraction:5.1f} %" in lines[1]
+    assert f"entropy {snapshots[10].entropy:.0f} nat" in lines[1]
+    assert "ada driving" in lines[1]
+    assert "bob dead" in lines[3]
+
+
+def _with_links(snapshot: Snapshot, *links: Link) -> Snapshot:
+    return Snapshot(**(vars(snapshot) | {"links": links}))
+
+
+def test_a_team_is_named_by_its_parts() -> None:
+    assert together(((0, 1, 2),)) == together(()) == "together"
+    assert together(((0, 1), (2,), (9, 10))) == "apart: {1,2} {3} {A,B}"
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_the_view_says_whether_the_team_is_together_where_links_are_simulated(
+    snapshots: list[Snapshot], terminal: bool
+) -> None:
+    ideal, alone = snapshots[0], _with_links(snapshots[0])
+    linked, beside = (_with_links(snapshots[0], Link(0, 1, on_tree, 0.0)) for on_tree in (True, False))
+    for snapshot, team in ((ideal, None), (linked, "together"), (beside, "apart"), (alone, "apart")):
+        console = _terminal() if terminal else Console(file=io.StringIO(), width=200)
+        with LiveView("rooms", FRAME, PLANNING, console=console) as view:
+            view.update(snapshot)
+        said = re.findall(r"together|apart: \{1\} \{2\}|apart", _text(console))
+        assert set(said) == ({team.replace("apart", "apart: {1} {2}")} if team else set())
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_a_quiet_view_prints_nothing(snapshots: list[Snapshot], terminal: bool) -> None:
+    console = Console(file=io.StringIO(), force_terminal=terminal)
+    with LiveView("rooms", FRAME, PLANNING, quiet=True, console=console) as view:
+        for snapshot in snapshots:
+            view.update(snapshot)
+    assert _text(console) == ""
+
+
+def test_a_terminal_gets_at_most_ten_pictures_a_second_and_the_last(
+    snapshots: list[Snapshot],
+) -> None:
+    console = _terminal()
+    ticks = itertools.count()
+    with LiveView("rooms", FRAME, PLANNING, console=console, clock=lambda: next(ticks) / 1000) as view:
+        for snapshot in snapshots:  # 24 snapshots in less than 0.1 s
+            view.update(snapshot)
+    pictures = _text(console).count("covered")
+    assert pictures <= 3
+    assert f"{snapshots[-1].t:.1f} s" in _text(console).split("covered")[-2]
+
+
+def test_an_interruption_leaves_the_last_picture_and_the_cursor(snapshots: list[Snapshot]) -> None:
+    console = _terminal()
+
+    def interrupted() -> None:
+        with LiveView("rooms", FRAME, PLANNING, console=console) as view:
+            view.update(snapshots[3])
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
+    assert isinstance(console.file, io.StringIO)
+    assert "\x1b[?25h" in console.file.getvalue()
+    assert "3.0 s" in _text(console)
+
+
+@pytest.mark.parametrize("size", [(200, 60), (130, 40), (80, 24), (60, 10), (30, 5)])
+def test_the_picture_never_exceeds_the_terminal_width_and_shows_every_robot(
+    snapshots: list[Snapshot], size: tuple[int, int]
+) -> None:
+    lines = _picture(_terminal(*size), _with_links(snapshots[-1]))
+    assert max(len(line) for line in lines) <= size[0]
+    if size[0] >= 60:
+        text = "\n".join(lines)
+        for word in ("ada", "driving", "bob", "dead", "1.5", "2.5"):
+            assert word in text
+    if size[1] >= 24:
+        assert len(lines) <= size[1]
+
+
+def test_without_colours_walls_and_robots_are_drawn_with_characters(snapshots: list[Snapshot]) -> None:
+    text = "\n".join(_picture(_terminal(colours=False), snapshots[-1]))
+    for glyph in ("█", "·", "1", "×"):
+        assert glyph in text
+
+
+def test_the_map_has_the_building_the_right_way_up(snapshots: list[Snapshot]) -> None:
+    lines = _picture(_terminal(130, 40, colours=False), snapshots[0])
+    building = [line[2:72] for line in lines[3:-1]]
+    robot = snapshots[0].robots[0]
+    row = next(i for i, line in enumerate(building) if "1" in line)
+    assert row == pytest.approx((1 - robot.y / 8.0) * len(building), abs=1)
+    assert building[row].index("1") == pytest.approx(robot.x / 12.0 * 70, abs=1)

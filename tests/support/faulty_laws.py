@@ -1,0 +1,139 @@
+"""What no fault may break, checked after everything that any agent of a toy team does."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tests.support.faulty_world import Belief, Impact, Life, SiteMission, Sites, Stamp, check, worth
+from vedette.agent import Agent, GroundBehaviour, State
+from vedette.agent.rounds import _Round as RoundSeen
+from vedette.fusion.tiles import WORDS, classes_of, codes_of
+from vedette.negotiation import Outcome, TokenNode
+
+ROUNDING = 1e-9
+
+Versions = dict[Life, int]
+
+
+def mission_of(agent: Agent) -> SiteMission:
+    """Return an agent's mission as the toy it is."""
+    return cast(SiteMission, agent.mission)
+
+
+def versions_of(mission: SiteMission) -> Versions:
+    """Return which version of whose evidence a robot holds."""
+    return {key: held.version for key, held in mission.fusion._snapshots.items() if held.version}
+
+
+@dataclass(eq=False)
+class EvidenceLaw:
+    """A team map is the sum of what its holder has of each contributor, and nobody forgets anything."""
+
+    sites: Sites
+    _ledger: dict[tuple[Life, int], tuple[NDArray[np.int32], NDArray[np.int64]]] = field(default_factory=dict)
+    _held: defaultdict[Life, Versions] = field(default_factory=lambda: defaultdict(dict))
+
+    def published(self, life: Life, version: int, own: NDArray[np.int8], counts: NDArray[np.int64]) -> None:
+        """Note what a robot has published."""
+        self._ledger[life, version] = WORDS[codes_of(own)], counts
+
+    def check(self, mission: SiteMission) -> bool:
+        """Check a robot's map, if it has changed; tell if so."""
+        now, before = versions_of(mission), self._held[mission.life]
+        if now == before:
+            return False
+        check(
+            all(now.get(key, 0) >= version for key, version in before.items()),
+            "evidence is lost",
+            before,
+            now,
+        )
+        self._held[mission.life] = now
+        words = sum(self._ledger[each][0] for each in now.items())
+        counts = sum(self._ledger[each][1] for each in now.items())
+        right = np.array_equal(mission.fusion.classes, classes_of(np.asarray(words)))
+        check(right, "a map is not the sum of its contributors", mission.life, now)
+        right = np.array_equal(mission.fusion.counts, counts)
+        check(right, "evidence is counted twice or not at all", mission.life, now)
+        return True
+
+
+@dataclass(eq=False)
+class RoundLaw:
+    """Who decides together has chosen what the round says, on one belief, and no worse than before."""
+
+    missions: dict[Life, SiteMission]
+    rounds: int = 0  # decided by a whole team, its value checked
+    cut: set[Stamp] = field(default_factory=set)  # rounds from which somebody was cut
+    _exact: defaultdict[Stamp, set[int]] = field(default_factory=lambda: defaultdict(set))  # digests
+    _decided: defaultdict[Stamp, dict[Life, Outcome]] = field(default_factory=lambda: defaultdict(dict))
+    _ended: dict[Stamp, list[tuple[Outcome, Impact]]] = field(default_factory=dict)  # and with what team
+    _turns: defaultdict[Stamp, list[tuple[int, float]]] = field(default_factory=lambda: defaultdict(list))
+
+    def decided(self, mission: SiteMission, seen: RoundSeen) -> None:
+        """Check a decision that a robot has just taken."""
+        belief, negotiator = mission.last, seen.negotiator
+        assert belief is not None
+        assert negotiator is not None
+        outcome, stamp = negotiator.finished, belief.stamp
+        assert outcome is not None
+        check(stamp[1] == seen.sequence, "a round ends that never froze", stamp, seen.sequence)
+        if not seen.approximate:
+            self._exact[stamp].add(belief.digest)
+            check(len(self._exact[stamp]) == 1, "two maps are taken for one", mission.life, stamp)
+        self._decided[stamp][mission.life] = outcome
+        if isinstance(negotiator, TokenNode):
+            self._check_turns(stamp, negotiator)
+            self._check_team(mission, belief, outcome)
+
+    def _check_turns(self, stamp: Stamp, node: TokenNode[Impact]) -> None:
+        """The team's value never falls from turn to turn, unless somebody is cut."""
+        self._turns[stamp] += node.turns
+        if stamp not in self.cut and len(self._exact[stamp]) == 1:
+            values = [value for _, value in sorted(self._turns[stamp])]
+            check(all(b >= a - ROUNDING for a, b in pairwise(values)), "the value falls", values)
+
+    def _check_team(self, mission: SiteMission, belief: Belief, outcome: Outcome) -> None:
+        """When the last one of a team has decided: its choice is worth what the round says."""
+        stamp, decided = belief.stamp, self._decided[belief.stamp]
+        endings = self._ended.setdefault(stamp, [])
+        if all(outcome != other for other, _ in endings):  # this robot has ended the round
+            assert mission.whole is not None
+            endings.append((outcome, mission.whole))
+        whole = next(whole for other, whole in endings if other == outcome)
+        if any(decided.get(life) != outcome for life in whole.who):
+            return
+        team = [self.missions[life] for life in sorted(whole.who)]
+        if any(mate.last is None or mate.last.stamp != stamp for mate in team):
+            return
+        check(mission.life in whole.who, "a robot decides that is not in the team", mission.life, whole.who)
+        after = np.prod([cast(Impact, mate.present).miss for mate in team], axis=0)
+        check(np.allclose(after, whole.miss), "the team's impact is not what its robots chose", stamp)
+        if len({cast(Belief, mate.last).digest for mate in team}) > 1:
+            return
+        self.rounds += 1
+        value = worth(belief, after)
+        check(abs(value - outcome.value) < 1e-6, "the round's value is wrong", stamp, value, outcome)
+        before = worth(belief, np.prod([cast(Impact, mate.initial).miss for mate in team], axis=0))
+        fell = stamp not in self.cut and value < before - ROUNDING
+        check(not fell, "the value of the team's choice has fallen", stamp, before, value)
+
+
+def check_strategy(agent: Agent, sites: Sites) -> None:
+    """Every robot has a strategy that it can carry out, or a reason to stand."""
+    mission, behaviour = mission_of(agent), cast(GroundBehaviour, agent.behaviour)
+    drives = behaviour.driver.wanted is not None
+    check(drives == (agent.state is State.DRIVING), "a robot drives, or stands, for no reason", agent.state)
+    site = mission.strategy
+    if not drives or site is None:  # what it drives to may be found out to have been seen
+        return
+    check(bool(sites.allowed[agent.robot, site]), "a strategy is void", agent.robot, site)
+    before = int(sites.before[site])
+    known = before < 0 or mission.counts[before] > 0 or sites.is_seen(before, mission.fusion.classes)
+    check(known, "a robot knows of a site that nobody has told it of", agent.robot, site)

@@ -1,0 +1,296 @@
+"""Teams of real agent processes over real sockets: faults at given moments, and what becomes of the team."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from math import inf
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from threading import Timer
+from typing import Any
+
+import numpy as np
+
+from tests.support.small_missions import robots
+from vedette.net.launch import TeamPlan, TeamProcesses
+from vedette.net.names import Topic
+from vedette.net.report import Condition, read_report
+from vedette.net.team import TeamWatch
+from vedette.net.transport import Operator, Published
+from vedette.record.log import Snapshot
+from vedette.sim.explore.run import Report
+from vedette.sim.explore.simulation import ExploreSetup
+from vedette.sim.observer import Setting
+from vedette.sim.starts import choose_starts
+from vedette.sim.world import World
+
+SPEED = 5.0  # times real time
+LEASE = 3.0  # [s]
+UNTIL_AGREED = 10.0  # for the last evidence to come round [s]
+
+
+def plan_of(world: World, count: int, speed: float = SPEED, lease: float = LEASE) -> TeamPlan:
+    """A team that starts together, as ``vedette team explore`` starts one with seed 0."""
+    specs = robots(count)
+    places = choose_starts(world, specs, np.random.default_rng([0, 1]))
+    return TeamPlan(world, specs, places, ExploreSetup(), 0, speed, lease)
+
+
+@dataclass(frozen=True)
+class Told:
+    """What a robot said of itself, and when."""
+
+    time: float  # of arrival [s]
+    said: Condition
+
+
+@dataclass
+class Diary:
+    """All that the robots of a team reported, and what befell them."""
+
+    plan: TeamPlan
+    team: TeamProcesses
+    by_robot: dict[int, list[Told]] = field(default_factory=dict)
+    kept: list[tuple[float, str]] = field(default_factory=list)  # when what was done [s]
+
+    def take(self, published: Published) -> None:
+        """Keep a report, with the time at which it came."""
+        told = Told(published.time, read_report(published.payload).condition)
+        self.by_robot.setdefault(published.robot, []).append(told)
+
+    def last(self, robot: int) -> Condition:
+        """The latest that a robot said."""
+        return self.by_robot[robot][-1].said
+
+    def pid(self, robot: int) -> int:
+        """The process of a robot."""
+        return self.team.processes[robot].pid
+
+    def heard(self, robot: int) -> bool:
+        """Tell whether a robot has reported."""
+        return bool(self.by_robot.get(robot))
+
+    def agree(self, robots: Sequence[int]) -> bool:
+        """Tell whether these said last that they hold the same evidence."""
+        return len({self.last(i).digest for i in robots}) == 1
+
+
+@dataclass(frozen=True)
+class Fault:
+    """Something that befalls the team once, when the coverage of its map reaches a share."""
+
+    coverage: float
+    what: str
+    strike: Callable[[Diary], None]
+
+
+def kill(find: Callable[[Diary], int]) -> Callable[[Diary], None]:
+    """``kill -9`` of the robot that ``find`` names."""
+
+    def strike(diary: Diary) -> None:
+        os.kill(diary.pid(find(diary)), signal.SIGKILL)
+
+    return strike
+
+
+def terminate(robot: int) -> Callable[[Diary], None]:
+    """SIGTERM."""
+    return lambda diary: os.kill(diary.pid(robot), signal.SIGTERM)
+
+
+def restart(robot: int) -> Callable[[Diary], None]:
+    """``kill -9``, and a start with empty memory."""
+
+    def strike(diary: Diary) -> None:
+        os.kill(diary.pid(robot), signal.SIGKILL)
+        diary.team.processes[robot].wait()
+        diary.team.restart(robot)
+
+    return strike
+
+
+def freeze(find: Callable[[Diary], int], seconds: float = inf) -> Callable[[Diary], None]:
+    """SIGSTOP of the robot that ``find`` names, and SIGCONT after a while [s]."""
+
+    def strike(diary: Diary) -> None:
+        pid = diary.pid(find(diary))
+        os.kill(pid, signal.SIGSTOP)
+        if seconds < inf:
+            Timer(seconds, os.kill, (pid, signal.SIGCONT)).start()
+
+    return strike
+
+
+@dataclass
+class Chain(TeamProcesses):
+    """Each robot reaches the one before it and the one after it alone."""
+
+    def _config(self, i: int, endpoints: Sequence[str]) -> dict[str, Any]:
+        config = super()._config(i, endpoints)
+        config["links"]["connect"] = list(endpoints[i - 1 : i]) if i else []
+        return config
+
+
+@dataclass
+class Ring(TeamProcesses):
+    """As a chain, and the last one and the first one reach each other too."""
+
+    def _config(self, i: int, endpoints: Sequence[str]) -> dict[str, Any]:
+        config = super()._config(i, endpoints)
+        config["links"]["connect"] = [endpoints[(i + 1) % len(endpoints)]]
+        return config
+
+
+@dataclass
+class _Fate:
+    """Strikes while the mission goes on; ``vedette.record.log.Sink``."""
+
+    diary: Diary
+    faults: list[Fault]
+
+    def update(self, snapshot: Snapshot) -> None:
+        """Let the next fault come when it is due; the first, once all robots have reported."""
+        if len(self.diary.by_robot) < len(snapshot.robots):
+            return
+        while self.faults and snapshot.coverage >= self.faults[0].coverage:
+            fault = self.faults.pop(0)
+            self.diary.kept.append((time.monotonic(), fault.what))
+            fault.strike(self.diary)
+
+
+@dataclass(frozen=True)
+class Mission:
+    """How a mission went."""
+
+    report: Report
+    diary: Diary
+    ended: float  # [s]
+    survivors: list[int]  # whose processes ran at the end
+
+    @property
+    def struck(self) -> float:
+        """When the first fault came [s]."""
+        return self.diary.kept[0][0]
+
+    @property
+    def recovery(self) -> Recovery:
+        """What the first fault cost the survivors."""
+        return self.recovery_of(self.survivors)
+
+    def recovery_of(self, robots: Sequence[int]) -> Recovery:
+        """What the first fault cost these."""
+        return recovery(self.diary, self.struck, robots)
+
+
+def run(
+    plan: TeamPlan,
+    logs: Path,
+    faults: Sequence[Fault] = (),
+    team: Callable[[TeamPlan, Path, Path], TeamProcesses] = TeamProcesses,
+    max_time: float = 900.0,
+    rest: float = 0.0,
+) -> Mission:
+    """Run a team to the end of its mission, or for ``max_time`` of it [s].
+
+    It goes on until the maps of those that live agree, and for ``rest`` [s] in any case.
+    """
+    with ExitStack() as stack:
+        folder = stack.enter_context(TemporaryDirectory(prefix="vedette-test-"))
+        processes = stack.enter_context(team(plan, Path(folder), logs))
+        operator = stack.enter_context(Operator(processes.operator))
+        diary = Diary(plan, processes)
+        operator.subscribe(Topic.REPORT, diary.take)
+        fate = _Fate(diary, sorted(faults, key=lambda fault: fault.coverage))
+        setting = Setting(0, plan.how.planner, plan.how.scheme, plan.how.fusion)
+        watch = TeamWatch(plan, processes, operator, setting, max_time, sinks=(fate,))
+        report = watch.run()
+        ended = time.monotonic()
+        living = [i for i in range(len(plan.specs)) if processes.runs(i)]
+        while (
+            report.summary.completed and not diary.agree(living) and time.monotonic() < ended + UNTIL_AGREED
+        ):
+            time.sleep(0.05)
+        time.sleep(rest)
+    return Mission(report, diary, ended, living)
+
+
+# -- how fast a team gets over a loss --------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Recovery:
+    """What a loss cost; times since it, by the clocks of the processes, which are one on one host [s]."""
+
+    noticed: float  # until the first robot was on a new tree
+    replanned: float  # until a round on a new tree had ended for all survivors
+    overlay_bytes: float  # sent by all survivors in the 5 s since
+
+
+def overlay_rate(diary: Diary, since: float, links: int) -> float:
+    """Return what the overlay of a team at rest sends on a link, both ways together [B/s]."""
+    total = 0.0
+    for told in diary.by_robot.values():
+        at_rest = [each for each in told if each.time >= since]
+        first, last = at_rest[0], at_rest[-1]
+        total += (last.said.bytes["overlay"] - first.said.bytes["overlay"]) / (last.time - first.time)
+    return total / links
+
+
+def recovery(diary: Diary, struck: float, survivors: Sequence[int]) -> Recovery:
+    """Return what a loss at a time cost those that survived; infinite where it never came."""
+    before = {i: _at(diary, i, struck) for i in survivors}
+    noticed = [_first_tree(diary, i, struck, before[i]) for i in survivors]
+    replanned = [_first_round(diary, i, struck, before[i]) for i in survivors]
+    spent = (_at(diary, i, struck + 5.0).bytes["overlay"] - before[i].bytes["overlay"] for i in survivors)
+    return Recovery(min(noticed) - struck, max(replanned) - struck, float(sum(spent)))
+
+
+def _at(diary: Diary, robot: int, moment: float) -> Condition:
+    return [told.said for told in diary.by_robot[robot] if told.time <= moment][-1]
+
+
+def _since(diary: Diary, robot: int, struck: float, before: Condition) -> list[Told]:
+    """Return what a robot said on new trees after a loss."""
+    return [
+        told for told in diary.by_robot[robot] if told.time > struck and told.said.number != before.number
+    ]
+
+
+def _first_tree(diary: Diary, robot: int, struck: float, before: Condition) -> float:
+    return min((told.time - told.said.age for told in _since(diary, robot, struck, before)), default=inf)
+
+
+def _first_round(diary: Diary, robot: int, struck: float, before: Condition) -> float:
+    """Return when a robot had decided on a new tree [s]."""
+    for told in _since(diary, robot, struck, before):
+        if told.said.decided is not None and told.said.decided < told.said.age:
+            return told.time - told.said.decided
+    return inf
+
+
+def root(diary: Diary) -> int:
+    """The robot that a living one takes for the root."""
+    return _roles(diary)[0]
+
+
+def leaf(diary: Diary) -> int:
+    """A robot with one neighbour on the tree that is not the root."""
+    return _roles(diary)[2]
+
+
+def inner(diary: Diary) -> int:
+    """A robot that is neither the root nor a leaf; the root, if there is none."""
+    return _roles(diary)[1]
+
+
+def _roles(diary: Diary) -> tuple[int, int, int]:
+    said = [diary.last(i) for i in sorted(diary.by_robot)]
+    roots = [each.robot for each in said if each.parent is None]
+    leaves = [each.robot for each in said if len(each.neighbours) == 1 and each.parent is not None]
+    inners = [each.robot for each in said if len(each.neighbours) > 1 and each.parent is not None]
+    return roots[0], (inners or roots)[0], leaves[0]
