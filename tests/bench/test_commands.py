@@ -11,11 +11,10 @@ from typing import Any
 import pytest
 
 from bench.ablation import WHOLE, carry_out_variant, variants
-from vedette.sim.exploration import ExploreSetup
+from tests.support.places import ROOT
+from vedette.sim.explore.simulation import ExploreSetup
 from vedette.study.run import GeneratedWorld, Run
 from vedette.team import PlatformSpec
-
-ROOT = Path(__file__).parents[1]
 
 
 def run(module: str, *arguments: str | Path) -> str:
