@@ -11,13 +11,11 @@ import numpy as np
 
 from bench.criteria import Criterion, Measurement
 from bench.half_known import half_known
-from vedette.domains.mapping.belief import MIN_FRONTIER
+from vedette.domains.mapping.belief import frontier_limits, longest_frontier
 from vedette.kernels import frontier
 from vedette.kernels.reference import frontier as reference_frontier
 from vedette.sim.worlds import office
 from vedette.team import PlatformSpec
-
-EXTENT = 2.8  # longest frontier, as a mission with the default lidar splits them [m]
 
 
 @dataclass(frozen=True)
@@ -37,8 +35,9 @@ def measure_frontiers(criterion: Criterion, width: float, height: float, effort:
     for seed in range(effort.maps):
         rng = np.random.default_rng(seed)
         world = office(rng, width, height)
-        classes = half_known(world, PlatformSpec(), rng)
-        limits = round(MIN_FRONTIER / world.frame.resolution), round(EXTENT / world.frame.resolution)
+        spec = PlatformSpec()
+        classes = half_known(world, spec, rng)
+        limits = frontier_limits(longest_frontier(spec.range), world.frame.resolution)
         kernel += cpu_times(partial(frontier.find_frontiers, classes, *limits), effort.repeats)
         twin += cpu_times(partial(reference_frontier.find_frontiers, classes, *limits), effort.twin_repeats)
         clusters.append(len(frontier.find_frontiers(classes, *limits)[1]) - 1)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.scale.team import Lots, Team
-from vedette.domains.mapping.belief import MapBelief, freeze
+from vedette.domains.mapping.belief import MapBelief, freeze, frontier_limits, longest_frontier
 from vedette.domains.mapping.impact import NOTHING, Impact, ImpactCodec
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.planners import planner
@@ -30,7 +30,7 @@ SPEC = PlatformSpec(range=2.0)
 AROUND = 4.0  # a robot plans tours this far around it, each way [m]
 TOURS, STOPS = 8, 2  # candidates of each, and stops of each of those
 FIXED_ROOMS, FIXED_SCANS = 2, 2  # rooms along each side of the fixed area, and places it was seen from
-EXTENT = 2.5  # longest frontier [m]
+EXTENT = longest_frontier(SPEC.range)  # [m]
 
 
 def dense(lots: Lots, rng: np.random.Generator) -> Team:
@@ -122,7 +122,7 @@ def _window(belief: MapBelief, x: float, y: float) -> MapBelief:
     high = np.minimum(low + round(2.0 * AROUND / frame.resolution), frame.shape)
     rows, cols = slice(int(low[0]), int(high[0])), slice(int(low[1]), int(high[1]))
     classes = belief.classes[rows, cols].copy()
-    cells, starts = find_frontiers(classes, 2, round(EXTENT / frame.resolution))
+    cells, starts = find_frontiers(classes, *frontier_limits(EXTENT, frame.resolution))
     return replace(
         belief,
         frame=GridFrame(

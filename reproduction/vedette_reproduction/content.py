@@ -33,6 +33,13 @@ class Table:
     wall_clock: bool = False  # differs from run to run, so it is kept apart from the data
     shown: bool = True  # in the report; otherwise only as CSV
 
+    def groups(self) -> dict[str, list[tuple[Value, ...]]]:
+        """Return the rows by what their first column names, in order."""
+        found: dict[str, list[tuple[Value, ...]]] = {}
+        for row in self.rows:
+            found.setdefault(str(row[0]), []).append(row)
+        return found
+
 
 @dataclass(frozen=True)
 class Section:

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.domains.mapping.belief import MapBelief, freeze
+from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.layers import rate
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.platform import MappingPlatform
 from vedette.problem import exhaustive
-from vedette_reproduction.missions import Case, Mission, specs
+from vedette_reproduction.frontiers import frozen, reachable, robot_at
+from vedette_reproduction.missions import Mission, specs
 from vedette_reproduction.run import Run
 from vedette_reproduction.scans import scan, spaced
 
@@ -36,7 +37,7 @@ class Scene:
 
 def make_scenes(run: Run) -> Iterator[Scene]:
     """Yield two robots' situations at moments of a mission."""
-    mission = run.missions.get(Case("rate", run.scale.mission_seeds[0], *run.scale.office))
+    mission = run.mission()
     reached = np.maximum.accumulate(mission.report.log.coverage)
     for share in MOMENTS:
         run.tell(f"when {100 * share:.0f} % were covered")
@@ -49,26 +50,14 @@ def make_scene(mission: Mission, moment: int, run: Run) -> Scene:
     way = np.concatenate([spaced(poses[:, i], 0.5) for i in range(poses.shape[1])])
     team = specs()[:2]
     scanned = scan(mission.world, way, team[0], run.rng(4))
-    belief = freeze(
-        scanned.classes,
-        mission.world.frame,
-        reach=team[0].range,
-        extent=max(2.5, 0.35 * team[0].range),
-        hidden=0.0,
-        layers=rate(),
-        counts=scanned.counts,
-    )
+    belief = frozen(scanned.classes, mission.world.frame, team[0], rate(), scanned.counts)
     platforms, candidates, stops = [], [], []
     for i, spec in enumerate(team):
         x, y, _ = poses[-1, i].tolist()
-        platform = MappingPlatform(spec, max_stops=1, measured="distance")
-        platform.place(x, y, [], [(i, x, y)], 0.0)
-        platform.prepare(belief)
-        assert platform.stops is not None
-        reachable = np.flatnonzero(np.isfinite(platform.stops.first_leg))
+        platform = robot_at(x, y, spec, belief)
         platforms.append(platform)
-        stops.append(reachable)
-        candidates.append([platform.impact(belief, platform.tour(np.array([stop]))) for stop in reachable])
+        stops.append(reachable(platform))
+        candidates.append([platform.impact(belief, platform.tour(np.array([stop]))) for stop in stops[-1]])
     return Scene(belief, scanned.classes, mission, platforms, candidates, stops)
 
 

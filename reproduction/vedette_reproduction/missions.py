@@ -16,6 +16,7 @@ from vedette.sim.worlds import office
 from vedette.team import PlatformSpec
 
 ROBOTS = 3  # as in the paper
+PAPERS = "rate"  # the planner of eq. (42), section 5.1
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,7 @@ from matplotlib.ticker import LogLocator, ScalarFormatter, StrMethodFormatter
 
 from vedette.record import palette
 
-GRID = palette.unit((235, 237, 240))
-INK = palette.unit(palette.INK)
-FAINT = palette.unit((110, 113, 117))
+_GRID = palette.unit((235, 237, 240))
 
 
 def colour(index: int) -> tuple[float, float, float]:
@@ -20,7 +18,7 @@ def colour(index: int) -> tuple[float, float, float]:
 def tidy(axes: Axes, title: str = "", xlabel: str = "", ylabel: str = "") -> None:
     """Take away what a plot does not need, and label it."""
     axes.spines[["top", "right"]].set_visible(False)
-    axes.grid(color=GRID, lw=0.8)
+    axes.grid(color=_GRID, lw=0.8)
     axes.set_axisbelow(True)
     axes.set_title(title, fontsize=9.5, loc="left", fontweight="bold")
     axes.set(xlabel=xlabel, ylabel=ylabel)

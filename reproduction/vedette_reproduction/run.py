@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from vedette_reproduction.missions import Missions
+from vedette_reproduction.missions import PAPERS, Case, Mission, Missions
 
 
 @dataclass(frozen=True)
@@ -24,6 +24,11 @@ class Scale:
     mission_planners: tuple[str, ...]  # of the same, Fig. 6's among them
     targets: int  # drawn for claim C13
     office: tuple[float, float]  # width and height of that of the missions [m]
+
+    @property
+    def dense_teams(self) -> tuple[int, ...]:
+        """Team sizes where everybody's impact covers an area that grows with the team."""
+        return tuple(n for n in self.teams if n <= self.largest_dense)
 
 
 FULL = Scale(
@@ -63,3 +68,8 @@ class Run:
     def rng(self, *key: int) -> np.random.Generator:
         """Return a stream of chance of its own for a part; the same whatever else was computed."""
         return np.random.default_rng([self.seed, *key])
+
+    def mission(self, planner: str = PAPERS, seed: int | None = None) -> Mission:
+        """Return the mission of a planner, that of Fig. 6 unless the office's seed says otherwise."""
+        seed = self.scale.mission_seeds[0] if seed is None else seed
+        return self.missions.get(Case(planner, seed, *self.scale.office))

@@ -27,7 +27,7 @@ from vedette_reproduction.figures.figure_1 import figure_1
 from vedette_reproduction.figures.figure_2 import MOST, NOISY, PERFECT, PRIOR, figure_2, posteriors
 from vedette_reproduction.figures.figure_3 import analytic, figure_3
 from vedette_reproduction.figures.figure_4 import figure_4
-from vedette_reproduction.figures.figure_6 import figure_6, stages
+from vedette_reproduction.figures.figure_6 import figure_6
 from vedette_reproduction.missions import Case, Mission, Missions
 from vedette_reproduction.report import About, report_html
 from vedette_reproduction.reproduce import Made, reproduce, verdicts
@@ -141,7 +141,7 @@ def test_figure_6_shows_growing_coverage_and_both_planners(run: Run) -> None:
     section = figure_6(run)
     assert [row[0] for row in named(section, "figure_6_missions").rows] == ["rate", DEFAULT]
     log = run.missions.get(Case("rate", 0, *SMALL.office)).report.log
-    covered = [stage.coverage for stage in stages(log)]
+    covered = [stage.coverage for stage in log.stages()]
     assert covered == sorted(covered)
     assert covered[-1] == log.last.coverage
     assert is_picture(run.figures / section.pictures[0])

@@ -85,7 +85,7 @@ def _cycling(run: Run) -> Table:
         ("own frontiers, constant density", teams.constant_density),
     ]
     for k, (name, make) in enumerate(kinds):
-        for n in (size for size in run.scale.teams if size <= run.scale.largest_dense):
+        for n in run.scale.dense_teams:
             run.tell(f"{name}: {n} platforms")
             cycles, last, best = 0, [], []
             for trial in range(run.scale.trials):
@@ -136,10 +136,7 @@ def _quadratic(run: Run) -> Table:
 
 def _draw_duel(axes: Axes) -> None:
     for k, scheme in enumerate(("jacobi", "token")):
-        misses = [np.array([0.0, 1.0]), np.array([1.0, 0.0])]
-        args = (OBJECTIVE, np.array([1.0, 0.8]), [misses, misses], Tree.chain(2), scheme)
-        history = negotiate(*args, max_sweeps=6).history
-        values = [step.value for step in history]
+        values = [step.value for step in two_robots(scheme).history]
         if scheme == "jacobi":  # the negotiation stops at the recurrence; what follows repeats it
             values += values[-2:] * 2
         label = "all at once (the paper)" if scheme == "jacobi" else "one after the other, by turns"
@@ -152,8 +149,7 @@ def _draw_duel(axes: Axes) -> None:
 
 
 def _draw_shares(axes: Axes, shares: Table, run: Run) -> None:
-    for k, name in enumerate(dict.fromkeys(row[0] for row in shares.rows)):
-        own = [row for row in shares.rows if row[0] == name]
+    for k, (name, own) in enumerate(shares.groups().items()):
         axes.plot(
             column(own, 1),
             column(own, 2),
@@ -167,6 +163,6 @@ def _draw_shares(axes: Axes, shares: Table, run: Run) -> None:
             label="its last value / the token's",
         )  # fmt: skip
     tidy(axes, "the paper's scheme on random teams", "", "share")
-    over_team_size(axes, tuple(n for n in run.scale.teams if n <= run.scale.largest_dense))
+    over_team_size(axes, run.scale.dense_teams)
     axes.set(ylim=(0, 1.05))
     axes.legend(frameon=False, fontsize=8, ncols=2, loc="upper center", bbox_to_anchor=(0.45, -0.16))

@@ -25,8 +25,7 @@ def c4_to_c7(run: Run) -> list[Section]:
         for scheme in SCHEMES
         for area in (FIXED, GROWING)
         for tree in TREES
-        for n in run.scale.teams
-        if area == FIXED or n <= run.scale.largest_dense
+        for n in (run.scale.teams if area == FIXED else run.scale.dense_teams)
     ]
     with picture():
         _draw(costs, run)

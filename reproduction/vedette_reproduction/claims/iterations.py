@@ -77,7 +77,7 @@ def _sweeps(run: Run) -> Table:
     }
     rows = []
     for k, (name, make) in enumerate(kinds.items()):
-        for n in (size for size in run.scale.teams if size <= run.scale.largest_dense):
+        for n in run.scale.dense_teams:
             run.tell(f"sweeps, {name}: {n} platforms")
             token, jacobi, cycles = [], [], 0
             for trial in range(run.scale.trials):
@@ -137,23 +137,21 @@ def _pattern(name: str, n: int) -> Float:
 
 
 def _draw_sweeps(axes: Axes, sweeps: Table, run: Run) -> None:
-    for k, name in enumerate(dict.fromkeys(row[0] for row in sweeps.rows)):
-        own = [row for row in sweeps.rows if row[0] == name]
-        axes.plot(column(own, 1), column(own, 3), "o-", color=colour(k), lw=1.6, label=str(name))
+    for k, (name, own) in enumerate(sweeps.groups().items()):
+        axes.plot(column(own, 1), column(own, 3), "o-", color=colour(k), lw=1.6, label=name)
     tidy(axes, "sweeps of the token, mean", "", "sweeps")
-    over_team_size(axes, tuple(n for n in run.scale.teams if n <= run.scale.largest_dense))
+    over_team_size(axes, run.scale.dense_teams)
     axes.set_ylim(bottom=0)
     axes.legend(frameon=False, fontsize=8.5)
 
 
 def _draw_coupled(axes: Axes, coupled: Table, run: Run) -> None:
     styles = {"all pairs": 1, "two neighbours": 0}
-    for name, k in styles.items():
-        own = [row for row in coupled.rows if row[0] == name]
+    for name, own in coupled.groups().items():
         for place, style, label in ((3, "o-", "all at once"), (4, "s--", "in turn")):
             settled = [row for row in own if row[place] is not None]
             values = column(settled, 1), column(settled, place)
-            axes.plot(*values, style, ms=4.5, color=colour(k), lw=1.5, label=f"{name}, {label}")
+            axes.plot(*values, style, ms=4.5, color=colour(styles[name]), lw=1.5, label=f"{name}, {label}")
     axes.axvline(1 + 1 / COUPLING, color="black", lw=0.9, ls=(0, (4, 2)))
     axes.text(
         1.06 + 1 / COUPLING, 0.97, "from here all pairs\nat once diverge", fontsize=8.5, va="top",

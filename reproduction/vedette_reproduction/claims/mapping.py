@@ -5,13 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.domains.mapping.belief import freeze
 from vedette.domains.mapping.layers import plain as plain_layers
-from vedette.domains.mapping.platform import MappingPlatform
 from vedette.domains.mapping.sightings import empty_counts
 from vedette_reproduction.content import Section, Value, Verdict, table
 from vedette_reproduction.figures.figure_2 import MOST, NOISY, PERFECT, posteriors
-from vedette_reproduction.missions import Case, Mission, specs
+from vedette_reproduction.frontiers import frozen, reachable, robot_at
+from vedette_reproduction.missions import Mission, specs
 from vedette_reproduction.run import Run
 from vedette_reproduction.scans import scan, spaced
 
@@ -28,7 +27,7 @@ def c11(run: Run) -> Section:
     """Count posteriors of ideal sensors, and ask how near a real grid's cells come to the three."""
     ideal = {len(posteriors(PERFECT, n)) for n in range(1, MOST + 1)}
     noisy = [len(posteriors(NOISY, n)) for n in range(1, MOST + 1)]
-    mission = run.missions.get(Case("rate", run.scale.mission_seeds[0], *run.scale.office))
+    mission = run.mission()
     poses = mission.report.log.poses
     way = np.concatenate([spaced(poses[:, i], 0.1) for i in range(poses.shape[1])])
     run.tell("scanning along the mission's ways")
@@ -73,7 +72,7 @@ def c12(run: Run) -> Section:
     rows: list[tuple[Value, ...]] = []
     for seed in run.scale.mission_seeds:
         for planner in run.scale.mission_planners:
-            mission = run.missions.get(Case(planner, seed, *run.scale.office))
+            mission = run.mission(planner, seed)
             s = mission.report.summary
             left, stops = left_to_do(mission)
             rows.append(
@@ -139,21 +138,11 @@ def c12(run: Run) -> Section:
 def left_to_do(mission: Mission) -> tuple[int, int]:
     """Count the frontiers of the final map, and those that any robot could go to and see 0.08 m^2 from."""
     spec = specs()[0]
-    belief = freeze(
-        mission.report.classes,
-        mission.world.frame,
-        reach=spec.range,
-        extent=max(2.5, 0.35 * spec.range),
-        hidden=0.0,
-        layers=plain_layers(),
-        counts=empty_counts(),
-    )
-    reachable: set[tuple[float, float]] = set()
+    belief = frozen(mission.report.classes, mission.world.frame, spec, plain_layers(), empty_counts())
+    found: set[tuple[float, float]] = set()
     for x, y, _ in mission.report.log.poses[-1].tolist():
-        platform = MappingPlatform(spec, max_stops=1, measured="distance")
-        platform.place(x, y, [], [(0, x, y)], 0.0)
-        platform.prepare(belief)
+        platform = robot_at(x, y, spec, belief)
         assert platform.stops is not None
-        ready = np.isfinite(platform.stops.first_leg)
-        reachable |= {(round(a, 2), round(b, 2)) for a, b in platform.stops.targets[ready].tolist()}
-    return len(belief.frontier_starts) - 1, len(reachable)
+        targets = platform.stops.targets[reachable(platform)].tolist()
+        found |= {(round(a, 2), round(b, 2)) for a, b in targets}
+    return len(belief.frontier_starts) - 1, len(found)

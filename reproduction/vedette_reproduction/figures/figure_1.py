@@ -13,11 +13,12 @@ from matplotlib.patches import Circle, FancyArrowPatch, Rectangle
 from numpy.typing import NDArray
 
 from vedette.negotiation import Tree
-from vedette.problem import CountedCoverage, counted
+from vedette.problem import CountedCoverage, counted, seen
 from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save
+from vedette.record.signs import FAINT, INK
 from vedette_reproduction.content import Section, Table, table
-from vedette_reproduction.plots import FAINT, INK, colour
+from vedette_reproduction.plots import colour
 from vedette_reproduction.post import Letter, Recording, record
 from vedette_reproduction.run import Run
 
@@ -120,12 +121,11 @@ def _iterate(impacts: Sequence[Counted], inverse: bool) -> list[Letter]:
 
 def _division_table(impacts: Sequence[Counted]) -> Table:
     """Compare three ways in which platform 2 can get the rest of the team, cell by cell."""
-    misses = [np.where(zeros > 0, 0.0, np.exp(-(2.0**-32) * logs)) for zeros, logs in impacts]
+    misses = [1.0 - seen(impact) for impact in impacts]
     total = np.prod(misses, axis=0)
     with np.errstate(invalid="ignore"):
         divided = total / misses[1]
-    counted_rest = OBJECTIVE.remove(reduce(OBJECTIVE.combine, impacts), impacts[1])
-    by_count = np.where(counted_rest[0] > 0, 0.0, np.exp(-(2.0**-32) * counted_rest[1]))
+    by_count = 1.0 - seen(OBJECTIVE.remove(reduce(OBJECTIVE.combine, impacts), impacts[1]))
     sent = misses[0] * misses[2]
     rows = [
         (cell + 1, sent[cell], by_count[cell], "0/0" if np.isnan(divided[cell]) else float(divided[cell]))
@@ -203,11 +203,9 @@ def _arrow(axes: Axes, place: int, letter: Letter, impacts: Sequence[Counted]) -
 
 def _strip(axes: Axes, x: float, y: float, impact: Counted, label: str, below: bool = False) -> None:
     """Draw the probability that each cell will be observed, with a label over or under it."""
-    zeros, logs = impact
-    seen = np.where(zeros > 0, 1.0, -np.expm1(-(2.0**-32) * logs))
     width, height = _STRIP
     side = width / CELLS
-    for cell, share in enumerate(seen):
+    for cell, share in enumerate(seen(impact)):
         shade = 1.0 - 0.85 * float(share)
         corner = x - width / 2 + cell * side, y
         axes.add_patch(Rectangle(corner, side, height, fc=(shade,) * 3, ec=FAINT, lw=0.6, zorder=3))

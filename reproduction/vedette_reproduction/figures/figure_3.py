@@ -17,7 +17,7 @@ from vedette.record.canvas import DPI, picture, save
 from vedette.sim.world import standable
 from vedette.sim.worlds import office
 from vedette_reproduction.content import Section, table
-from vedette_reproduction.missions import Case, specs
+from vedette_reproduction.missions import specs
 from vedette_reproduction.plots import colour, tidy
 from vedette_reproduction.run import Run
 from vedette_reproduction.scans import scan, spaced
@@ -162,7 +162,7 @@ def _fresh(run: Run) -> Measured:
 
 def _underway(run: Run) -> tuple[Measured, Float]:
     """What the scans of a mission tried of what was still unknown; and the curve learned from that (V25)."""
-    mission = run.missions.get(Case("rate", run.scale.mission_seeds[0], *run.scale.office))
+    mission = run.mission()
     poses = mission.report.log.poses  # all robots' scans in order of time, on one map
     kept = [spaced(poses[:, i], STEP) for i in range(poses.shape[1])]
     order = np.concatenate([np.linspace(0.0, 1.0, len(some)) for some in kept])

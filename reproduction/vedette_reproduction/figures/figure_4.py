@@ -19,7 +19,7 @@ from vedette.problem import exhaustive
 from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save
 from vedette.record.raster import known_window
-from vedette.record.signs import DASHES
+from vedette.record.signs import DASHES, FAINT, INK
 from vedette_reproduction.content import Section, Table, Value, table
 from vedette_reproduction.contest import (
     MOMENTS,
@@ -30,7 +30,7 @@ from vedette_reproduction.contest import (
     share_of_selfish,
 )
 from vedette_reproduction.missions import specs
-from vedette_reproduction.plots import FAINT, INK, colour
+from vedette_reproduction.plots import colour
 from vedette_reproduction.run import Run
 
 PICTURE = "figure-4.png"

@@ -14,15 +14,13 @@ from vedette.domains.mapping.planners import DEFAULT, PLANNERS
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save
-from vedette.record.log import RunLog, Snapshot
+from vedette.record.log import Snapshot
 from vedette.record.raster import Window, enlarge, paint
 from vedette.record.signs import DASHES, FAINT, badge, draw_vehicle, legend_line, scale_bar
 from vedette_reproduction.content import Section, Table, Value, table
-from vedette_reproduction.missions import Case, Mission
+from vedette_reproduction.missions import PAPERS, Mission
 from vedette_reproduction.run import Run
 
-PAPERS = "rate"
-STAGES = (0.30, 0.65, 1.0)  # shares of the final coverage
 PICTURE = "figure-6.png"
 _PANEL, _GAP, _MARGIN = 3.9, 0.12, 0.15  # [inch]
 
@@ -31,7 +29,7 @@ def figure_6(run: Run) -> Section:
     """Run the mission with both planners, and draw the group's map with what it is about to see."""
     size = run.scale.office
     seed = run.scale.mission_seeds[0]
-    missions = [run.missions.get(Case(planner, seed, *size)) for planner in (PAPERS, DEFAULT)]
+    missions = [run.mission(planner) for planner in (PAPERS, DEFAULT)]
     with picture():
         _draw(missions, run)
     return Section(
@@ -45,7 +43,7 @@ def figure_6(run: Run) -> Section:
             "paper; three robots of 0.5 m/s with an all-round lidar of 8 m start together. Above, one "
             "frontier each by the rate of uncertainty reduction (eq. (42), section 5.1), agreed by the "
             "token; below, the default: tours of up to six frontiers on the same objective form. "
-            "Stages are where 30 % and 65 % of the final coverage were reached, and the end.",
+            "Stages are where a third and two thirds of the final coverage were reached, and the end.",
             _compare(missions),
         ),
         tables=(_summary(missions), *(_curve(mission) for mission in missions)),
@@ -102,14 +100,6 @@ def _curve(mission: Mission) -> Table:
     return table(f"figure_6_{mission.case.planner}", "The mission by the second", columns, rows, shown=False)
 
 
-def stages(log: RunLog) -> list[Snapshot]:
-    """Return the first snapshot at each of ``STAGES`` of the final coverage, the last one for the end."""
-    kept = list(log.snapshots())
-    reached = np.maximum.accumulate([snapshot.coverage for snapshot in kept])
-    places = np.searchsorted(reached, np.array(STAGES[:-1]) * reached[-1])
-    return [*(kept[place] for place in places), kept[-1]]
-
-
 def _draw(missions: Sequence[Mission], run: Run) -> None:
     frame = missions[0].world.frame
     height = _PANEL * frame.rows / frame.cols
@@ -126,7 +116,7 @@ def _draw(missions: Sequence[Mission], run: Run) -> None:
             f"{what}:  {PLANNERS[mission.case.planner].summary}",
             fontsize=10, fontweight="bold", va="center",
         )  # fmt: skip
-        for column, stage in enumerate(stages(mission.report.log)):
+        for column, stage in enumerate(mission.report.log.stages()):
             left = _MARGIN + column * (_PANEL + _GAP)
             axes = figure.add_axes((left / width, bottom / whole, _PANEL / width, height / whole))
             _panel(axes, mission, stage, window, (round(_PANEL * DPI), round(height * DPI)))

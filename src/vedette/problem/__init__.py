@@ -1,7 +1,7 @@
 """The team's problem: objectives, the exhaustive reference and the bound."""
 
 from vedette.problem.bound import bound, slack
-from vedette.problem.coverage import CountedCoverage, Coverage, counted
+from vedette.problem.coverage import CountedCoverage, Coverage, counted, seen
 from vedette.problem.exhaustive import Exhaustive, exhaustive
 from vedette.problem.logdet import LogDet
 from vedette.problem.objective import Codec, Invertible, Objective, Platform
@@ -22,5 +22,6 @@ __all__ = [
     "bound",
     "counted",
     "exhaustive",
+    "seen",
     "slack",
 ]

@@ -71,10 +71,8 @@ class CountedCoverage(Objective[NDArray[np.float64], NDArray[np.int64]]):
         return total - own
 
     def value(self, belief: NDArray[np.float64], impact: NDArray[np.int64]) -> float:
-        """Return ``sum w (1 - m)`` with ``m = 0`` where a sighting is certain, else ``exp(-log-miss)``."""
-        zeros, log_miss = impact
-        seen = np.where(zeros > 0, 1.0, -np.expm1(-_UNIT * log_miss))
-        return float(np.vdot(belief, seen))
+        """Return ``sum w (1 - m)``."""
+        return float(np.vdot(belief, seen(impact)))
 
 
 def counted(miss: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -89,3 +87,12 @@ def counted(miss: NDArray[np.float64]) -> NDArray[np.int64]:
     zeros = miss == 0.0
     log_miss = np.rint(-np.log(np.where(zeros, 1.0, miss)) / _UNIT)
     return np.stack((zeros.astype(np.int64), log_miss.astype(np.int64)))
+
+
+def seen(impact: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return the probability ``1 - m`` (...) that each cell is seen, of an impact (2, ...) of ``counted``.
+
+    ``m = 0`` where a sighting is certain, else ``exp(-log-miss)``.
+    """
+    zeros, log_miss = impact
+    return np.where(zeros > 0, 1.0, -np.expm1(-_UNIT * log_miss))

@@ -22,7 +22,6 @@ from vedette.study.metrics import AUC, TIMES, TOTAL, Metric
 from vedette.study.rows import Row
 
 _GRID = palette.unit((235, 237, 240))
-_FAINT = palette.unit((110, 113, 117))
 _BOUND = palette.unit((150, 153, 157))
 _DASHES = ((), (6, 2), (2, 1.5), (6, 2, 2, 2), (1, 1), (4, 1, 1, 1, 1, 1))
 _MARKERS = "osD^vPX*<>"

@@ -47,6 +47,16 @@ def planning_factor(resolution: float) -> int:
     return max(1, round(PLANNING_CELL / resolution))
 
 
+def longest_frontier(reach: float) -> float:
+    """Return how long a frontier may be before it is split [m], for sensors that see so far [m]."""
+    return max(2.5, 0.35 * reach)
+
+
+def frontier_limits(extent: float, resolution: float) -> tuple[int, int]:
+    """Return how many cells a frontier has at least, and how long it may be [cells]; from its length [m]."""
+    return max(1, round(MIN_FRONTIER / resolution)), max(2, round(extent / resolution))
+
+
 def freeze(
     classes: NDArray[np.uint8],
     frame: GridFrame,
@@ -86,8 +96,7 @@ def freeze(
         frame.origin_x + cols.start * frame.resolution,
         frame.origin_y + rows.start * frame.resolution,
     )
-    smallest = max(1, round(MIN_FRONTIER / frame.resolution))
-    cells, starts = find_frontiers(crop, smallest, max(2, round(extent / frame.resolution)))
+    cells, starts = find_frontiers(crop, *frontier_limits(extent, frame.resolution))
     unknown = _block_sum(crop == UNKNOWN, factor)
     local = unknown.astype(np.float32) * LN2
     frontiers = cells, starts

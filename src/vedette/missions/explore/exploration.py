@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from vedette.agent.effects import Route
 from vedette.agent.events import Pose, Scan
 from vedette.agent.mates import Mate
-from vedette.domains.mapping.belief import MapBelief, freeze, planning_factor
+from vedette.domains.mapping.belief import MapBelief, freeze, longest_frontier, planning_factor
 from vedette.domains.mapping.impact import Impact, ImpactCodec, Most, check_claim
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.planners import Planner
@@ -177,7 +177,7 @@ class Exploration:
             self.fusion.classes,
             self.frame,
             reach=self.spec.range,
-            extent=max(2.5, 0.35 * self.spec.range),
+            extent=longest_frontier(self.spec.range),
             hidden=self.planner.hidden,
             return_price=self.planner.return_price,
             turn=self.planner.turn,
