@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from tests.support.random_teams import Float, informations, misses
 from vedette import CountedCoverage, Coverage, InputError, LogDet, Objective, bound, counted, exhaustive
+from vedette.problem import seen
 from vedette.problem.checked import values_of
 
 
@@ -47,6 +48,12 @@ def test_coverage_over_time_layers_is_the_weight_of_the_first_sight() -> None:
     for t in arrivals:
         team = Coverage().combine(team, (np.arange(layers) < t).astype(float)[:, None])
     assert Coverage().value(share[:, None], team) == weight[min(arrivals)]
+
+
+def test_what_is_seen_of_a_counted_impact_is_what_is_not_missed() -> None:
+    miss = np.array([[0.0, 1.0, 0.25], [0.5, 1e-9, 0.75]])
+    np.testing.assert_allclose(seen(counted(miss)), 1.0 - miss, atol=1e-9)
+    assert seen(counted(miss))[0].tolist()[:2] == [1.0, 0.0]
 
 
 def test_counted_coverage_equals_coverage_and_removes_exactly_even_zeros() -> None:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.support.reproductions import named, silent
 from vedette import Tree
 from vedette.problem import Coverage, LogDet, exhaustive
 from vedette_reproduction import teams
@@ -19,7 +20,7 @@ from vedette_reproduction.claims.definition import c1, c2, expected_entropy, mis
 from vedette_reproduction.claims.fusion import Look, c10, central_update
 from vedette_reproduction.claims.iterations import COUPLING, c8
 from vedette_reproduction.claims.search import c13
-from vedette_reproduction.content import Section, Table, Verdict
+from vedette_reproduction.content import Table, Verdict
 from vedette_reproduction.costs import SCHEMES
 from vedette_reproduction.links import sweep, team_on
 from vedette_reproduction.missions import Missions
@@ -34,20 +35,11 @@ from vedette_reproduction.quadratic import (
 from vedette_reproduction.run import QUICK, Run
 
 
-def silent(text: str) -> None:
-    """Say nothing."""
-
-
 @pytest.fixture
 def run(tmp_path: Path) -> Run:
     """A very small reproduction."""
     scale = dataclasses.replace(QUICK, teams=(2, 4, 8), largest_dense=8, trials=3, targets=4000)
     return Run(scale, 7, tmp_path, Missions(silent), silent)
-
-
-def named(section: Section, name: str) -> Table:
-    """Return a table of a section."""
-    return next(table for table in section.tables if table.name == name)
 
 
 def numbers(table: Table, column: str) -> list[float]:

@@ -1,4 +1,4 @@
-"""The reproduction is a package of its own: what is built of either, and what works without it."""
+"""The reproduction is a package of its own: what is built of either, and what it needs."""
 
 from __future__ import annotations
 
@@ -9,12 +9,9 @@ import tomllib
 import zipfile
 from pathlib import Path
 
-import pytest
-
 from tests.support.places import ROOT
 
 OWN = ROOT / "reproduction"
-WITHOUT = "import sys; sys.modules['vedette_reproduction'] = None; "  # as if it were not installed
 
 
 def run(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
@@ -22,11 +19,6 @@ def run(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, *arguments], cwd=cwd, capture_output=True, text=True, check=False, timeout=120
     )
-
-
-def vedette_without(*arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    """Run the command line where the reproduction is not installed."""
-    return run("-c", WITHOUT + "from vedette.cli import main; main()", *arguments, cwd=cwd)
 
 
 def test_what_vedette_is_built_from_holds_its_command_and_nothing_else_of_the_reproduction(
@@ -64,22 +56,6 @@ def test_the_reproduction_asks_for_the_vedette_of_its_own_version_alone() -> Non
     assert own["version"] == whole["version"]
     assert own["dependencies"] == [f"vedette=={whole['version']}"]
     assert own["requires-python"] == whole["requires-python"]
-
-
-def test_where_it_is_not_installed_one_line_says_what_to_install(tmp_path: Path) -> None:
-    done = vedette_without("reproduce", "--quick", cwd=tmp_path)
-    assert done.returncode == 2
-    assert done.stdout == ""
-    [line] = done.stderr.splitlines()
-    assert "pip install ./reproduction" in line
-    assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.parametrize("arguments", [("--help",), ("reproduce", "--help"), ("study", "--help")])
-def test_where_it_is_not_installed_help_still_helps(tmp_path: Path, arguments: tuple[str, ...]) -> None:
-    done = vedette_without(*arguments, cwd=tmp_path)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert "Usage: " in done.stdout
 
 
 def test_it_needs_nothing_that_vedette_does_not_bring(tmp_path: Path) -> None:
