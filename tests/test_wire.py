@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Callable
 
 import msgspec
@@ -32,6 +33,7 @@ class Named(msgspec.Struct, array_like=True):
 
 
 NAMED = msgspec.msgpack.Decoder(Named)
+PACKED = zlib.compress(bytes(100), wbits=-15)
 HOSTILE = {
     "nothing": b"",
     "no array": b"\x2a",
@@ -50,6 +52,18 @@ def test_what_is_no_message_is_told_in_one_line_that_says_what_it_should_have_be
 
 def test_what_is_a_message_comes_back() -> None:
     assert wire.decode(NAMED, msgspec.msgpack.encode(Named("n")), "thing") == Named("n")
+
+
+@pytest.mark.parametrize("data", [b"", PACKED[:-1], PACKED + b"x", b"\xff" * 20], ids=str)
+def test_what_does_not_inflate_to_the_end_is_refused(data: bytes) -> None:
+    assert wire.inflate(PACKED, 100, "thing") == bytes(100)
+    with pytest.raises(ValueError, match=r"^thing (is cut short|does not inflate)"):
+        wire.inflate(data, 100, "thing")
+
+
+def test_what_inflates_to_more_than_is_taken_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"^thing is cut short or too large"):
+        wire.inflate(PACKED, 99, "thing")
 
 
 @pytest.mark.parametrize("what", DECODERS)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from reprlib import repr as repr_short
@@ -63,6 +64,20 @@ class PlatformSpec:
             isinstance(self.start, tuple) and len(self.start) in (2, 3) and all(map(_is_number, self.start))
         ):
             raise InputError(f"start must be [x, y] or [x, y, heading in deg]; got {repr_short(self.start)}")
+
+
+@dataclass(frozen=True)
+class Most:
+    """What no platform of the team exceeds."""
+
+    range: float  # of the lidar or detector [m]
+    speed: float  # [m/s]
+
+    @classmethod
+    def of(cls, specs: Sequence[PlatformSpec]) -> Most:
+        """Return the limits of a team; uncertain poses blur footprints over the lidar's range."""
+        reaches = [spec.range + 4.0 * spec.pose_std for spec in specs]
+        return cls(max(reaches), max(spec.speed for spec in specs))
 
 
 def load_team(path: Path | str) -> list[PlatformSpec]:

@@ -38,7 +38,7 @@ from vedette.missions.search.searching import Searching
 from vedette.missions.track.tracking import Tracking
 from vedette.negotiation import Chooser, Claims, JacobiNode, TokenNode, decode
 from vedette.negotiation.messages import Gather, Outcome, Stop, Tally, Token, Up
-from vedette.team import PlatformSpec
+from vedette.team import Most, PlatformSpec
 
 SEEDS = st.integers(0, 100_000)
 Seen = list[tuple[Any, Any]]  # beliefs and impacts
@@ -78,7 +78,7 @@ def test_no_tour_of_any_robots_claims_too_much(seed: int) -> None:
         specs.append(spec)
     team = reduce(MappingObjective().combine, tours)
     side, edges = belief.planning.resolution, belief.layers.edges
-    mapping.check_claim(team, len(specs), mapping.Most.of(specs), MOST_STOPS, side, edges)
+    mapping.check_claim(team, len(specs), Most.of(specs), MOST_STOPS, side, edges)
 
 
 @settings(deadline=None, max_examples=15)
@@ -87,7 +87,7 @@ def test_no_flight_of_any_vehicles_claims_too_much(seed: int, tail: float) -> No
     rng = np.random.default_rng(seed)
     belief = search_scenes.frozen(search_scenes.MOVING, worth.plain(4, tail))
     team = search_scenes.team(belief)
-    most = search.Most(max(p.detector.range for p in team), max(p.speed for p in team))
+    most = Most(max(p.detector.range for p in team), max(p.speed for p in team))
     frame, layers, horizon, dt = belief.frame, belief.layers, belief.horizon, belief.dt
     every = []
     for platform in team:
@@ -130,7 +130,7 @@ def test_whole_missions_say_nothing_that_is_refused(monkeypatch: pytest.MonkeyPa
     specs = robots(2)
     simulation, _ = run(small_maze(), specs)
     explorer = simulation.missions[0]
-    explorer.most = mapping.Most.of(specs)
+    explorer.most = Most.of(specs)
     for belief, impact in seen:
         explorer.admit(belief, impact, 1)
     assert len(seen) > 20
@@ -141,7 +141,7 @@ def test_whole_missions_say_nothing_that_is_refused(monkeypatch: pytest.MonkeyPa
     assert len(seen) > 20
     seen = recorded(monkeypatch, Searching)
     searcher = blind(case()).missions[0]
-    searcher.team = replace(searcher.team, most=search.Most(range=100.0, speed=30.0))
+    searcher.team = replace(searcher.team, most=Most(range=100.0, speed=30.0))
     for belief, impact in seen:
         searcher.admit(belief, impact, 1)
     assert len(seen) > 20
@@ -160,7 +160,7 @@ def everywhere(cells: int, layers: int, layer: int) -> SparseMisses:
 def test_a_robot_that_claims_the_whole_map_is_refused_until_its_team_could_see_it(layer: int) -> None:
     plan = GridFrame(0.2, 1000, 1000)
     edges = mapping_scenes.frozen().layers.edges
-    lie, most = everywhere(plan.size, LAYERS, layer), mapping.Most(range=8.0, speed=0.5)
+    lie, most = everywhere(plan.size, LAYERS, layer), Most(range=8.0, speed=0.5)
     each = math.pi * 8.4**2 * MOST_STOPS / 0.04  # cells
     if layer < LAYERS - 1:
         each = min(each, (math.pi * 8.4**2 + 2 * 8.4 * 0.5 * edges[layer]) / 0.04)
@@ -175,7 +175,7 @@ def test_a_robot_that_claims_the_whole_map_is_refused_until_its_team_could_see_i
 
 def test_a_vehicle_that_claims_the_whole_sea_is_refused() -> None:
     belief = search_scenes.frozen(worths=worth.plain(4))
-    most = search.Most(80.0, 30.0)
+    most = Most(80.0, 30.0)
     shape = (belief.frame.resolution, belief.layers, belief.horizon, belief.dt)
     for layer in range(belief.layers):
         with pytest.raises(ValueError, match=r"impact (claims|promises)"):
@@ -196,7 +196,7 @@ def test_without_limits_a_mission_refuses_nothing() -> None:
     lie = everywhere(belief.planning.size, LAYERS, 0)
     mission = run(small_maze(), robots(1), max_time=1.0)[0].missions[0]
     mission.admit(belief, lie, 1)
-    mission.most = mapping.Most(1.0, 0.1)
+    mission.most = Most(1.0, 0.1)
     with pytest.raises(ValueError, match="impact claims"):
         mission.admit(belief, lie, 1)
 

@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 
 from vedette.agent import NetworkedAgent
-from vedette.domains.mapping.impact import Most
 from vedette.net.config import AgentConfig, access_of
 from vedette.net.inbox import Inbox
 from vedette.net.names import robot_name
@@ -20,6 +19,7 @@ from vedette.sim.explore.simulation import explorer
 from vedette.sim.own_body import OwnBody
 from vedette.sim.starts import choose_starts
 from vedette.sim.world import World
+from vedette.team import Most
 
 MOST_BODIES = 64  # of others that a simulated robot can see
 EPOCH = datetime(2025, 1, 1, tzinfo=UTC)

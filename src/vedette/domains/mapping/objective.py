@@ -35,12 +35,8 @@ class MappingObjective(Objective[MapBelief, Impact]):
     def clip(self, belief: MapBelief, impact: Impact, reach: Reach) -> Impact:
         """Return what lies in planning cells that a box touches, in all layers; docs/theory.md (V14)."""
         frame = belief.planning
-        row, col = np.divmod(impact.keys // LAYERS, frame.cols)
-        inside = np.zeros(len(row), bool)
-        for x0, y0, x1, y1 in reach:
-            (low_row, low_col), (high_row, high_col) = frame.cell(x0, y0), frame.cell(x1, y1)
-            inside |= (low_row <= row) & (row <= high_row) & (low_col <= col) & (col <= high_col)
-        return impact if inside.all() else Impact(impact.keys[inside], impact.misses[inside])
+        boxes = [(frame.cell(x0, y0), frame.cell(x1, y1)) for x0, y0, x1, y1 in reach]
+        return impact.within(LAYERS, frame.cols, boxes)
 
     def value(self, belief: MapBelief, impact: Impact) -> float:
         """Expected weighted entropy reduction [nats]."""

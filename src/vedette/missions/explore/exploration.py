@@ -12,7 +12,7 @@ from vedette.agent.effects import Route
 from vedette.agent.events import Pose, Scan
 from vedette.agent.mates import Mate
 from vedette.domains.mapping.belief import MapBelief, freeze, longest_frontier, planning_factor
-from vedette.domains.mapping.impact import Impact, ImpactCodec, Most, check_claim
+from vedette.domains.mapping.impact import Impact, ImpactCodec, check_claim
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.planners import Planner
 from vedette.domains.mapping.platform import (
@@ -29,7 +29,7 @@ from vedette.fusion import Fusion
 from vedette.kernels import distance, frontier, lidar
 from vedette.maps import GridFrame
 from vedette.problem import Reach
-from vedette.team import PlatformSpec
+from vedette.team import Most, PlatformSpec
 
 GAIN_HIT, GAIN_MISS, CLAMP = 4, 2, 20  # log-odds of one observation and of all [0.2 nats]
 NUDGE = 0.25  # a return lies in the wall, not on its face: it counts as so much farther [cells]

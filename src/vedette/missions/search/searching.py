@@ -17,12 +17,13 @@ from vedette.domains.search.belief import SearchBelief, TargetPdf, freeze
 from vedette.domains.search.detectors import Report
 from vedette.domains.search.evidence import LEVELS_PER_NAT, Evidence, evidence_of_looks
 from vedette.domains.search.flights import Flight
-from vedette.domains.search.impact import Impact, ImpactCodec, Most, check_claim, clip
+from vedette.domains.search.impact import Impact, ImpactCodec, check_claim, clip
 from vedette.domains.search.objective import SearchObjective
 from vedette.domains.search.platform import SearchPlatform
 from vedette.domains.search.worth import Worth
 from vedette.fusion.steps import Refilter, Sparse, SparseIntegers, StepEvidence
 from vedette.problem import Reach
+from vedette.team import Most
 from vedette.vehicle import drive
 
 _ROUNDING = 1e-6  # of a step: times this near its beginning are at it

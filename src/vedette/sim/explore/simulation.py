@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from vedette.agent import Agent, GroundBehaviour
 from vedette.agent.driving import Driver
-from vedette.domains.mapping.impact import Most
 from vedette.domains.mapping.planners import DEFAULT, planner
 from vedette.domains.mapping.sightings import BINS
 from vedette.errors import InputError, nearest_name
@@ -21,7 +20,7 @@ from vedette.missions.explore.exploration import Exploration
 from vedette.sim.robots import Robots
 from vedette.sim.simulation import Setup, Simulation, random_streams
 from vedette.sim.world import World
-from vedette.team import PlatformSpec
+from vedette.team import Most, PlatformSpec
 
 FUSIONS: Mapping[str, type[ReplicatedEvidence] | type[ChannelFilter]] = {
     "replicated": ReplicatedEvidence,

@@ -10,7 +10,6 @@ from typing import cast
 import numpy as np
 
 from vedette.agent import Agent, FlightBehaviour, Pace
-from vedette.domains.search.impact import Most
 from vedette.errors import InputError
 from vedette.fusion.steps import ReplicatedSteps, Sparse, SparseIntegers, StepEvidence, StepSums
 from vedette.missions.search.case import SearchCase
@@ -19,6 +18,7 @@ from vedette.record.summary import Outcome
 from vedette.sim.flights import FlightSetup, lead
 from vedette.sim.search.hidden import Hidden, Searchers
 from vedette.sim.simulation import Simulation, random_streams
+from vedette.team import Most
 
 COORDINATIONS = ("none", "shared", "negotiated")
 FUSIONS = ("replicated", "sums")
