@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from vedette.errors import InputError
+from vedette.maps.world import World
 from vedette.sim.explore.run import explore, prepare
 from vedette.sim.explore.simulation import ExploreSetup
-from vedette.sim.world import World
 from vedette.sim.worlds import office
 from vedette.team import PlatformSpec
 

@@ -15,8 +15,8 @@ from bench.criteria import verdicts
 from bench.missions_table import JUDGED, judge, missions_table
 from vedette.domains.mapping.planners import planner
 from vedette.errors import InputError
+from vedette.outcome import Outcome
 from vedette.record.files import write_text
-from vedette.record.summary import Outcome
 
 Run = Callable[[Case, str], Result]  # case, commit
 

@@ -30,11 +30,11 @@ from tests.support.net_processes import (
     run,
 )
 from vedette.cli.team import SPEED
+from vedette.maps.world import World
 from vedette.net.launch import TeamProcesses
 from vedette.record.files import write_json
 from vedette.sim.explore.run import explore, prepare
 from vedette.sim.explore.simulation import ExploreSetup
-from vedette.sim.world import World
 from vedette.sim.worlds import office
 
 LEASE = 3.0  # [s]

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from vedette.maps import UNKNOWN
-from vedette.record.summary import Spread, Summary
+from vedette.record.explore.summary import ExploreSummary
+from vedette.record.summary import Spread
 from vedette.sim.explore.run import explore, prepare
 from vedette.sim.explore.simulation import ExploreSetup
 from vedette.sim.worlds import office
@@ -20,7 +21,7 @@ class Run:
     """What one mission took."""
 
     seed: int
-    summary: Summary
+    summary: ExploreSummary
     planning: Spread  # CPU time of one robot's replan, all sweeps [ms]
     answer: Spread  # CPU time of one visit of the token [ms]
     real_time: float  # simulated over wall time of the mission's loop

@@ -7,11 +7,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from vedette.record.log import Snapshot
-from vedette.record.summary import Outcome
-from vedette.sim.explore.run import Report, explore, prepare
+from vedette.maps.world import World
+from vedette.outcome import Outcome
+from vedette.record.explore.log import ExploreSnapshot
+from vedette.record.explore.observer import ExploreReport
+from vedette.sim.explore.run import explore, prepare
 from vedette.sim.explore.simulation import ExploreSetup
-from vedette.sim.world import World
 from vedette.sim.worlds import office
 from vedette.team import PlatformSpec
 
@@ -35,7 +36,7 @@ class Mission:
 
     case: Case
     world: World
-    report: Report
+    report: ExploreReport
 
 
 def specs() -> list[PlatformSpec]:
@@ -68,13 +69,13 @@ class Missions:
 
 @dataclass(eq=False)
 class _Ticker:
-    """Tells how far a mission is; ``vedette.record.log.Sink``."""
+    """Tells how far a mission is; ``vedette.record.explore.log.Sink``."""
 
     case: Case
     tell: Callable[[str], None]
     _next: float = 0.0  # [s] of simulated time
 
-    def update(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: ExploreSnapshot) -> None:
         """Tell it every few simulated seconds."""
         if snapshot.t >= self._next:
             self._next = snapshot.t + 5.0

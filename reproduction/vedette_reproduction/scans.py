@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from vedette.domains.mapping.sightings import BIN, BINS, empty_counts
 from vedette.kernels.lidar import cast_rays, count_sightings, integrate_scan
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
+from vedette.maps.world import World
 from vedette.missions.explore.exploration import CLAMP, GAIN_HIT, GAIN_MISS, NUDGE
-from vedette.sim.world import World
 from vedette.team import PlatformSpec
 
 EVERY_BEAM = 1

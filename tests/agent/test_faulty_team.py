@@ -13,7 +13,7 @@ from tests.support.faulty_world import FRAME, Impact, LawBroken, SiteMission, Si
 from tests.support.overlay_network import random_graph
 from tests.support.site_team import SiteTeam
 from vedette.fusion import ReplicatedEvidence
-from vedette.record.summary import Outcome
+from vedette.outcome import Outcome
 from vedette.sim.datagrams import Datagrams
 from vedette.sim.faults import Schedule
 from vedette.sim.faults.kinds import Crash, Freeze, Heal, Partition

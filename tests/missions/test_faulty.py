@@ -16,13 +16,13 @@ from tests.support.small_missions import robots, run, small_maze, small_office
 from vedette.agent.rightofway import block_discs
 from vedette.domains.mapping.stops import CLEARANCES
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
+from vedette.maps.world import World
+from vedette.record.explore.observer import ExploreReport
+from vedette.record.explore.score import Reference
 from vedette.record.links import parts
-from vedette.sim.explore.run import Report
 from vedette.sim.explore.simulation import ExploreSimulation
 from vedette.sim.faults import Schedule, faults_from_seed
 from vedette.sim.radio import Radio
-from vedette.sim.score import Reference
-from vedette.sim.world import World
 from vedette.team import PlatformSpec
 
 QUICK = 5
@@ -74,7 +74,7 @@ def _near_edge(solid: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return np.asarray(np.logical_or.reduce(around) & ~np.logical_and.reduce(around))
 
 
-def covered(simulation: ExploreSimulation, report: Report) -> float:
+def covered(simulation: ExploreSimulation, report: ExploreReport) -> float:
     """Return the share known of what those who live can see from where they can go.
 
     A robot that died in a doorway closes the room behind it. Nobody plans to pass it by less than 1 cm.
@@ -94,7 +94,7 @@ def _robots(
     return [(simulation.pose(i), simulation.specs[i]) for i in np.flatnonzero(which).tolist()]
 
 
-def check_mission(simulation: ExploreSimulation, report: Report) -> None:
+def check_mission(simulation: ExploreSimulation, report: ExploreReport) -> None:
     """Complete, true, untouched, and the same map wherever robots reach each other."""
     summary = report.summary
     assert summary.outcome.value == "complete"
@@ -108,7 +108,7 @@ def check_mission(simulation: ExploreSimulation, report: Report) -> None:
         assert unlike <= TRICKLE, f"maps of {part} differ in {unlike} cells"
 
 
-def play(seed: int) -> Report:
+def play(seed: int) -> ExploreReport:
     """Run one mission and check it; a failure names the command that replays it."""
     plan = Plan.of(seed)
     simulation, report = run(

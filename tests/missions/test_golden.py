@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from tests.support.small_missions import check_complete, robots, run, small_office
-from vedette.sim.explore.run import Report
+from vedette.record.explore.observer import ExploreReport
 
 GOLDEN: dict[str, Any] = {
     "schema_version": 2,
@@ -55,13 +55,13 @@ GOLDEN: dict[str, Any] = {
 APPROXIMATE = 1e-3  # relative: other machines may round the last bits otherwise
 
 
-def golden_mission() -> Report:
+def golden_mission() -> ExploreReport:
     """Two robots in a small office."""
     _, report = run(small_office(seed=1), robots(2), seed=7)
     return report
 
 
-def figures(report: Report) -> dict[str, Any]:
+def figures(report: ExploreReport) -> dict[str, Any]:
     """All of ``summary.json``."""
     plain: dict[str, Any] = json.loads(report.summary.to_json())
     return plain

@@ -17,7 +17,7 @@ from tests.support.net_hosts import Cable, HostedTeam, Hosts, missing
 from tests.support.net_processes import Diary, Fault, Mission, plan_of, run
 from tests.support.net_team import real_time
 from tests.support.small_missions import small_maze
-from vedette.record.summary import Outcome
+from vedette.outcome import Outcome
 
 pytestmark = [pytest.mark.slow, real_time]
 

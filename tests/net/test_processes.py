@@ -41,7 +41,7 @@ from vedette.cli.status import status as status_command
 from vedette.net import Access, Transport, credentials
 from vedette.net.body import inside
 from vedette.net.launch import TEAM, TeamProcesses
-from vedette.record.summary import Outcome
+from vedette.outcome import Outcome
 from vedette.sim.own_body import OwnBody, Seen
 
 pytestmark = real_time

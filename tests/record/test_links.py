@@ -9,8 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from vedette.overlay.status import LinkStatus, Place, Status
-from vedette.record import Link
-from vedette.record.links import links_of, parts
+from vedette.record.links import Link, links_of, parts
 
 
 @settings(deadline=None, max_examples=60)

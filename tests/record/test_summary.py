@@ -11,12 +11,14 @@ import numpy as np
 import pytest
 
 from tests.support.places import ROOT
-from vedette.record import Outcome, Spread, Summary, Timing, Traffic
+from vedette.outcome import Outcome
+from vedette.record.explore.summary import ExploreSummary
+from vedette.record.summary import Spread, Timing, Traffic
 
 DOCS = ROOT / "docs" / "outputs.md"
 
 
-def _summary(**changes: object) -> Summary:
+def _summary(**changes: object) -> ExploreSummary:
     figures: dict[str, object] = {
         "completed": True, "outcome": Outcome.COMPLETE, "seed": 3, "robots": 2, "planner": "tours",
         "scheme": "token", "fusion": "evidence", "world": "office-3", "radio": "12,3", "faults": None,
@@ -28,7 +30,7 @@ def _summary(**changes: object) -> Summary:
         "messages": {"robot-1": Traffic(10, 5, 2, 1), "robot-2": Traffic(9, 5, 2)},
         "bytes": {"robot-1": Traffic(1000, 500, 20), "robot-2": Traffic(900, 500, 20)},
     }  # fmt: skip
-    return Summary(**(figures | changes))  # type: ignore[arg-type]
+    return ExploreSummary(**(figures | changes))  # type: ignore[arg-type]
 
 
 def _documented(heading: str) -> list[str]:
@@ -39,7 +41,7 @@ def _documented(heading: str) -> list[str]:
 
 def test_the_documentation_lists_exactly_the_fields_in_order() -> None:
     assert _documented("summary.json") == list(json.loads(_summary().to_json()))
-    assert set(_documented("summary.json")) == {field.name for field in fields(Summary)}
+    assert set(_documented("summary.json")) == {field.name for field in fields(ExploreSummary)}
     assert _documented("timing.json") == [field.name for field in fields(Timing)]
 
 

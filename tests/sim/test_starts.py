@@ -9,9 +9,9 @@ import pytest
 
 from vedette.errors import InputError
 from vedette.maps import GridFrame
+from vedette.maps.world import World, reachable_poses, standable
 from vedette.sim.components import largest
 from vedette.sim.starts import choose_starts, clearance, indoors, parse_starts
-from vedette.sim.world import World, reachable_poses, standable
 from vedette.sim.worlds import GENERATORS, office
 from vedette.team import PlatformSpec
 

@@ -14,7 +14,7 @@ from vedette.agent.body import TICK
 from vedette.agent.effects import Drive, Fly
 from vedette.agent.flight import FlightPlan, start_step
 from vedette.errors import InputError
-from vedette.record.summary import Outcome
+from vedette.outcome import Outcome
 from vedette.sim.vehicles import Vehicles
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from vedette.kernels.visibility import visible_cells
 from vedette.maps import GridFrame
-from vedette.sim.world import World
+from vedette.maps.world import World
 from vedette.study.bounds import Limit, distances_to_centres, limit
 from vedette.team import PlatformSpec
 

@@ -18,7 +18,7 @@ from tests.support.overlay_network import Edge, random_graph
 from tests.support.site_team import PACE, SiteTeam
 from vedette.agent import Agent, State
 from vedette.agent.rounds import CALL_AGAIN, patience
-from vedette.record.summary import Outcome
+from vedette.outcome import Outcome
 from vedette.sim.datagrams import Datagrams
 from vedette.sim.faults import Schedule, faults_from_seed
 from vedette.sim.network import Act

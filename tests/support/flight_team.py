@@ -16,8 +16,8 @@ from vedette.agent.flight import FlightPlan, start_step
 from vedette.agent.mates import Mate
 from vedette.fusion import ReplicatedEvidence
 from vedette.negotiation import Chooser
+from vedette.outcome import Outcome
 from vedette.problem import Coverage, Reach
-from vedette.record.summary import Outcome
 from vedette.sim.planted import PlantedTree
 from vedette.sim.simulation import Setup, Simulation
 from vedette.sim.vehicles import Vehicles

@@ -17,17 +17,17 @@ from typing import Any
 import numpy as np
 
 from tests.support.small_missions import robots
+from vedette.maps.world import World
 from vedette.net.launch import TeamPlan, TeamProcesses
 from vedette.net.names import Topic
 from vedette.net.report import Condition, read_report
 from vedette.net.team import TeamWatch
 from vedette.net.transport import Operator, Published
-from vedette.record.log import Snapshot
-from vedette.sim.explore.run import Report
+from vedette.record.explore.log import ExploreSnapshot
+from vedette.record.explore.observer import ExploreReport
+from vedette.record.explore.views import Setting
 from vedette.sim.explore.simulation import ExploreSetup
-from vedette.sim.observer import Setting
 from vedette.sim.starts import choose_starts
-from vedette.sim.world import World
 
 SPEED = 5.0  # times real time
 LEASE = 3.0  # [s]
@@ -148,12 +148,12 @@ class Ring(TeamProcesses):
 
 @dataclass
 class _Fate:
-    """Strikes while the mission goes on; ``vedette.record.log.Sink``."""
+    """Strikes while the mission goes on; ``vedette.record.explore.log.Sink``."""
 
     diary: Diary
     faults: list[Fault]
 
-    def update(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: ExploreSnapshot) -> None:
         """Let the next fault come when it is due; the first, once all robots have reported."""
         if len(self.diary.by_robot) < len(snapshot.robots):
             return
@@ -167,7 +167,7 @@ class _Fate:
 class Mission:
     """How a mission went."""
 
-    report: Report
+    report: ExploreReport
     diary: Diary
     ended: float  # [s]
     survivors: list[int]  # whose processes ran at the end

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
+from vedette.record.explore.log import ExploreLog, ExploreSnapshot, RobotSample, Sink
 from vedette.record.links import Link
-from vedette.record.log import RobotSample, RunLog, Sink, Snapshot
 from vedette.team import PlatformSpec
 
 Point = tuple[float, float]
@@ -58,7 +58,7 @@ def mission(
     limit: float = 200.0,
     kill: tuple[int, float] | None = None,
     radio: float | None = None,
-) -> Iterator[Snapshot]:
+) -> Iterator[ExploreSnapshot]:
     """Yield a snapshot every ``period`` seconds until all is seen; robot ``kill[0]`` dies at ``kill[1]``.
 
     ``radio``: robots within so many metres are linked; None: the network is ideal.
@@ -97,7 +97,7 @@ def mission(
         )
         entropy = float((~known).sum() * np.log(2.0))
         links = None if radio is None else tuple(linked(robots, radio))
-        yield Snapshot(t, robots, coverage, float(known.mean()), entropy, classes, impact, links)
+        yield ExploreSnapshot(t, robots, coverage, float(known.mean()), entropy, classes, impact, links)
         if over or t >= limit:
             return
         t += period
@@ -119,10 +119,10 @@ def recorded(
     period: float = 1.0,
     reach: float = 8.0,
     radio: float | None = None,
-) -> RunLog:
+) -> ExploreLog:
     """Return the log of a pretended mission."""
     specs = [PlatformSpec(name=f"robot-{i + 1}", range=reach) for i in range(robots)]
-    log = RunLog("rooms", *frames(solid, resolution, origin), specs, sinks)
+    log = ExploreLog("rooms", *frames(solid, resolution, origin), specs, sinks)
     rng = np.random.default_rng(seed)
     for snapshot in mission(solid, specs, rng, start, resolution, origin, period, limit, kill, radio):
         log.add(snapshot)

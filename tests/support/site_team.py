@@ -16,13 +16,13 @@ from vedette.agent.effects import Drive, Motion
 from vedette.agent.events import Arrived, Event, Pose, Sensed
 from vedette.agent.pace import Pace
 from vedette.fusion import ReplicatedEvidence
-from vedette.record.summary import Outcome
+from vedette.maps.world import World
+from vedette.outcome import Outcome
 from vedette.sim.datagrams import Datagrams, linked
 from vedette.sim.faults import Timeline
 from vedette.sim.network import Network, Spawn
 from vedette.sim.overlaid import OverlaidNetwork
 from vedette.sim.simulation import Setup, Simulation
-from vedette.sim.world import World
 from vedette.team import PlatformSpec
 
 PACE = Pace(interval=0.5, period=2.0)

@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from vedette.maps import GridFrame
-from vedette.sim.explore.run import Report, explore, prepare
+from vedette.maps.world import World
+from vedette.record.explore.observer import ExploreReport
+from vedette.sim.explore.run import explore, prepare
 from vedette.sim.explore.simulation import ExploreSetup, ExploreSimulation
-from vedette.sim.world import World
 from vedette.sim.worlds import maze, office
 from vedette.team import PlatformSpec
 
@@ -42,13 +43,13 @@ def robots(n: int, **fields: Any) -> list[PlatformSpec]:
     return [PlatformSpec(name=f"robot-{i + 1}", **fields) for i in range(n)]
 
 
-def run(world: World, specs: Sequence[PlatformSpec], **setup: Any) -> tuple[ExploreSimulation, Report]:
+def run(world: World, specs: Sequence[PlatformSpec], **setup: Any) -> tuple[ExploreSimulation, ExploreReport]:
     """A whole mission, at most 900 s unless the setup says otherwise."""
     simulation = prepare(world, specs, ExploreSetup(**{"max_time": 900.0, **setup}))
     return simulation, explore(simulation)
 
 
-def check_complete(report: Report) -> None:
+def check_complete(report: ExploreReport) -> None:
     """The mission is complete, the map whole and true, nobody touched anything."""
     summary = report.summary
     assert summary.outcome.value == "complete"

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from vedette.domains.mapping.sightings import BIN, P_OCCUPIED, beam_model, measured_model
 from vedette.kernels.coverage import footprints
 from vedette.maps import FREE, UNKNOWN
+from vedette.maps.world import standable
 from vedette.record.canvas import DPI, picture, save
-from vedette.sim.world import standable
 from vedette.sim.worlds import office
 from vedette_reproduction.content import Section, table
 from vedette_reproduction.missions import specs

@@ -18,7 +18,7 @@ from vedette.negotiation import Negotiation, Tree, negotiate
 from vedette.problem import exhaustive
 from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save
-from vedette.record.raster import known_window
+from vedette.record.explore.raster import known_window
 from vedette.record.signs import DASHES, FAINT, INK
 from vedette_reproduction.content import Section, Table, Value, table
 from vedette_reproduction.contest import (

@@ -14,8 +14,8 @@ from vedette.domains.mapping.planners import DEFAULT, PLANNERS
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save
-from vedette.record.log import Snapshot
-from vedette.record.raster import Window, enlarge, paint
+from vedette.record.explore.log import ExploreSnapshot
+from vedette.record.explore.raster import Window, enlarge, paint
 from vedette.record.signs import DASHES, FAINT, badge, draw_vehicle, legend_line, scale_bar
 from vedette_reproduction.content import Section, Table, Value, table
 from vedette_reproduction.missions import PAPERS, Mission
@@ -131,7 +131,9 @@ def _draw(missions: Sequence[Mission], run: Run) -> None:
     save(figure, run.figures / PICTURE)
 
 
-def _panel(axes: Axes, mission: Mission, stage: Snapshot, window: Window, pixels: tuple[int, int]) -> None:
+def _panel(
+    axes: Axes, mission: Mission, stage: ExploreSnapshot, window: Window, pixels: tuple[int, int]
+) -> None:
     log = mission.report.log
     colours = paint(stage, log.planning, window, pixels[::-1])
     extent = window.frame.extent

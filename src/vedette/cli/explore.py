@@ -16,11 +16,13 @@ from vedette.cli.options import (
     parse_faults,
     parse_kills,
 )
+from vedette.record.explore.live import LiveView
+from vedette.record.explore.mcap import ExploreMcapWriter
+from vedette.record.explore.observer import ExploreReport
+from vedette.record.explore.views import planning_frame
 from vedette.record.files import new_directory, output_directory
-from vedette.record.live import LiveView
-from vedette.record.mcap import McapWriter
-from vedette.sim.explore.run import Report, planning_frame, prepare
 from vedette.sim.explore.run import explore as run_mission
+from vedette.sim.explore.run import prepare
 from vedette.sim.explore.simulation import ExploreSetup, ExploreSimulation
 from vedette.sim.radio import Radio
 
@@ -82,11 +84,13 @@ def explore(
     raise SystemExit(STATUS.get(report.summary.outcome, 1))
 
 
-def _run(prepared: ExploreSimulation, folder: Path, quiet: bool) -> Report:
+def _run(prepared: ExploreSimulation, folder: Path, quiet: bool) -> ExploreReport:
     """Run the mission, shown live unless ``quiet`` and recorded in the folder."""
     world, planning = prepared.world, planning_frame(prepared.world)
     with ExitStack() as sinks:
         live = sinks.enter_context(LiveView(world.name, world.frame, planning, quiet=quiet))
         names = [spec.name for spec in prepared.specs]
-        mcap = sinks.enter_context(McapWriter(folder / "run.mcap", world.name, world.frame, planning, names))
+        mcap = sinks.enter_context(
+            ExploreMcapWriter(folder / "run.mcap", world.name, world.frame, planning, names)
+        )
         return run_mission(prepared, (live, mcap))

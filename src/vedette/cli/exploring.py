@@ -14,15 +14,15 @@ from vedette.cli.options import OneOf, Positive, seed_option, with_options
 from vedette.domains.mapping.planners import DEFAULT, PLANNERS
 from vedette.errors import InputError
 from vedette.maps import write_map
+from vedette.maps.world import World
 from vedette.negotiation import SCHEMES
-from vedette.record.animate import animate_gif
-from vedette.record.curves import curves_png
-from vedette.record.progress import progress_png
-from vedette.record.summary import Summary
-from vedette.sim.explore.run import Report
+from vedette.record.explore.curves import curves_png
+from vedette.record.explore.film import animate_gif
+from vedette.record.explore.observer import ExploreReport
+from vedette.record.explore.progress import progress_png
+from vedette.record.explore.summary import ExploreSummary
 from vedette.sim.explore.simulation import FUSIONS
 from vedette.sim.starts import parse_starts
-from vedette.sim.world import World
 from vedette.sim.worlds import office
 from vedette.team import PlatformSpec, load_team
 
@@ -118,7 +118,7 @@ def team_of(team: Path | None, robots: int | None, starts: str | None) -> list[P
     return [replace(spec, start=places[i]) if i < len(places) else spec for i, spec in enumerate(specs)]
 
 
-def write_outputs(report: Report, world: World, folder: Path, animate: bool) -> None:
+def write_outputs(report: ExploreReport, world: World, folder: Path, animate: bool) -> None:
     """Write all files of a mission but the run record, which grows while it lasts."""
     report.summary.write(folder / "summary.json")
     report.timing.write(folder / "timing.json")
@@ -129,7 +129,7 @@ def write_outputs(report: Report, world: World, folder: Path, animate: bool) -> 
         animate_gif(report.log, folder / "mission.gif")
 
 
-def closing(summary: Summary, folder: Path) -> str:
+def closing(summary: ExploreSummary, folder: Path) -> str:
     """Say in a few lines how it went and where the pictures are."""
     t90 = "-" if summary.t90_s is None else f"{summary.t90_s:.0f} s"
     longest = max(summary.path_m.values())

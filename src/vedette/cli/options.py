@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 import click
 
 from vedette.errors import InputError, nearest_name
-from vedette.record.summary import Outcome
+from vedette.outcome import Outcome
 from vedette.sim.faults import Schedule, load_faults
 from vedette.sim.faults.kinds import Skew
 from vedette.sim.radio import Radio, parse_radio

@@ -19,11 +19,11 @@ from vedette.net.launch import TeamPlan, TeamProcesses
 from vedette.net.names import robot_name
 from vedette.net.team import TeamWatch
 from vedette.net.transport import Operator
+from vedette.record.explore.live import LiveView
+from vedette.record.explore.mcap import ExploreMcapWriter
+from vedette.record.explore.views import Setting, planning_frame
 from vedette.record.files import new_directory, output_directory
-from vedette.record.live import LiveView
-from vedette.record.mcap import McapWriter
 from vedette.sim.explore.simulation import ExploreSetup, scheme_of
-from vedette.sim.observer import Setting, planning_frame
 from vedette.sim.starts import choose_starts
 
 SPEED = 3.0  # more costs mission time, as thoughts and messages take as long as ever: 5 % at 5, 16 % at 10
@@ -91,7 +91,9 @@ def explore(
         operator = stack.enter_context(Operator(processes.operator))
         live = stack.enter_context(LiveView(world.name, world.frame, planning, quiet=as_json))
         names = [spec.name for spec in specs]
-        mcap = stack.enter_context(McapWriter(folder / "run.mcap", world.name, world.frame, planning, names))
+        mcap = stack.enter_context(
+            ExploreMcapWriter(folder / "run.mcap", world.name, world.frame, planning, names)
+        )
         setting = Setting(seed, planner, scheme_of(how), fusion)
         watch = TeamWatch(plan, processes, operator, setting, max_time, (live, mcap))
         stack.enter_context(ending_on_ctrl_c(watch.stop))

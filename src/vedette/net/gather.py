@@ -10,10 +10,10 @@ from vedette.domains.mapping.impact import ImpactCodec
 from vedette.maps import GridFrame
 from vedette.net.report import Condition, Report, classes_of, read_report, seen_of
 from vedette.overlay import LinkStatus, Place, Status
-from vedette.record.log import RobotSample
+from vedette.record.explore.log import RobotSample
+from vedette.record.explore.views import RobotFigures, RobotView
+from vedette.record.figures import RoundFigures
 from vedette.record.summary import Traffic
-from vedette.sim.figures import RoundFigures
-from vedette.sim.observer import RobotFigures, RobotView
 
 DEAD = "dead"
 

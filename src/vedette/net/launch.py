@@ -18,6 +18,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.maps.world import World
 from vedette.net.access import Access
 from vedette.net.config import OF_BODY
 from vedette.net.credentials import credentials
@@ -26,7 +27,6 @@ from vedette.net.keys import issue_team
 from vedette.net.names import OPERATOR, robot_name
 from vedette.record.files import write_text
 from vedette.sim.explore.simulation import Exploring
-from vedette.sim.world import World
 from vedette.team import PlatformSpec
 
 TEAM = "team"

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from vedette.agent import NetworkedAgent
+from vedette.maps.world import World
 from vedette.net.config import AgentConfig, access_of
 from vedette.net.inbox import Inbox
 from vedette.net.names import robot_name
@@ -18,7 +19,6 @@ from vedette.net.witness import Witness
 from vedette.sim.explore.simulation import explorer
 from vedette.sim.own_body import OwnBody
 from vedette.sim.starts import choose_starts
-from vedette.sim.world import World
 from vedette.team import Most
 
 MOST_BODIES = 64  # of others that a simulated robot can see

@@ -16,13 +16,13 @@ from vedette.net.launch import TeamPlan, TeamProcesses
 from vedette.net.names import Topic, robot_name
 from vedette.net.report import Condition, Spread
 from vedette.net.transport import Operator, Published
+from vedette.outcome import NO_PROGRESS, Outcome
+from vedette.record.explore.log import RobotSample, Sink
+from vedette.record.explore.observer import ExploreObserver, ExploreReport
+from vedette.record.explore.views import RobotFigures, RobotView, Setting, planning_frame
 from vedette.record.links import Link, links_of
-from vedette.record.log import RobotSample, Sink
-from vedette.record.summary import Outcome, Timing
 from vedette.record.summary import Spread as Statistics
-from vedette.sim.explore.run import Report
-from vedette.sim.observer import Observer, RobotFigures, RobotView, Setting, planning_frame
-from vedette.sim.robots import NO_PROGRESS
+from vedette.record.summary import Timing
 
 STARTING = 60.0  # a robot that has not reported after so long is lost [s]
 SILENT = 10.0  # one that reported before and has been silent for so long is not waited for [s]
@@ -51,14 +51,14 @@ class TeamWatch:
         """End ``run`` soon; may be called from a signal handler."""
         self.stopped = True
 
-    def run(self) -> Report:
+    def run(self) -> ExploreReport:
         """Watch until the mission is over; return what ``vedette explore`` would.
 
         Raises:
             InputError: a robot's process ends by itself before the mission begins.
         """
         plan = self.plan
-        observer = Observer(plan.world, plan.specs, plan.starts, self.setting, self.sinks)
+        observer = ExploreObserver(plan.world, plan.specs, plan.starts, self.setting, self.sinks)
         self._codec = ImpactCodec(planning_frame(plan.world).size)
         inbox = self.operator.inbox
         self.operator.subscribe(Topic.REPORT, inbox.put)
@@ -70,8 +70,7 @@ class TeamWatch:
                 observer.look(self.now, self._all_views(), self._links())
                 next_look = self.now + observer.period
         observer.finish(self.now, self._all_views(), self._links())
-        timing = self._timing(time.monotonic() - self._began)
-        return Report(observer.summary(outcome), timing, observer.log, observer.delivered_map())
+        return observer.report(outcome, self._timing(time.monotonic() - self._began))
 
     @property
     def now(self) -> float:

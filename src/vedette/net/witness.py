@@ -15,9 +15,9 @@ from vedette.net import report as wire
 from vedette.net.report import Condition, LinkReport, Spread
 from vedette.net.transport import Transport
 from vedette.overlay import LinkStatus
+from vedette.record.clock import Clock
+from vedette.record.explore.views import held_map
 from vedette.record.summary import Spread as Statistics
-from vedette.sim.clock import Clock
-from vedette.sim.observer import held_map
 from vedette.sim.own_body import OwnBody
 
 

@@ -1,23 +1,6 @@
-"""What a mission leaves: summary, run log, MCAP record, pictures, live view.
+"""What a mission leaves: figures, logs, MCAP records, pictures, live views.
 
-A mission adds `Snapshot`s to a `RunLog`, which forwards them to its sinks while it runs
-(`vedette.record.mcap.McapWriter`, `vedette.record.live.LiveView`) and feeds the pictures afterwards
-(`vedette.record.progress`, `curves`, `animate`). Import these by name: they load large libraries.
+An observer measures a mission from views of its robots, in this process or from afar, and adds snapshots to
+a log, which forwards them to its sinks while the mission goes on and feeds the pictures afterwards. What is
+said of one kind of mission alone lies in ``explore``, ``track`` and ``search``.
 """
-
-from vedette.record.links import Link
-from vedette.record.log import RobotSample, RunLog, Sink, Snapshot
-from vedette.record.summary import Outcome, Spread, Summary, Timing, Traffic
-
-__all__ = [
-    "Link",
-    "Outcome",
-    "RobotSample",
-    "RunLog",
-    "Sink",
-    "Snapshot",
-    "Spread",
-    "Summary",
-    "Timing",
-    "Traffic",
-]

@@ -1,16 +1,16 @@
-"""The figures of a mission: ``summary.json`` (simulated time only) and ``timing.json`` (wall clock)."""
+"""What the figures of all missions share: outcomes, traffic, and ``timing.json`` (wall clock)."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 
 import numpy as np
 
 from vedette.record.files import write_text
-from vedette.record.plain import json_text, plain
+from vedette.record.plain import json_text
 
 SCHEMA_VERSION = 2
 
@@ -33,50 +33,6 @@ class Traffic:
     fusion: int = 0
     beacons: int = 0
     overlay: int = 0  # hellos, acknowledgements, and what was sent again
-
-
-@dataclass(frozen=True)
-class Summary:
-    """What one mission achieved, in simulated time only; the fields are explained in ``docs/outputs.md``."""
-
-    completed: bool
-    outcome: Outcome
-    seed: int
-    robots: int
-    planner: str
-    scheme: str
-    fusion: str
-    world: str
-    radio: str | None
-    faults: str | None
-    time_s: float
-    t50_s: float | None
-    t90_s: float | None
-    t95_s: float | None
-    t99_s: float | None
-    auc_s: float
-    coverage: float
-    map_errors: int
-    map_error_share: float
-    path_m: Mapping[str, float]
-    overlap: float
-    collisions: int
-    min_clearance_m: float
-    rounds: int
-    sweeps: int
-    bound_ratio: float | None
-    apart_s: float
-    messages: Mapping[str, Traffic]
-    bytes: Mapping[str, Traffic]
-    schema_version: int = field(default=SCHEMA_VERSION, init=False)
-
-    def to_json(self) -> str:
-        """Return the text of ``summary.json``: fields in the order declared, floats to 6 decimals."""
-        return json_text({"schema_version": self.schema_version} | plain(self))
-
-    def write(self, path: Path | str) -> None:
-        """Put ``summary.json`` in place."""
-        write_text(path, self.to_json())
 
 
 @dataclass(frozen=True)

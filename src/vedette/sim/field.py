@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from vedette.agent.effects import Motion
 from vedette.agent.events import Event
-from vedette.record.summary import Outcome
+from vedette.outcome import Outcome
 
 
 class Field(Protocol):

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from vedette.agent.effects import Motion
 from vedette.agent.events import Event
+from vedette.maps.world import World
 from vedette.sim.robots import Robots
-from vedette.sim.world import World
 from vedette.team import PlatformSpec
 
 ELSEWHERE = 1e6  # where bodies are that nobody tells of, out of everybody's sight [m]

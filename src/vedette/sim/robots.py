@@ -10,14 +10,13 @@ from numpy.typing import NDArray
 from vedette.agent.effects import Drive, Motion
 from vedette.agent.events import Arrived, Event, Pose, Scan, Stuck
 from vedette.kernels.lidar import cast_rays
-from vedette.record.summary import Outcome
+from vedette.maps.world import World
+from vedette.outcome import NO_PROGRESS, Outcome
 from vedette.sim.body import Bodies
 from vedette.sim.localisation import Localisation, displaced
-from vedette.sim.world import World
 from vedette.team import PlatformSpec
 
 STUCK_AFTER = 4.0  # without progress [s]
-NO_PROGRESS = 300.0  # no robot has got a new route for so long: give up [s]
 
 
 class Robots:

@@ -20,8 +20,9 @@ from vedette.agent.body import TICK
 from vedette.agent.effects import Drive, Fly, Job
 from vedette.agent.events import JobDone
 from vedette.maps import GridFrame
-from vedette.record.summary import Outcome
-from vedette.sim.clock import Clock
+from vedette.maps.world import World
+from vedette.outcome import Outcome
+from vedette.record.clock import Clock
 from vedette.sim.datagrams import Datagrams
 from vedette.sim.faults import Schedule, Timeline
 from vedette.sim.field import Field
@@ -30,7 +31,6 @@ from vedette.sim.network import Act, Network, Spawn
 from vedette.sim.overlaid import OverlaidNetwork
 from vedette.sim.planted import PlantedTree
 from vedette.sim.radio import Radio
-from vedette.sim.world import World
 
 OPEN = World(GridFrame(1.0, 1, 1), np.zeros((1, 1), np.bool_), "open")  # no walls at all
 JOB_TIME = 0.03  # charged for preparing a round [s]

@@ -13,8 +13,8 @@ from vedette.errors import InputError
 from vedette.kernels.distance import distance_field
 from vedette.kernels.frontier import traversable
 from vedette.maps import FREE
+from vedette.maps.world import World, reachable_poses, standable
 from vedette.sim.components import components, largest
-from vedette.sim.world import World, reachable_poses, standable
 from vedette.team import PlatformSpec
 
 _GAP = 0.05  # [m] least gap between robots that a user placed

@@ -13,7 +13,7 @@ from vedette.agent.effects import Fly, Motion
 from vedette.agent.events import Event, Pose, Sensed
 from vedette.agent.flight import Flight
 from vedette.errors import InputError
-from vedette.record.summary import Outcome
+from vedette.outcome import Outcome
 
 Look: TypeAlias = Callable[[int, NDArray[np.float64], float], object]
 """``look(i, pose (3,), now)``: what vehicle i's sensor tells its mission, noise included; None: nothing."""

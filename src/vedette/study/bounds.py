@@ -45,8 +45,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.kernels.distance import distance_field
-from vedette.sim.score import Reference
-from vedette.sim.world import World
+from vedette.maps.world import World
+from vedette.record.explore.score import Reference
 from vedette.team import PlatformSpec
 
 _SHORTEST = 12.0 / 13.0  # of a path that the distance kernel finds: no way is shorter

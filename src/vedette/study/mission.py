@@ -7,9 +7,11 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from vedette.record.log import RunLog
+from vedette.outcome import Outcome
+from vedette.record.explore.log import ExploreLog
+from vedette.record.explore.summary import ExploreSummary
 from vedette.record.plain import plain
-from vedette.record.summary import Outcome, Summary, Timing, Traffic
+from vedette.record.summary import Timing, Traffic
 from vedette.sim.explore.run import explore, prepare
 from vedette.sim.explore.simulation import ExploreSimulation
 from vedette.study.bounds import Limit, limit
@@ -70,7 +72,7 @@ def broken(error: BaseException) -> Result:
     return Result({"outcome": FAILED, "completed": False, "error": text[:500]}, {}, (), (), (), ())
 
 
-def _figures(summary: Summary, simulation: ExploreSimulation) -> dict[str, Value]:
+def _figures(summary: ExploreSummary, simulation: ExploreSimulation) -> dict[str, Value]:
     """Return what is told of a mission; ``docs/how-to/study.md`` explains the names."""
     resolution = simulation.world.frame.resolution
     seen = [np.count_nonzero(mission.log_odds) * resolution**2 for mission in simulation.missions]
@@ -125,7 +127,7 @@ def _timing(timing: Timing) -> dict[str, Value]:
     }
 
 
-def _curve(log: RunLog) -> tuple[tuple[float, ...], tuple[float, ...]]:
+def _curve(log: ExploreLog) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Return when the unknown share changed, and to what."""
     unknown = np.round(1.0 - log.coverage, 5)
     changed = np.append(True, np.diff(unknown) != 0.0)

@@ -13,8 +13,8 @@ import msgspec
 import numpy as np
 
 from vedette.errors import InputWarning
+from vedette.maps.world import World
 from vedette.sim.explore.simulation import ExploreSetup
-from vedette.sim.world import World
 from vedette.sim.worlds import GENERATORS
 from vedette.team import PlatformSpec
 

@@ -15,8 +15,8 @@ from vedette.domains.search.belief import freeze
 from vedette.domains.search.impact import NOTHING
 from vedette.errors import InputError
 from vedette.missions.search.searching import Looks, Searching
+from vedette.outcome import Outcome
 from vedette.record.search.summary import SearchOutcome
-from vedette.record.summary import Outcome
 from vedette.sim.search.curves import detected_at, dkw, ideal, wilson
 from vedette.sim.search.run import search
 from vedette.sim.search.simulation import COORDINATIONS, FUSIONS, SearchSetup, SearchSimulation

@@ -19,7 +19,7 @@ from vedette.domains.tracking.impact import Impact
 from vedette.domains.tracking.platform import TrackingPlatform
 from vedette.errors import InputError
 from vedette.missions.track.scenario import default_scenario
-from vedette.record import Outcome
+from vedette.outcome import Outcome
 from vedette.record.track.summary import nees_band
 from vedette.sim.flights import lead
 from vedette.sim.track.run import TrackReport

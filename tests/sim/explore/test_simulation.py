@@ -9,12 +9,12 @@ from tests.support.small_missions import check_complete, drawn, robots, run, sma
 from vedette.agent.effects import Send, Traffic
 from vedette.domains.mapping.planners import PLANNERS
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
+from vedette.maps.world import World
 from vedette.negotiation import SCHEMES
+from vedette.record.explore.score import Reference
 from vedette.sim.explore.run import explore, observer_of, prepare, views
 from vedette.sim.explore.simulation import FUSIONS, ExploreSetup
 from vedette.sim.links import Links
-from vedette.sim.score import Reference
-from vedette.sim.world import World
 from vedette.team import PlatformSpec
 
 TWO_DOORS = """

@@ -10,9 +10,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.outcome import Outcome
 from vedette.record.files import write_text
 from vedette.record.plain import json_text, plain
-from vedette.record.summary import Outcome, Traffic
+from vedette.record.summary import Traffic
 from vedette.record.track.log import TrackLog
 
 SCHEMA_VERSION = 2

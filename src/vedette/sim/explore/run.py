@@ -3,32 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from vedette.agent.driving import remaining
-from vedette.record.log import RobotSample, RunLog, Sink
-from vedette.record.summary import Summary, Timing, Traffic
+from vedette.maps.world import World
+from vedette.record.explore.log import RobotSample, Sink
+from vedette.record.explore.observer import ExploreObserver, ExploreReport
+from vedette.record.explore.views import RobotFigures, RobotView, Setting, held_map
+from vedette.record.figures import RoundFigures, traffic_of
+from vedette.record.summary import Traffic
 from vedette.sim.explore.simulation import ExploreSetup, ExploreSimulation, scheme_of
-from vedette.sim.figures import RoundFigures, timing, traffic_of
-from vedette.sim.observer import Observer, RobotFigures, RobotView, Setting, held_map, planning_frame
 from vedette.sim.starts import choose_starts
-from vedette.sim.world import World
 from vedette.team import PlatformSpec
-
-__all__ = ["Report", "explore", "observer_of", "planning_frame", "prepare", "views"]
-
-
-@dataclass(frozen=True, eq=False)
-class Report:
-    """What a mission leaves: its figures, its log, and the map that a living robot holds."""
-
-    summary: Summary
-    timing: Timing
-    log: RunLog
-    classes: NDArray[np.uint8]  # (R, C) team map
 
 
 def prepare(world: World, specs: Sequence[PlatformSpec], setup: ExploreSetup) -> ExploreSimulation:
@@ -41,7 +28,7 @@ def prepare(world: World, specs: Sequence[PlatformSpec], setup: ExploreSetup) ->
     return ExploreSimulation(world, specs, starts, setup)
 
 
-def explore(simulation: ExploreSimulation, sinks: Sequence[Sink] = ()) -> Report:
+def explore(simulation: ExploreSimulation, sinks: Sequence[Sink] = ()) -> ExploreReport:
     """Run a mission to its end; ``sinks`` follow it, and Ctrl-C ends it in good order."""
     observer = observer_of(simulation, sinks)
     simulation.clock.start()
@@ -49,10 +36,10 @@ def explore(simulation: ExploreSimulation, sinks: Sequence[Sink] = ()) -> Report
         lambda: observer.look(simulation.now, views(simulation), simulation.network.links()), observer.period
     )
     observer.finish(simulation.now, views(simulation), simulation.network.links())
-    return Report(observer.summary(outcome), timing(simulation), observer.log, observer.delivered_map())
+    return observer.report(outcome, simulation.clock.timing(simulation.now))
 
 
-def observer_of(simulation: ExploreSimulation, sinks: Sequence[Sink] = ()) -> Observer:
+def observer_of(simulation: ExploreSimulation, sinks: Sequence[Sink] = ()) -> ExploreObserver:
     """Return an observer of a simulated mission that has not begun."""
     setup = simulation.setup
     setting = Setting(
@@ -63,7 +50,7 @@ def observer_of(simulation: ExploreSimulation, sinks: Sequence[Sink] = ()) -> Ob
         radio=None if setup.radio is None else str(setup.radio),
         faults=setup.faults_from,
     )
-    return Observer(simulation.world, simulation.specs, simulation.starts, setting, sinks)
+    return ExploreObserver(simulation.world, simulation.specs, simulation.starts, setting, sinks)
 
 
 def views(simulation: ExploreSimulation) -> list[RobotView]:

@@ -16,10 +16,10 @@ from vedette.domains.mapping.sightings import BINS
 from vedette.errors import InputError, nearest_name
 from vedette.fusion import ChannelFilter, Fusion, ReplicatedEvidence
 from vedette.maps import GridFrame
+from vedette.maps.world import World
 from vedette.missions.explore.exploration import Exploration
 from vedette.sim.robots import Robots
 from vedette.sim.simulation import Setup, Simulation, random_streams
-from vedette.sim.world import World
 from vedette.team import Most, PlatformSpec
 
 FUSIONS: Mapping[str, type[ReplicatedEvidence] | type[ChannelFilter]] = {

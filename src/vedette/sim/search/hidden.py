@@ -11,7 +11,7 @@ from vedette.agent.body import TICK
 from vedette.domains.search.belief import TargetPdf
 from vedette.domains.search.detectors import Detector
 from vedette.missions.search.searching import Looks
-from vedette.record.summary import Outcome
+from vedette.outcome import Outcome
 from vedette.sim.vehicles import Vehicles
 
 

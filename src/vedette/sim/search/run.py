@@ -12,11 +12,12 @@ from vedette.agent.body import TICK
 from vedette.domains.search.bounds import sweep_width
 from vedette.kernels.search import propagate
 from vedette.missions.search.case import SearchCase
+from vedette.outcome import Outcome
+from vedette.record.figures import Negotiated, RoundFigures, traffic
 from vedette.record.search.curves import Curves
 from vedette.record.search.log import Floats, Scene, SearchLog, SearchSink, SearchSnapshot, VehicleSample
 from vedette.record.search.summary import Best, Quality, SearchOutcome, SearchSummary
-from vedette.record.summary import Outcome, Timing
-from vedette.sim.figures import negotiated, timing, traffic
+from vedette.record.summary import Timing
 from vedette.sim.search.curves import ideal, missed
 from vedette.sim.search.simulation import SearchSimulation
 
@@ -38,7 +39,8 @@ def search(simulation: SearchSimulation, sinks: Sequence[SearchSink] = ()) -> Se
     outcome = simulation.run(observer.look, TICK)
     observer.finish()
     curves = ideal_curves(simulation.case, simulation.steps)
-    return SearchReport(observer.summary(outcome, curves), timing(simulation), observer.log, curves)
+    timing = simulation.clock.timing(simulation.now)
+    return SearchReport(observer.summary(outcome, curves), timing, observer.log, curves)
 
 
 def ideal_curves(case: SearchCase, steps: int) -> Curves:
@@ -114,7 +116,8 @@ class Observer:
     def summary(self, outcome: Outcome, curves: Curves) -> SearchSummary:
         """Return the figures of the search, in simulated time."""
         simulation, setup, names = self._simulation, self._simulation.setup, self._simulation.names
-        rounds, last = negotiated(simulation), self.log.snapshots[-1]
+        rounds = Negotiated.by([RoundFigures.of(agent.rounds) for agent in simulation.agents])
+        last = self.log.snapshots[-1]
         found = simulation.declared
         place = None if found is None else (found[1].x, found[1].y)
         error = None if place is None else float(np.hypot(*np.subtract(place, last.target)))

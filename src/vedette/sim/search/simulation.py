@@ -14,7 +14,7 @@ from vedette.errors import InputError
 from vedette.fusion.steps import ReplicatedSteps, Sparse, SparseIntegers, StepEvidence, StepSums
 from vedette.missions.search.case import SearchCase
 from vedette.missions.search.searching import Declared, Searching, SearchPlan, SharedBeliefSearching
-from vedette.record.summary import Outcome
+from vedette.outcome import Outcome
 from vedette.sim.flights import FlightSetup, lead
 from vedette.sim.search.hidden import Hidden, Searchers
 from vedette.sim.simulation import Simulation, random_streams

@@ -15,9 +15,9 @@ from msgspec import structs
 from numpy.typing import NDArray
 
 from vedette.missions.search.case import SearchCase
+from vedette.outcome import Outcome
 from vedette.record.search.curves import CountedCurve
 from vedette.record.search.summary import Counted, Quality, SearchOutcome
-from vedette.record.summary import Outcome
 from vedette.sim.search.curves import Looks, detected_at, dkw, predicted, wilson
 from vedette.sim.search.run import SearchReport, ended_as
 from vedette.sim.search.simulation import COORDINATIONS, SearchSetup, SearchSimulation

@@ -14,7 +14,9 @@ from vedette.domains.tracking.filter import nees, predict
 from vedette.domains.tracking.sensors import SENSORS
 from vedette.errors import InputError
 from vedette.missions.track.scenario import TrackScenario
-from vedette.record.summary import Outcome, Timing
+from vedette.outcome import Outcome
+from vedette.record.figures import Negotiated, RoundFigures, traffic
+from vedette.record.summary import Timing
 from vedette.record.track.log import Scene, TrackLog, TrackSink, TrackSnapshot, VehicleSample
 from vedette.record.track.summary import (
     Quality,
@@ -23,7 +25,6 @@ from vedette.record.track.summary import (
     nees_band,
     squared_position_error,
 )
-from vedette.sim.figures import negotiated, timing, traffic
 from vedette.sim.track.simulation import COORDINATIONS, TrackSetup, TrackSimulation, check_optimum
 
 
@@ -44,7 +45,7 @@ def track(simulation: TrackSimulation, name: str, sinks: Sequence[TrackSink] = (
     simulation.clock.start()
     outcome = simulation.run(observer.look, TICK)
     observer.finish()
-    return TrackReport(observer.summary(outcome), timing(simulation), observer.log)
+    return TrackReport(observer.summary(outcome), simulation.clock.timing(simulation.now), observer.log)
 
 
 def compared(
@@ -159,7 +160,7 @@ class Observer:
     def summary(self, outcome: Outcome) -> TrackSummary:
         """Return the figures of the mission, in simulated time."""
         simulation, setup, names = self._simulation, self._simulation.setup, self._simulation.names
-        rounds = negotiated(simulation)
+        rounds = Negotiated.by([RoundFigures.of(agent.rounds) for agent in simulation.agents])
         shares = self.log.in_view().tolist()
         return TrackSummary(
             completed=outcome is Outcome.COMPLETE,

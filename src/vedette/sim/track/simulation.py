@@ -17,7 +17,7 @@ from vedette.errors import InputError
 from vedette.fusion.gaussian import Information, Motion, track_fusion
 from vedette.missions.track.scenario import TrackScenario
 from vedette.missions.track.tracking import Bounds, Plan, SharedBeliefTracking, Tracking
-from vedette.record.summary import Outcome
+from vedette.outcome import Outcome
 from vedette.sim.flights import FlightSetup, lead
 from vedette.sim.simulation import Simulation, random_streams
 from vedette.sim.track.oracle import MOST_JOINT, DictatedTracking, Oracle, joint_choices

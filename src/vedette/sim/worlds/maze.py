@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.sim.world import World
+from vedette.maps.world import World
 from vedette.sim.worlds.rect import Rect
 from vedette.sim.worlds.size import Scale, world_frame
 

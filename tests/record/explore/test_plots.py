@@ -12,20 +12,25 @@ from PIL import Image
 
 from tests.support.record_mission import recorded, rooms
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
-from vedette.record import Link, Outcome, RobotSample, RunLog, Snapshot, Summary, Traffic, palette
-from vedette.record.animate import animate_gif
-from vedette.record.curves import curves_png
-from vedette.record.progress import progress_png
-from vedette.record.raster import enlarge, fit, known_window, paint, pool
+from vedette.outcome import Outcome
+from vedette.record import palette
+from vedette.record.explore.curves import curves_png
+from vedette.record.explore.film import animate_gif
+from vedette.record.explore.log import ExploreLog, ExploreSnapshot, RobotSample
+from vedette.record.explore.progress import progress_png
+from vedette.record.explore.raster import enlarge, fit, known_window, paint, pool
+from vedette.record.explore.summary import ExploreSummary
+from vedette.record.links import Link
+from vedette.record.summary import Traffic
 from vedette.team import PlatformSpec
 
 
 @pytest.fixture(scope="module")
-def log() -> RunLog:
+def log() -> ExploreLog:
     return recorded(rooms(80, 120), 2, 4, (3.0, 3.0), limit=30.0, kill=(1, 20.0), reach=2.5)
 
 
-def _summary(log: RunLog, **changes: object) -> Summary:
+def _summary(log: ExploreLog, **changes: object) -> ExploreSummary:
     names = [spec.name for spec in log.specs]
     traffic = {name: Traffic() for name in names}
     figures: dict[str, object] = {
@@ -37,19 +42,19 @@ def _summary(log: RunLog, **changes: object) -> Summary:
         "collisions": 0, "min_clearance_m": 0.06, "rounds": 12, "sweeps": 30, "bound_ratio": None,
         "messages": traffic, "bytes": traffic,
     }  # fmt: skip
-    return Summary(**(figures | changes))  # type: ignore[arg-type]
+    return ExploreSummary(**(figures | changes))  # type: ignore[arg-type]
 
 
-def _still(rows: int, cols: int, robots: int) -> RunLog:
+def _still(rows: int, cols: int, robots: int) -> ExploreLog:
     """Return a log of a single moment before anything is known."""
     frame = GridFrame(0.1, rows, cols)
     specs = [PlatformSpec(name=f"robot-{i}") for i in range(robots)]
-    log = RunLog("dark", frame, frame.coarse(2), specs)
+    log = ExploreLog("dark", frame, frame.coarse(2), specs)
     team = tuple(
         RobotSample(s.name, 0.1 * i, 0.1, 0.0, "idle", None, np.empty((0, 2)), True)
         for i, s in enumerate(specs)
     )
-    log.add(Snapshot(0.0, team, 0.0, 0.0, 1.0, np.zeros(frame.shape, np.uint8), None))
+    log.add(ExploreSnapshot(0.0, team, 0.0, 0.0, 1.0, np.zeros(frame.shape, np.uint8), None))
     return log
 
 
@@ -87,7 +92,7 @@ def test_impact_colours_the_unknown_alone_and_at_its_place() -> None:
     impact = np.zeros(frame.coarse(2).shape, np.float32)
     impact[1, 2:] = 1.0
     colours = paint(
-        Snapshot(0.0, (), 0, 0, 0, classes, impact),
+        ExploreSnapshot(0.0, (), 0, 0, 0, classes, impact),
         frame.coarse(2),
         known_window(frame, classes, margin=9.0),
         (100, 100),
@@ -108,7 +113,7 @@ def test_enlarging_makes_every_wall_equally_dark() -> None:
     assert wide.shape == (100,)
 
 
-def test_the_same_log_gives_the_same_bytes(log: RunLog, tmp_path: Path) -> None:
+def test_the_same_log_gives_the_same_bytes(log: ExploreLog, tmp_path: Path) -> None:
     for name in ("one", "two"):
         (tmp_path / name).mkdir()
         progress_png(log, tmp_path / name / "progress.png")
@@ -122,7 +127,7 @@ def test_the_same_log_gives_the_same_bytes(log: RunLog, tmp_path: Path) -> None:
         assert (tmp_path / "one" / file).read_bytes() == (tmp_path / "two" / file).read_bytes()
 
 
-def test_the_last_stage_shows_the_final_map(log: RunLog, tmp_path: Path) -> None:
+def test_the_last_stage_shows_the_final_map(log: ExploreLog, tmp_path: Path) -> None:
     progress_png(log, tmp_path / "progress.png")
     image = np.asarray(Image.open(tmp_path / "progress.png").convert("RGB"))
     assert image.shape[1] > 1500
@@ -146,17 +151,17 @@ def test_odd_shapes_and_an_unknown_world_are_drawn(rows: int, cols: int, robots:
             assert max(image.size) <= 2400
 
 
-def _linked(links: tuple[Link, ...] | None) -> RunLog:
+def _linked(links: tuple[Link, ...] | None) -> ExploreLog:
     """Return a log of three robots far from each other in the dark."""
     frame = GridFrame(0.1, 60, 90)
     places = ((1.0, 1.0), (8.0, 1.0), (4.5, 5.0))
-    log = RunLog("dark", frame, frame.coarse(2), [PlatformSpec(name=f"robot-{i}") for i in range(3)])
+    log = ExploreLog("dark", frame, frame.coarse(2), [PlatformSpec(name=f"robot-{i}") for i in range(3)])
     team = tuple(
         RobotSample(spec.name, *place, 0.0, "idle", None, np.empty((0, 2)), True)
         for spec, place in zip(log.specs, places, strict=True)
     )
     for t in (0.0, 1.0, 2.0):
-        log.add(Snapshot(t, team, 0.0, 0.0, 1.0, np.full(frame.shape, FREE, np.uint8), None, links))
+        log.add(ExploreSnapshot(t, team, 0.0, 0.0, 1.0, np.full(frame.shape, FREE, np.uint8), None, links))
     return log
 
 
@@ -203,7 +208,7 @@ def test_times_apart_are_shaded_in_the_curves(tmp_path: Path) -> None:
     assert shares[0] < 0.2 < shares[1]
 
 
-def test_the_film_is_short_small_and_ends_slowly(log: RunLog, tmp_path: Path) -> None:
+def test_the_film_is_short_small_and_ends_slowly(log: ExploreLog, tmp_path: Path) -> None:
     animate_gif(log, tmp_path / "mission.gif", frames=6)
     with Image.open(tmp_path / "mission.gif") as film:
         assert film.n_frames == 6  # type: ignore[attr-defined]

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save
-from vedette.record.log import RobotSample, RunLog, Snapshot
-from vedette.record.raster import Window, enlarge, known_window, paint
+from vedette.record.explore.log import ExploreLog, ExploreSnapshot, RobotSample
+from vedette.record.explore.raster import Window, enlarge, known_window, paint
 from vedette.record.signs import DASHES, badge, draw_links, legend_line, link_signs, scale_bar
 
 _GAP, _MARGIN, _TOP = 0.14, 0.2, 0.72  # [inch]
@@ -37,7 +37,7 @@ class _Layout:
     corners: tuple[tuple[float, float], ...]  # lower-left of each panel
 
 
-def progress_png(log: RunLog, path: Path | str) -> None:
+def progress_png(log: ExploreLog, path: Path | str) -> None:
     """Draw map, team impact, robots, paths and goals at three stages of a log that is not empty."""
     stages = log.stages()
     window = known_window(log.frame, stages[-1].classes)
@@ -54,7 +54,7 @@ def progress_png(log: RunLog, path: Path | str) -> None:
         save(figure, path)
 
 
-def _layout(aspect: float, panels: int, last: Snapshot) -> _Layout:
+def _layout(aspect: float, panels: int, last: ExploreSnapshot) -> _Layout:
     """Fit the panels: side by side, or one above the other where the map is far wider than high."""
     stacked = aspect > 2.2
     panel_width = 9.0 if stacked else max(0.3, min(4.2, 6.5 * aspect))
@@ -72,7 +72,12 @@ def _layout(aspect: float, panels: int, last: Snapshot) -> _Layout:
 
 
 def _panel(
-    figure: Figure, corner: tuple[float, float], layout: _Layout, log: RunLog, window: Window, stage: Snapshot
+    figure: Figure,
+    corner: tuple[float, float],
+    layout: _Layout,
+    log: ExploreLog,
+    window: Window,
+    stage: ExploreSnapshot,
 ) -> None:
     """Draw one stage."""
     axes = figure.add_axes(_box(layout, *corner, *layout.panel))
@@ -131,14 +136,14 @@ def _robot(axes: Axes, index: int, robot: RobotSample) -> None:
     )  # fmt: skip
 
 
-def _heading(figure: Figure, layout: _Layout, log: RunLog) -> None:
+def _heading(figure: Figure, layout: _Layout, log: ExploreLog) -> None:
     """Write the world and the team over the panels."""
     robots = f"{len(log.specs)} robot" + ("s" if len(log.specs) > 1 else "")
     at = _MARGIN / layout.width, 1 - 0.2 / layout.height
     figure.text(*at, f"{log.world}: {robots}", fontsize=12, fontweight="bold", va="top")
 
 
-def _legend(figure: Figure, layout: _Layout, last: Snapshot) -> None:
+def _legend(figure: Figure, layout: _Layout, last: ExploreSnapshot) -> None:
     """Explain robots, links, ways, cell classes and the impact's colour under the panels."""
     robots = last.robots
     team = [badge(i, robot.alive) for i, robot in enumerate(robots)]
@@ -161,7 +166,7 @@ def _explain(figure: Figure, y: float, signs: Sequence[Line2D | Patch]) -> None:
     legend_line(figure, _MARGIN, y, signs, [str(sign.get_label()) for sign in signs])
 
 
-def _legend_lines(width: float, last: Snapshot) -> int:
+def _legend_lines(width: float, last: ExploreSnapshot) -> int:
     """Count the lines of the legend: robots, links if they are simulated, all else."""
     robots = -(-len(last.robots) // _robots_a_row(width, last.robots))
     return robots + (last.links is not None) + (1 if width >= _WIDE else 2)

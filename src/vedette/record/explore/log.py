@@ -32,7 +32,7 @@ class RobotSample:
 
 
 @dataclass(frozen=True, eq=False)
-class Snapshot:
+class ExploreSnapshot:
     """The mission at one moment of simulated time."""
 
     t: float  # [s]
@@ -55,7 +55,7 @@ class Snapshot:
 class Sink(Protocol):
     """An output that follows the mission while it runs."""
 
-    def update(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: ExploreSnapshot) -> None:
         """Take the next snapshot; its arrays may change after the call."""
 
 
@@ -63,7 +63,7 @@ class Sink(Protocol):
 class _Packed:
     """A snapshot with its grids compressed."""
 
-    snapshot: Snapshot  # its grids are empty
+    snapshot: ExploreSnapshot  # its grids are empty
     classes: bytes
     impact: bytes | None
 
@@ -72,7 +72,7 @@ class _Packed:
         return len(self.classes) + len(self.impact or b"")
 
 
-class RunLog:
+class ExploreLog:
     """Curves and poses of every snapshot; grids of as many as ``budget`` bytes hold, evenly spaced.
 
     Grids are compressed as they come, so a 4000 x 4000 map costs some 0.2 MB a snapshot. When the budget is
@@ -103,7 +103,7 @@ class RunLog:
         self._stride = 1
         self._last: _Packed | None = None
 
-    def add(self, snapshot: Snapshot) -> None:
+    def add(self, snapshot: ExploreSnapshot) -> None:
         """Keep a snapshot and forward it; the caller may reuse its arrays afterwards.
 
         Raises ``ValueError`` for another team, other grids, or a time before the last.
@@ -167,13 +167,13 @@ class RunLog:
         steps = np.diff(position, axis=0, prepend=position[:1])
         return np.asarray(np.cumsum(np.hypot(steps[..., 0], steps[..., 1]), axis=0))
 
-    def snapshots(self) -> Iterator[Snapshot]:
+    def snapshots(self) -> Iterator[ExploreSnapshot]:
         """Yield the stored snapshots in order, the last one added included; impacts to within 1/510."""
         for packed in self._kept():
             yield self._unpack(packed)
 
     @property
-    def last(self) -> Snapshot:
+    def last(self) -> ExploreSnapshot:
         """The last snapshot; ``ValueError`` if there is none."""
         if self._last is None:
             raise ValueError("the log is empty: add a snapshot first")
@@ -183,7 +183,7 @@ class RunLog:
         """Count what `snapshots` yields."""
         return len(self._kept())
 
-    def stages(self, n: int = 3) -> list[Snapshot]:
+    def stages(self, n: int = 3) -> list[ExploreSnapshot]:
         """Return the first stored snapshot at each of 1/n, 2/n, ... of the final coverage, then the last."""
         last, kept = self.last, self._kept()
         coverage = np.maximum.accumulate([packed.snapshot.coverage for packed in kept])
@@ -191,7 +191,7 @@ class RunLog:
         first = np.searchsorted(coverage, levels - 1e-12)
         return [*(self._unpack(kept[i]) for i in first), last]
 
-    def _check(self, snapshot: Snapshot) -> None:
+    def _check(self, snapshot: ExploreSnapshot) -> None:
         names = [robot.name for robot in snapshot.robots]
         if names != [spec.name for spec in self.specs]:
             raise ValueError(f"the log is of {[spec.name for spec in self.specs]}; got a snapshot of {names}")
@@ -220,7 +220,7 @@ class RunLog:
     def _curve(self, column: int) -> NDArray[np.float64]:
         return np.array(self._curves, dtype=np.float64).reshape(-1, 5)[:, column]
 
-    def _unpack(self, packed: _Packed) -> Snapshot:
+    def _unpack(self, packed: _Packed) -> ExploreSnapshot:
         classes = np.frombuffer(zlib.decompress(packed.classes), np.uint8).reshape(self.frame.shape)
         impact: NDArray[np.float32] | None = None
         if packed.impact is not None:
@@ -232,7 +232,7 @@ class RunLog:
 _EMPTY = np.empty((0, 0), np.uint8)
 
 
-def _pack(snapshot: Snapshot) -> _Packed:
+def _pack(snapshot: ExploreSnapshot) -> _Packed:
     """Compress the grids; level 1 is within a fifth of the best size here and ten times as fast."""
     impact = None
     if snapshot.impact is not None:

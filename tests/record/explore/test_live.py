@@ -11,10 +11,11 @@ import pytest
 from rich.console import Console
 
 from tests.support.record_mission import frames, mission, rooms
-from vedette.record import Link, Snapshot
-from vedette.record.live import LiveView
+from vedette.record.explore.live import LiveView
+from vedette.record.explore.log import ExploreSnapshot
+from vedette.record.explore.screen import screen
+from vedette.record.links import Link
 from vedette.record.marks import together
-from vedette.record.screen import screen
 from vedette.team import PlatformSpec
 
 SOLID = rooms(80, 120)
@@ -23,9 +24,9 @@ SPECS = [PlatformSpec(name=name, range=2.5) for name in ("ada", "bob")]
 
 
 @pytest.fixture(scope="module")
-def snapshots() -> list[Snapshot]:
+def snapshots() -> list[ExploreSnapshot]:
     run = mission(SOLID, SPECS, np.random.default_rng(4), (3.0, 3.0), limit=23.0, kill=(1, 15.0))
-    return [Snapshot(**(vars(s) | {"classes": s.classes.copy()})) for s in run]
+    return [ExploreSnapshot(**(vars(s) | {"classes": s.classes.copy()})) for s in run]
 
 
 def _terminal(width: int = 100, height: int = 40, colours: bool = True) -> Console:
@@ -41,13 +42,13 @@ def _text(console: Console) -> str:
     return re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", console.file.getvalue())
 
 
-def _picture(console: Console, snapshot: Snapshot) -> list[str]:
+def _picture(console: Console, snapshot: ExploreSnapshot) -> list[str]:
     console.print(screen(console, "rooms", FRAME, PLANNING, snapshot, [1.5, 2.5]))
     return _text(console).splitlines()
 
 
 def test_without_a_terminal_there_is_a_line_every_ten_seconds_and_at_last(
-    snapshots: list[Snapshot],
+    snapshots: list[ExploreSnapshot],
 ) -> None:
     console = Console(file=io.StringIO(), width=40)
     with LiveView("rooms", FRAME, PLANNING, console=console) as view:
@@ -61,8 +62,8 @@ def test_without_a_terminal_there_is_a_line_every_ten_seconds_and_at_last(
     assert "bob dead" in lines[3]
 
 
-def _with_links(snapshot: Snapshot, *links: Link) -> Snapshot:
-    return Snapshot(**(vars(snapshot) | {"links": links}))
+def _with_links(snapshot: ExploreSnapshot, *links: Link) -> ExploreSnapshot:
+    return ExploreSnapshot(**(vars(snapshot) | {"links": links}))
 
 
 def test_a_team_is_named_by_its_parts() -> None:
@@ -72,7 +73,7 @@ def test_a_team_is_named_by_its_parts() -> None:
 
 @pytest.mark.parametrize("terminal", [True, False])
 def test_the_view_says_whether_the_team_is_together_where_links_are_simulated(
-    snapshots: list[Snapshot], terminal: bool
+    snapshots: list[ExploreSnapshot], terminal: bool
 ) -> None:
     ideal, alone = snapshots[0], _with_links(snapshots[0])
     linked, beside = (_with_links(snapshots[0], Link(0, 1, on_tree, 0.0)) for on_tree in (True, False))
@@ -85,7 +86,7 @@ def test_the_view_says_whether_the_team_is_together_where_links_are_simulated(
 
 
 @pytest.mark.parametrize("terminal", [True, False])
-def test_a_quiet_view_prints_nothing(snapshots: list[Snapshot], terminal: bool) -> None:
+def test_a_quiet_view_prints_nothing(snapshots: list[ExploreSnapshot], terminal: bool) -> None:
     console = Console(file=io.StringIO(), force_terminal=terminal)
     with LiveView("rooms", FRAME, PLANNING, quiet=True, console=console) as view:
         for snapshot in snapshots:
@@ -94,7 +95,7 @@ def test_a_quiet_view_prints_nothing(snapshots: list[Snapshot], terminal: bool) 
 
 
 def test_a_terminal_gets_at_most_ten_pictures_a_second_and_the_last(
-    snapshots: list[Snapshot],
+    snapshots: list[ExploreSnapshot],
 ) -> None:
     console = _terminal()
     ticks = itertools.count()
@@ -106,7 +107,7 @@ def test_a_terminal_gets_at_most_ten_pictures_a_second_and_the_last(
     assert f"{snapshots[-1].t:.1f} s" in _text(console).split("covered")[-2]
 
 
-def test_an_interruption_leaves_the_last_picture_and_the_cursor(snapshots: list[Snapshot]) -> None:
+def test_an_interruption_leaves_the_last_picture_and_the_cursor(snapshots: list[ExploreSnapshot]) -> None:
     console = _terminal()
 
     def interrupted() -> None:
@@ -123,7 +124,7 @@ def test_an_interruption_leaves_the_last_picture_and_the_cursor(snapshots: list[
 
 @pytest.mark.parametrize("size", [(200, 60), (130, 40), (80, 24), (60, 10), (30, 5)])
 def test_the_picture_never_exceeds_the_terminal_width_and_shows_every_robot(
-    snapshots: list[Snapshot], size: tuple[int, int]
+    snapshots: list[ExploreSnapshot], size: tuple[int, int]
 ) -> None:
     lines = _picture(_terminal(*size), _with_links(snapshots[-1]))
     assert max(len(line) for line in lines) <= size[0]
@@ -135,13 +136,13 @@ def test_the_picture_never_exceeds_the_terminal_width_and_shows_every_robot(
         assert len(lines) <= size[1]
 
 
-def test_without_colours_walls_and_robots_are_drawn_with_characters(snapshots: list[Snapshot]) -> None:
+def test_without_colours_walls_and_robots_are_drawn_with_characters(snapshots: list[ExploreSnapshot]) -> None:
     text = "\n".join(_picture(_terminal(colours=False), snapshots[-1]))
     for glyph in ("█", "·", "1", "×"):
         assert glyph in text
 
 
-def test_the_map_has_the_building_the_right_way_up(snapshots: list[Snapshot]) -> None:
+def test_the_map_has_the_building_the_right_way_up(snapshots: list[ExploreSnapshot]) -> None:
     lines = _picture(_terminal(130, 40, colours=False), snapshots[0])
     building = [line[2:72] for line in lines[3:-1]]
     robot = snapshots[0].robots[0]

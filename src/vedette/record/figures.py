@@ -1,4 +1,4 @@
-"""Figures that every simulated mission has: rounds, traffic, and what they cost in wall time."""
+"""Figures that every mission has: rounds and traffic."""
 
 from __future__ import annotations
 
@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 from vedette.agent.effects import Traffic as Kind
 from vedette.agent.rounds import Rounds
-from vedette.record.summary import Timing, Traffic
-from vedette.sim.simulation import Simulation
+from vedette.record.summary import Traffic
 
 
 @dataclass(frozen=True)
@@ -44,11 +43,6 @@ class Negotiated:
         return cls(leader.rounds, leader.sweeps, mean)
 
 
-def negotiated(simulation: Simulation) -> Negotiated:
-    """Return how the rounds of a mission went."""
-    return Negotiated.by([RoundFigures.of(agent.rounds) for agent in simulation.agents])
-
-
 def traffic_of(sent: Mapping[Kind, Sequence[int]], robot: int) -> Traffic:
     """Return what one robot sent of each kind (``Links.messages_sent``, ``.bytes_sent``)."""
     return Traffic(**{kind.value: counts[robot] for kind, counts in sent.items()})
@@ -57,16 +51,3 @@ def traffic_of(sent: Mapping[Kind, Sequence[int]], robot: int) -> Traffic:
 def traffic(names: Sequence[str], sent: Mapping[Kind, Sequence[int]]) -> dict[str, Traffic]:
     """Return messages or bytes sent (``Links.messages_sent``, ``.bytes_sent``) by name and kind."""
     return {name: traffic_of(sent, i) for i, name in enumerate(names)}
-
-
-def timing(simulation: Simulation) -> Timing:
-    """Return the wall-clock figures of a mission."""
-    clock = simulation.clock
-    wall = clock.elapsed()
-    return Timing(
-        planning_ms=clock.planning_ms,
-        answer_ms=clock.answer_ms,
-        round_ms=None,
-        real_time_factor=simulation.now / wall if wall > 0 else 0.0,
-        wall_s=wall,
-    )

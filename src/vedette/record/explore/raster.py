@@ -11,7 +11,7 @@ from PIL import Image
 
 from vedette.maps import UNKNOWN, GridFrame
 from vedette.record import palette
-from vedette.record.log import Snapshot
+from vedette.record.explore.log import ExploreSnapshot
 
 _SHADES = 200  # of the impact: with the classes they fit a byte
 _RAMP = np.linspace(0.0, 1.0, _SHADES, dtype=np.float32)
@@ -65,7 +65,7 @@ def fit(shape: tuple[int, ...], limit: tuple[int, int]) -> tuple[int, int]:
 
 
 def paint(
-    snapshot: Snapshot,
+    snapshot: ExploreSnapshot,
     planning: GridFrame,
     window: Window,
     limit: tuple[int, int],

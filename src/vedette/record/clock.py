@@ -9,7 +9,7 @@ from typing import TypeVar
 
 from vedette.agent.effects import Job
 from vedette.agent.rounds import Rounds
-from vedette.record.summary import Spread
+from vedette.record.summary import Spread, Timing
 
 T = TypeVar("T")
 
@@ -29,6 +29,12 @@ class Clock:
     def elapsed(self) -> float:
         """Return the wall time since the start [s]."""
         return wall.perf_counter() - self.started
+
+    def timing(self, now: float) -> Timing:
+        """Return the wall-clock figures of a mission that has come to ``now`` [s], its rounds simulated."""
+        wall_s = self.elapsed()
+        factor = now / wall_s if wall_s > 0 else 0.0
+        return Timing(self.planning_ms, self.answer_ms, None, factor, wall_s)
 
     def measured(self, robot: int, rounds: Rounds, act: Callable[[], T]) -> T:
         """Let a robot's agent do something, and count it if it is part of a round."""

@@ -16,11 +16,15 @@ from vedette.domains.mapping.belief import LN2
 from vedette.domains.mapping.impact import Impact
 from vedette.kernels.coverage import LAYERS
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
-from vedette.record import Link, Outcome, RobotSample, Traffic
+from vedette.maps.world import World
+from vedette.outcome import Outcome
+from vedette.record.explore.log import RobotSample
+from vedette.record.explore.observer import ExploreObserver
+from vedette.record.explore.views import RobotFigures, RobotView, Setting, held_map, union_map
+from vedette.record.figures import RoundFigures
+from vedette.record.links import Link
+from vedette.record.summary import Traffic
 from vedette.sim.explore.run import views
-from vedette.sim.figures import RoundFigures
-from vedette.sim.observer import Observer, RobotFigures, RobotView, Setting, held_map, union_map
-from vedette.sim.world import World
 
 ROWS, COLS = 20, 30
 WORLD = World(GridFrame(0.1, ROWS, COLS), np.zeros((ROWS, COLS), np.bool_), "hall")
@@ -54,9 +58,9 @@ def columns(*known: int, kind: int = FREE) -> NDArray[np.uint8]:
     return classes
 
 
-def observer() -> Observer:
+def observer() -> ExploreObserver:
     """Of a team that has not begun."""
-    return Observer(WORLD, SPECS, STARTS, SETTING)
+    return ExploreObserver(WORLD, SPECS, STARTS, SETTING)
 
 
 def test_a_robot_holds_what_is_fused_and_its_own_cells_that_are_not_published_yet() -> None:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from vedette.kernels.visibility import visible_cells
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
-from vedette.sim.world import World, reachable_poses
+from vedette.maps.world import World, reachable_poses
 from vedette.team import PlatformSpec
 
 ROOM = 0.01  # a disc that would touch both sides of a slot does not fit through it [m]

@@ -9,29 +9,29 @@ import pytest
 
 from tests.support.record_mission import frames, mission, recorded, rooms
 from vedette.maps import GridFrame
-from vedette.record import RobotSample, RunLog, Snapshot
+from vedette.record.explore.log import ExploreLog, ExploreSnapshot, RobotSample
 from vedette.team import PlatformSpec
 
 SOLID = rooms(80, 120)
 SPECS = [PlatformSpec(name="robot-1"), PlatformSpec(name="robot-2")]
 
 
-def _snapshots(limit: float = 40.0) -> list[Snapshot]:
+def _snapshots(limit: float = 40.0) -> list[ExploreSnapshot]:
     """Return a mission's snapshots with grids of their own."""
     run = mission(SOLID, SPECS, np.random.default_rng(4), (3.0, 3.0), limit=limit, radio=1.0)
-    return [Snapshot(**(vars(s) | {"classes": s.classes.copy()})) for s in run]
+    return [ExploreSnapshot(**(vars(s) | {"classes": s.classes.copy()})) for s in run]
 
 
 @pytest.fixture(scope="module")
-def snapshots() -> list[Snapshot]:
+def snapshots() -> list[ExploreSnapshot]:
     return _snapshots()
 
 
-def _log(budget: int = 64 << 20, sinks: tuple[object, ...] = ()) -> RunLog:
-    return RunLog("rooms", *frames(SOLID, 0.1, (0.0, 0.0)), SPECS, sinks, budget)  # type: ignore[arg-type]
+def _log(budget: int = 64 << 20, sinks: tuple[object, ...] = ()) -> ExploreLog:
+    return ExploreLog("rooms", *frames(SOLID, 0.1, (0.0, 0.0)), SPECS, sinks, budget)  # type: ignore[arg-type]
 
 
-def test_stored_snapshots_come_back_as_they_were(snapshots: list[Snapshot]) -> None:
+def test_stored_snapshots_come_back_as_they_were(snapshots: list[ExploreSnapshot]) -> None:
     log = _log()
     for snapshot in snapshots:
         log.add(snapshot)
@@ -57,7 +57,7 @@ def test_grids_may_be_reused_by_the_caller_after_add() -> None:
         np.testing.assert_array_equal(now.classes, was)
 
 
-def test_curves_and_path_lengths_hold_every_snapshot(snapshots: list[Snapshot]) -> None:
+def test_curves_and_path_lengths_hold_every_snapshot(snapshots: list[ExploreSnapshot]) -> None:
     log = _log()
     for snapshot in snapshots:
         log.add(snapshot)
@@ -74,7 +74,7 @@ def test_curves_and_path_lengths_hold_every_snapshot(snapshots: list[Snapshot]) 
     assert log.path_length[-1, 1] == pytest.approx(total)
 
 
-def test_a_small_budget_thins_evenly_and_keeps_first_and_last(snapshots: list[Snapshot]) -> None:
+def test_a_small_budget_thins_evenly_and_keeps_first_and_last(snapshots: list[ExploreSnapshot]) -> None:
     log = _log(budget=4000)
     for snapshot in snapshots:
         log.add(snapshot)
@@ -86,7 +86,7 @@ def test_a_small_budget_thins_evenly_and_keeps_first_and_last(snapshots: list[Sn
     assert len(log.times) == len(snapshots)
 
 
-def test_stages_are_the_first_at_each_third_of_the_final_coverage(snapshots: list[Snapshot]) -> None:
+def test_stages_are_the_first_at_each_third_of_the_final_coverage(snapshots: list[ExploreSnapshot]) -> None:
     log = _log()
     for snapshot in snapshots:
         log.add(snapshot)
@@ -95,12 +95,12 @@ def test_stages_are_the_first_at_each_third_of_the_final_coverage(snapshots: lis
     assert [s.t for s in log.stages()] == [*expected, snapshots[-1].t]
 
 
-def test_every_snapshot_reaches_every_sink(snapshots: list[Snapshot]) -> None:
+def test_every_snapshot_reaches_every_sink(snapshots: list[ExploreSnapshot]) -> None:
     class Counter:
         def __init__(self) -> None:
             self.times: list[float] = []
 
-        def update(self, snapshot: Snapshot) -> None:
+        def update(self, snapshot: ExploreSnapshot) -> None:
             self.times.append(snapshot.t)
 
     sinks = Counter(), Counter()
@@ -112,12 +112,12 @@ def test_every_snapshot_reaches_every_sink(snapshots: list[Snapshot]) -> None:
 
 def test_a_huge_map_is_kept_in_little_memory() -> None:
     frame = GridFrame(0.05, 4000, 4000)
-    log = RunLog("cave", frame, frame.coarse(4), SPECS[:1])
+    log = ExploreLog("cave", frame, frame.coarse(4), SPECS[:1])
     classes = np.zeros(frame.shape, np.uint8)
     classes[1000:3000, 500:3500] = 1
     robot = RobotSample("robot-1", 1.0, 1.0, 0.0, "driving", None, np.empty((0, 2)), True)
     for t in range(3):
-        log.add(Snapshot(float(t), (robot,), 0.1, 0.4, 1.0, classes, None))
+        log.add(ExploreSnapshot(float(t), (robot,), 0.1, 0.4, 1.0, classes, None))
     assert sum(kept.size for kept in log._stored) < 1_000_000
 
 
@@ -131,12 +131,12 @@ def test_a_huge_map_is_kept_in_little_memory() -> None:
     ],
 )
 def test_a_snapshot_that_does_not_fit_is_refused(
-    snapshots: list[Snapshot], change: dict[str, object], words: str
+    snapshots: list[ExploreSnapshot], change: dict[str, object], words: str
 ) -> None:
     log = _log()
     log.add(snapshots[0])
     with pytest.raises(ValueError, match=words):
-        log.add(Snapshot(**(vars(snapshots[1]) | change)))
+        log.add(ExploreSnapshot(**(vars(snapshots[1]) | change)))
     assert len(log) == 1
 
 

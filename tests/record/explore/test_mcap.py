@@ -16,8 +16,9 @@ from tests.support.places import ROOT
 from tests.support.record_mission import frames, mission, rooms
 from vedette.errors import InputError
 from vedette.maps import FREE, OCCUPIED
-from vedette.record import Link, Snapshot
-from vedette.record.mcap import McapWriter
+from vedette.record.explore.log import ExploreSnapshot
+from vedette.record.explore.mcap import ExploreMcapWriter
+from vedette.record.links import Link
 from vedette.record.ros import corners, ros_names
 from vedette.team import PlatformSpec
 
@@ -28,15 +29,15 @@ FRAME, PLANNING = frames(SOLID, 0.1, ORIGIN)
 
 
 @pytest.fixture(scope="module")
-def snapshots() -> list[Snapshot]:
+def snapshots() -> list[ExploreSnapshot]:
     specs = [PlatformSpec(name=name, range=2.5) for name in NAMES]
     rng = np.random.default_rng(4)
     run = mission(SOLID, specs, rng, (1.0, 4.0), origin=ORIGIN, limit=23.0, kill=(1, 12.0), radio=2.0)
-    return [Snapshot(**(vars(s) | {"classes": s.classes.copy()})) for s in run]
+    return [ExploreSnapshot(**(vars(s) | {"classes": s.classes.copy()})) for s in run]
 
 
-def _write(path: Path, snapshots: list[Snapshot]) -> Path:
-    with McapWriter(path, "rooms", FRAME, PLANNING, NAMES) as writer:
+def _write(path: Path, snapshots: list[ExploreSnapshot]) -> Path:
+    with ExploreMcapWriter(path, "rooms", FRAME, PLANNING, NAMES) as writer:
         for snapshot in snapshots:
             writer.update(snapshot)
     return path
@@ -59,12 +60,14 @@ def _read(path: Path) -> dict[str, list[tuple[float, Any]]]:
 
 
 @pytest.fixture(scope="module")
-def topics(tmp_path_factory: pytest.TempPathFactory, snapshots: list[Snapshot]) -> dict[str, list[Any]]:
+def topics(
+    tmp_path_factory: pytest.TempPathFactory, snapshots: list[ExploreSnapshot]
+) -> dict[str, list[Any]]:
     return _read(_write(tmp_path_factory.mktemp("mcap") / "run.mcap", snapshots))
 
 
 def test_maps_come_every_five_seconds_and_at_the_end(
-    topics: dict[str, list[Any]], snapshots: list[Snapshot]
+    topics: dict[str, list[Any]], snapshots: list[ExploreSnapshot]
 ) -> None:
     assert [t for t, _ in topics["/map"]] == [0.0, 5.0, 10.0, 15.0, 20.0, 23.0]
     by_time = {s.t: s for s in snapshots}
@@ -79,7 +82,7 @@ def test_maps_come_every_five_seconds_and_at_the_end(
 
 
 def test_the_team_impact_is_in_per_cent_of_planning_cells(
-    topics: dict[str, list[Any]], snapshots: list[Snapshot]
+    topics: dict[str, list[Any]], snapshots: list[ExploreSnapshot]
 ) -> None:
     t, grid = topics["/team_impact"][1]
     impact = next(s.impact for s in snapshots if s.t == t)
@@ -89,7 +92,7 @@ def test_the_team_impact_is_in_per_cent_of_planning_cells(
 
 
 def test_poses_and_transforms_follow_living_robots(
-    topics: dict[str, list[Any]], snapshots: list[Snapshot]
+    topics: dict[str, list[Any]], snapshots: list[ExploreSnapshot]
 ) -> None:
     poses = topics["/robot_1/pose"]
     assert len(poses) == len(snapshots)
@@ -109,7 +112,7 @@ def test_poses_and_transforms_follow_living_robots(
 
 
 def test_plans_and_states_are_written_when_they_change(
-    topics: dict[str, list[Any]], snapshots: list[Snapshot]
+    topics: dict[str, list[Any]], snapshots: list[ExploreSnapshot]
 ) -> None:
     states = [s.robots[1].state for s in snapshots]
     changes = [b for a, b in zip([None, *states], states, strict=False) if a != b]
@@ -122,7 +125,7 @@ def test_plans_and_states_are_written_when_they_change(
     assert (goal.pose.position.x, goal.pose.position.y) == snapshots[0].robots[0].goal
 
 
-def test_metrics_hold_every_snapshot(topics: dict[str, list[Any]], snapshots: list[Snapshot]) -> None:
+def test_metrics_hold_every_snapshot(topics: dict[str, list[Any]], snapshots: list[ExploreSnapshot]) -> None:
     for name in ("coverage", "known_fraction", "entropy"):
         assert [message.data for _, message in topics[f"/metrics/{name}"]] == [
             getattr(s, name) for s in snapshots
@@ -130,7 +133,7 @@ def test_metrics_hold_every_snapshot(topics: dict[str, list[Any]], snapshots: li
 
 
 def test_links_are_lines_between_robots_those_of_the_tree_apart(
-    topics: dict[str, list[Any]], snapshots: list[Snapshot]
+    topics: dict[str, list[Any]], snapshots: list[ExploreSnapshot]
 ) -> None:
     assert [t for t, _ in topics["/links"]] == [s.t for s in snapshots]
     assert 0 < sum(bool(s.links) for s in snapshots) < len(snapshots)
@@ -145,9 +148,11 @@ def test_links_are_lines_between_robots_those_of_the_tree_apart(
         assert len(tree.colors) == len(places)
 
 
-def test_the_more_a_link_loses_the_paler_is_its_line(tmp_path: Path, snapshots: list[Snapshot]) -> None:
+def test_the_more_a_link_loses_the_paler_is_its_line(
+    tmp_path: Path, snapshots: list[ExploreSnapshot]
+) -> None:
     links = Link(0, 1, True, 0.0), Link(0, 1, False, 0.0), Link(0, 1, False, 1.0)
-    linked = Snapshot(**(vars(snapshots[0]) | {"links": links}))
+    linked = ExploreSnapshot(**(vars(snapshots[0]) | {"links": links}))
     _, message = _read(_write(tmp_path / "run.mcap", [linked]))["/links"][0]
     tree, other = message.markers
     alphas = [colour.a for colour in (*tree.colors, *other.colors)]
@@ -155,8 +160,8 @@ def test_the_more_a_link_loses_the_paler_is_its_line(tmp_path: Path, snapshots: 
     assert alphas[0] == 1.0 > alphas[2] > alphas[4] > 0.0
 
 
-def test_an_ideal_network_has_no_links_to_show(tmp_path: Path, snapshots: list[Snapshot]) -> None:
-    ideal = Snapshot(**(vars(snapshots[0]) | {"links": None}))
+def test_an_ideal_network_has_no_links_to_show(tmp_path: Path, snapshots: list[ExploreSnapshot]) -> None:
+    ideal = ExploreSnapshot(**(vars(snapshots[0]) | {"links": None}))
     assert "/links" not in _read(_write(tmp_path / "run.mcap", [ideal]))
 
 
@@ -167,16 +172,16 @@ def test_the_documentation_lists_exactly_the_topics(topics: dict[str, list[Any]]
     assert listed == {topic.replace("robot_1", "<robot>") for topic in topics if "2nd" not in topic}
 
 
-def test_the_same_mission_gives_the_same_bytes(tmp_path: Path, snapshots: list[Snapshot]) -> None:
+def test_the_same_mission_gives_the_same_bytes(tmp_path: Path, snapshots: list[ExploreSnapshot]) -> None:
     one, two = (_write(tmp_path / name, snapshots).read_bytes() for name in ("one.mcap", "two.mcap"))
     assert one == two
 
 
-def test_an_interrupted_mission_leaves_a_valid_file(tmp_path: Path, snapshots: list[Snapshot]) -> None:
+def test_an_interrupted_mission_leaves_a_valid_file(tmp_path: Path, snapshots: list[ExploreSnapshot]) -> None:
     path = tmp_path / "run.mcap"
 
     def interrupted() -> None:
-        with McapWriter(path, "rooms", FRAME, PLANNING, NAMES) as writer:
+        with ExploreMcapWriter(path, "rooms", FRAME, PLANNING, NAMES) as writer:
             for snapshot in snapshots:
                 assert not path.exists()
                 writer.update(snapshot)
@@ -189,11 +194,13 @@ def test_an_interrupted_mission_leaves_a_valid_file(tmp_path: Path, snapshots: l
     assert [entry.name for entry in tmp_path.iterdir()] == ["run.mcap"]
 
 
-def test_the_last_map_is_the_one_that_was_handed_over(tmp_path: Path, snapshots: list[Snapshot]) -> None:
+def test_the_last_map_is_the_one_that_was_handed_over(
+    tmp_path: Path, snapshots: list[ExploreSnapshot]
+) -> None:
     path = tmp_path / "run.mcap"
-    writer = McapWriter(path, "rooms", FRAME, PLANNING, NAMES)
+    writer = ExploreMcapWriter(path, "rooms", FRAME, PLANNING, NAMES)
     writer.update(snapshots[0])
-    reused = Snapshot(**(vars(snapshots[1]) | {"classes": snapshots[1].classes.copy()}))
+    reused = ExploreSnapshot(**(vars(snapshots[1]) | {"classes": snapshots[1].classes.copy()}))
     writer.update(reused)
     reused.classes[:] = OCCUPIED
     writer.close()
@@ -204,7 +211,7 @@ def test_the_last_map_is_the_one_that_was_handed_over(tmp_path: Path, snapshots:
 
 def test_a_folder_that_does_not_exist_is_bad_input(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"cannot write .*run\.mcap"):
-        McapWriter(tmp_path / "none" / "run.mcap", "rooms", FRAME, PLANNING, NAMES)
+        ExploreMcapWriter(tmp_path / "none" / "run.mcap", "rooms", FRAME, PLANNING, NAMES)
 
 
 def test_corners_keep_the_shape_of_a_path() -> None:

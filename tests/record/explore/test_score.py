@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
-from vedette.sim.score import Progress, Reference, coverage, map_errors, overlap
-from vedette.sim.world import World
+from vedette.maps.world import World
+from vedette.record.explore.score import Progress, Reference, coverage, map_errors, overlap
 from vedette.team import PlatformSpec
 
 

@@ -1,7 +1,7 @@
 """``run.mcap``: the mission as ROS 2 messages, for Foxglove, RViz and ``ros2 bag play``.
 
-The file grows under a temporary name while the mission runs and moves into place on `McapWriter.close`,
-whatever ended the mission. Stamps are simulated time from 0 s: the same mission gives the same bytes.
+The file grows under a temporary name while the mission runs and moves into place on `close`, whatever
+ended the mission. Stamps are simulated time from 0 s: the same mission gives the same bytes.
 """
 
 from __future__ import annotations
@@ -16,16 +16,16 @@ from types import TracebackType
 import numpy as np
 
 from vedette.maps import GridFrame
-from vedette.record.log import RobotSample, Snapshot
-from vedette.record.markers import LinkMessages
+from vedette.record.explore.log import ExploreSnapshot, RobotSample
+from vedette.record.explore.markers import LinkMessages
 from vedette.record.ros import ros_names
 from vedette.record.topics import Topics, atomic_stream
 
 
-class McapWriter:
+class ExploreMcapWriter:
     """Write each snapshot's poses, plans, links, metrics; grids every ``grid_period`` seconds and at the end.
 
-    A context manager, and a `vedette.record.log.Sink`. The topics are listed in ``docs/outputs.md``.
+    A context manager, and a `vedette.record.explore.log.Sink`. The topics are listed in ``docs/outputs.md``.
     """
 
     def __init__(
@@ -42,7 +42,7 @@ class McapWriter:
         self._planning = planning
         self._period = grid_period
         self._next_grids = -math.inf
-        self._unwritten: Snapshot | None = None  # the last snapshot, if its grids are not yet in the file
+        self._unwritten: ExploreSnapshot | None = None  # the last one, if its grids are not in the file
         self._names = dict(zip(robots, ros_names(robots), strict=True))
         self._plans: dict[str, tuple[bytes, tuple[float, float] | None]] = {}
         self._states: dict[str, str] = {}
@@ -53,7 +53,7 @@ class McapWriter:
         self._topics = Topics(stream, self._ros)
         self._topics.describe({"world": world} | {f"robot {name}": ros for name, ros in self._names.items()})
 
-    def update(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: ExploreSnapshot) -> None:
         """Write one snapshot."""
         stamp = _stamp(snapshot)
         alive = [robot for robot in snapshot.robots if robot.alive]
@@ -88,7 +88,7 @@ class McapWriter:
                 self._unwritten = None
             self._topics.finish()
 
-    def __enter__(self) -> McapWriter:
+    def __enter__(self) -> ExploreMcapWriter:
         """Return the writer."""
         return self
 
@@ -111,7 +111,7 @@ class McapWriter:
             if robot.goal is not None:
                 self._topics.write(f"/{name}/goal", stamp, self._ros.pose(stamp, *robot.goal, 0.0))
 
-    def _write_grids(self, snapshot: Snapshot) -> None:
+    def _write_grids(self, snapshot: ExploreSnapshot) -> None:
         stamp = _stamp(snapshot)
         self._topics.write("/map", stamp, self._ros.map_grid(stamp, self._frame, snapshot.classes))
         if snapshot.impact is not None:
@@ -119,11 +119,11 @@ class McapWriter:
             self._topics.write("/team_impact", stamp, impact)
 
 
-def _stamp(snapshot: Snapshot) -> int:
+def _stamp(snapshot: ExploreSnapshot) -> int:
     return round(snapshot.t * 1e9)
 
 
-def _with_own_grids(snapshot: Snapshot) -> Snapshot:
+def _with_own_grids(snapshot: ExploreSnapshot) -> ExploreSnapshot:
     """Return the snapshot with copies of its grids, which the sender may change."""
     impact = None if snapshot.impact is None else snapshot.impact.copy()
     return replace(snapshot, classes=snapshot.classes.copy(), impact=impact)

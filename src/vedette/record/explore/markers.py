@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from vedette.record import palette
+from vedette.record.explore.log import ExploreSnapshot
 from vedette.record.links import Link
-from vedette.record.log import Snapshot
 from vedette.record.ros import RosMessages
 
 _COLOUR = palette.unit((0, 114, 178))  # seen on white and on black
@@ -23,7 +23,7 @@ _FADING = 0.8  # share of the opacity that goes where all is lost
 class LinkMessages(RosMessages):
     """Messages of what the record holds, links included."""
 
-    def links(self, stamp: int, snapshot: Snapshot) -> Any:
+    def links(self, stamp: int, snapshot: ExploreSnapshot) -> Any:
         """Return a ``visualization_msgs/MarkerArray`` of two line lists, ``tree`` and ``other``.
 
         The paler a line, the more is lost on it. A list without lines is deleted.
@@ -38,7 +38,13 @@ class LinkMessages(RosMessages):
         return self._make("visualization_msgs/msg/MarkerArray", lists)
 
     def _lines(
-        self, stamp: int, snapshot: Snapshot, name: str, links: Sequence[Link], width: float, opacity: float
+        self,
+        stamp: int,
+        snapshot: ExploreSnapshot,
+        name: str,
+        links: Sequence[Link],
+        width: float,
+        opacity: float,
     ) -> Any:
         ends = [snapshot.robots[i] for link in links for i in (link.a, link.b)]
         alphas = [opacity * (1.0 - _FADING * link.loss) for link in links for _ in range(2)]

@@ -12,8 +12,8 @@ from matplotlib.ticker import EngFormatter, PercentFormatter
 
 from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save
-from vedette.record.log import RunLog
-from vedette.record.summary import Summary
+from vedette.record.explore.log import ExploreLog
+from vedette.record.explore.summary import ExploreSummary
 
 _SIZE = 8.0, 6.6  # [inch]
 _COVERAGE = palette.unit((0, 114, 178))
@@ -23,7 +23,7 @@ _FAINT = palette.unit((200, 203, 207))
 _DASHES = ((), (6, 2), (2, 1.5), (6, 2, 2, 2), (1, 1))  # a robot's line differs in more than its colour
 
 
-def curves_png(log: RunLog, summary: Summary, path: Path | str) -> None:
+def curves_png(log: ExploreLog, summary: ExploreSummary, path: Path | str) -> None:
     """Draw coverage with t50 to t99, the entropy of the map and each robot's distance against time."""
     with picture():
         figure = Figure(figsize=_SIZE, dpi=DPI)
@@ -51,7 +51,7 @@ def curves_png(log: RunLog, summary: Summary, path: Path | str) -> None:
         save(figure, path)
 
 
-def _coverage(axes: Axes, log: RunLog, summary: Summary) -> None:
+def _coverage(axes: Axes, log: ExploreLog, summary: ExploreSummary) -> None:
     """Draw coverage, mark when it passed each level, shade the area over it."""
     axes.fill_between(log.times, log.coverage, 1.0, step="post", color=_FAINT, alpha=0.35, lw=0)
     axes.plot(log.times, log.coverage, color=_COVERAGE, lw=2.0, drawstyle="steps-post", zorder=3)
@@ -78,7 +78,7 @@ def _coverage(axes: Axes, log: RunLog, summary: Summary) -> None:
     axes.yaxis.set_major_formatter(PercentFormatter(1.0))
 
 
-def _distance(axes: Axes, log: RunLog) -> None:
+def _distance(axes: Axes, log: ExploreLog) -> None:
     """Draw how far each robot has travelled."""
     for i, (spec, length) in enumerate(zip(log.specs, log.path_length.T, strict=True)):
         colour = palette.unit(palette.robot_colour(i))
@@ -88,7 +88,7 @@ def _distance(axes: Axes, log: RunLog) -> None:
     axes.legend(loc="upper left", frameon=False, ncols=2 if len(log.specs) > 3 else 1, labelspacing=0.3)
 
 
-def _apart(shared: Sequence[Axes], log: RunLog, summary: Summary) -> None:
+def _apart(shared: Sequence[Axes], log: ExploreLog, summary: ExploreSummary) -> None:
     """Shade the times at which the team was not together, on axes that share the time; label them once."""
     edges = np.flatnonzero(np.diff(np.concatenate(([0], log.apart, [0]))))
     label = f"team apart = {summary.apart_s:.1f} s"

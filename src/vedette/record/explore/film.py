@@ -12,9 +12,9 @@ from PIL import Image, ImageDraw, ImageFont
 
 from vedette.maps import UNKNOWN
 from vedette.record import palette
+from vedette.record.explore.log import ExploreLog, ExploreSnapshot, RobotSample
+from vedette.record.explore.raster import enlarge, known_window, paint
 from vedette.record.files import atomic_path
-from vedette.record.log import RobotSample, RunLog, Snapshot
-from vedette.record.raster import enlarge, known_window, paint
 
 _SIDE = 800  # most pixels a side, caption included
 _CAPTION = 30  # height of the caption [px]
@@ -25,7 +25,7 @@ _FAINT = 180, 180, 180  # a link that is not on the tree
 _FINE = 4  # sub-pixels a side of a pixel of a robot's sign
 
 
-def animate_gif(log: RunLog, path: Path | str, frames: int = 200) -> None:
+def animate_gif(log: ExploreLog, path: Path | str, frames: int = 200) -> None:
     """Write at most ``frames`` stored snapshots of a log that is not empty, evenly chosen, ten a second."""
     chosen = _evenly(log.stored(), frames)
     film = _Film(log)
@@ -52,7 +52,7 @@ def _evenly(available: int, wanted: int) -> list[int]:
 class _Film:
     """Everything that stays the same from frame to frame."""
 
-    def __init__(self, log: RunLog) -> None:
+    def __init__(self, log: ExploreLog) -> None:
         self._log = log
         self._window = known_window(log.frame, log.last.classes)
         part = self._window.frame
@@ -78,7 +78,7 @@ class _Film:
         y = (y_max - points[..., 1]) / (y_max - y_min) * height + _CAPTION
         return np.stack((x, y), axis=-1)
 
-    def _frame(self, snapshot: Snapshot) -> Image.Image:
+    def _frame(self, snapshot: ExploreSnapshot) -> Image.Image:
         width, height = self._size
         image = Image.new("RGB", (max(width, 260), height + _CAPTION), (255, 255, 255))
         colours = paint(snapshot, self._log.planning, self._window, self._size[::-1])[::-1]
@@ -101,7 +101,7 @@ class _Film:
             image.paste(sign, (round(x - sign.width / 2), round(y - sign.height / 2)), sign)
         return image
 
-    def _draw_links(self, draw: ImageDraw.ImageDraw, snapshot: Snapshot) -> None:
+    def _draw_links(self, draw: ImageDraw.ImageDraw, snapshot: ExploreSnapshot) -> None:
         """Draw lines between robots: on the team's tree dark, other links faint."""
         places = self._pixels(np.array([(robot.x, robot.y) for robot in snapshot.robots]))
         for link in sorted(snapshot.links or (), key=lambda link: link.on_tree):

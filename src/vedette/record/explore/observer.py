@@ -7,91 +7,40 @@ network report.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.domains.mapping.belief import LN2, planning_factor
-from vedette.domains.mapping.impact import Impact, final_miss
-from vedette.maps import UNKNOWN, GridFrame
+from vedette.domains.mapping.belief import LN2
+from vedette.domains.mapping.impact import final_miss
+from vedette.maps import UNKNOWN
+from vedette.maps.world import World
+from vedette.outcome import Outcome
+from vedette.record.explore.log import ExploreLog, ExploreSnapshot, Sink
+from vedette.record.explore.score import Progress, Reference, coverage, map_errors, overlap
+from vedette.record.explore.summary import ExploreSummary
+from vedette.record.explore.views import RobotView, Setting, planning_frame, union_map
+from vedette.record.figures import Negotiated
 from vedette.record.links import Link, parts
-from vedette.record.log import RobotSample, RunLog, Sink, Snapshot
-from vedette.record.summary import Outcome, Summary, Traffic
-from vedette.sim.figures import Negotiated, RoundFigures
-from vedette.sim.score import Progress, Reference, coverage, map_errors, overlap
-from vedette.sim.world import World
+from vedette.record.summary import Timing
 from vedette.team import PlatformSpec
 
 LARGE = 1_000_000  # cells from which a map is looked at less often
 LOOK_PERIOD, LOOK_PERIOD_IF_LARGE = 0.5, 2.0  # [s]
 
 
-@dataclass(frozen=True)
-class RobotFigures:
-    """What one robot has counted up to now."""
-
-    travelled_m: float = 0.0
-    collisions: int = 0  # steps in which a contact stopped it
-    min_clearance_m: float = np.inf  # from its edge to a wall or to another robot, so far
-    rounds: RoundFigures = field(default_factory=RoundFigures)
-    messages: Traffic = field(default_factory=Traffic)  # sent
-    bytes: Traffic = field(default_factory=Traffic)
-
-
 @dataclass(frozen=True, eq=False)
-class RobotView:
-    """All that can be told of one robot from outside; nothing in it changes after it is made."""
+class ExploreReport:
+    """What a mission leaves: its figures, its log, and the map that a living robot holds."""
 
-    sample: RobotSample  # where it is, what it does, where it goes
-    classes: NDArray[np.uint8]  # (R, C) the map as it holds it, its own cells included: see ``held_map``
-    seen: NDArray[np.bool_]  # (R, C) what its own sensor has observed
-    impact: Impact | None  # of its last decision, over planning cells; None: it has not decided yet
-    figures: RobotFigures
-
-
-@dataclass(frozen=True)
-class Setting:
-    """How a mission was set up, as ``summary.json`` tells it."""
-
-    seed: int
-    planner: str
-    scheme: str
-    fusion: str
-    radio: str | None = None  # RANGE[,WALL_DB]; None: everybody hears everybody
-    faults: str | None = None  # a file's name, or the seed of a schedule
+    summary: ExploreSummary
+    timing: Timing
+    log: ExploreLog
+    classes: NDArray[np.uint8]  # (R, C) team map
 
 
-def planning_frame(world: World) -> GridFrame:
-    """Return the frame of the planning cells over a world."""
-    return world.frame.coarse(planning_factor(world.frame.resolution))
-
-
-def held_map(fused: NDArray[np.uint8], own: NDArray[np.int8]) -> NDArray[np.uint8]:
-    """Return a robot's fused ``(R, C)`` classes, and where they are unknown the class of its own log-odds.
-
-    The log-odds differ from the map until the robot publishes them.
-    """
-    held: NDArray[np.uint8] = (own != 0).astype(np.uint8)  # UNKNOWN, FREE, OCCUPIED are 0, 1, 2
-    held += own > 0
-    held *= fused == UNKNOWN
-    held += fused
-    return held
-
-
-def union_map(views: Sequence[RobotView]) -> NDArray[np.uint8]:
-    """Return ``(R, C)``: what the living robots hold together, told or not; if none lives, what all held.
-
-    Where they differ, occupied wins over free, and free over unknown.
-    """
-    living = [view for view in views if view.sample.alive] or views
-    union = living[0].classes.copy()
-    for view in living[1:]:
-        np.maximum(union, view.classes, out=union)  # UNKNOWN < FREE < OCCUPIED
-    return union
-
-
-class Observer:
+class ExploreObserver:
     """Measures a mission from views of its robots: it knows the truth, the agents do not."""
 
     def __init__(
@@ -110,7 +59,7 @@ class Observer:
         self._reference = Reference(world, specs, starts)
         self._progress = Progress()
         self.period = LOOK_PERIOD if world.frame.size <= LARGE else LOOK_PERIOD_IF_LARGE  # of looking [s]
-        self.log = RunLog(world.name, world.frame, planning_frame(world), specs, sinks)
+        self.log = ExploreLog(world.name, world.frame, planning_frame(world), specs, sinks)
         self.apart_s = 0.0  # time during which the living robots were not all on one tree
         self._apart = False  # since the last look
         self._views: tuple[RobotView, ...] = ()  # of the last look
@@ -145,9 +94,9 @@ class Observer:
 
     def _snapshot(
         self, now: float, classes: NDArray[np.uint8], share: float, links: Sequence[Link] | None
-    ) -> Snapshot:
+    ) -> ExploreSnapshot:
         unknown = int(np.count_nonzero(classes == UNKNOWN))
-        return Snapshot(
+        return ExploreSnapshot(
             t=now,
             robots=tuple(view.sample for view in self._views),
             coverage=share,
@@ -172,14 +121,18 @@ class Observer:
         living = [view.classes for view in self._views if view.sample.alive]
         return max(living, key=np.count_nonzero).copy() if living else union_map(self._views)
 
-    def summary(self, outcome: Outcome) -> Summary:
+    def report(self, outcome: Outcome, timing: Timing) -> ExploreReport:
+        """Return what the mission leaves; not before the first look."""
+        return ExploreReport(self.summary(outcome), timing, self.log, self.delivered_map())
+
+    def summary(self, outcome: Outcome) -> ExploreSummary:
         """Return the figures of the mission, in simulated time; not before the first look."""
         progress, setting = self._progress, self._setting
         time = progress.times[-1]
         team = {view.sample.name: view.figures for view in self._views}
         rounds = Negotiated.by([each.rounds for each in team.values()])
         wrong, known = map_errors(self._world, self.delivered_map())
-        return Summary(
+        return ExploreSummary(
             completed=outcome is Outcome.COMPLETE,
             outcome=outcome,
             seed=setting.seed,

@@ -10,13 +10,13 @@ from rich.console import Console, RenderableType
 
 from vedette.maps import GridFrame
 from vedette.record.display import Display
-from vedette.record.log import Snapshot
+from vedette.record.explore.log import ExploreSnapshot
+from vedette.record.explore.screen import screen
 from vedette.record.marks import together
-from vedette.record.screen import screen
 
 
-class LiveView(Display[Snapshot]):
-    """Show each snapshot while the mission runs: a context manager, and a `vedette.record.log.Sink`."""
+class LiveView(Display[ExploreSnapshot]):
+    """Show each snapshot while the mission runs: a context manager, and a ``Sink``."""
 
     def __init__(
         self,
@@ -30,12 +30,12 @@ class LiveView(Display[Snapshot]):
         """Prepare a view of a mission in ``world``; the ``clock`` [s] only limits the pictures a second."""
         travelled = self._travelled = list[float]()
 
-        def picture(console: Console, snapshot: Snapshot) -> RenderableType:
+        def picture(console: Console, snapshot: ExploreSnapshot) -> RenderableType:
             return screen(console, world, frame, planning, snapshot, travelled)
 
         super().__init__(picture, _line, quiet, console, clock)
 
-    def update(self, snapshot: Snapshot) -> None:
+    def update(self, snapshot: ExploreSnapshot) -> None:
         """Add up what each robot travelled, and show the snapshot, or not if one was shown just before."""
         before = snapshot if self._last is None else self._last
         self._travelled += [0.0] * (len(snapshot.robots) - len(self._travelled))
@@ -44,7 +44,7 @@ class LiveView(Display[Snapshot]):
         super().update(snapshot)
 
 
-def _line(snapshot: Snapshot) -> str:
+def _line(snapshot: ExploreSnapshot) -> str:
     """Return a snapshot in one line."""
     robots = "  ".join(f"{robot.name} {robot.state}" for robot in snapshot.robots)
     known, covered = 100 * snapshot.known_fraction, 100 * snapshot.coverage

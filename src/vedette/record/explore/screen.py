@@ -18,9 +18,9 @@ from rich.text import Text
 
 from vedette.maps import FREE, OCCUPIED, GridFrame
 from vedette.record import palette
-from vedette.record.log import RobotSample, Snapshot
+from vedette.record.explore.log import ExploreSnapshot, RobotSample
+from vedette.record.explore.raster import Window, fit, paint, pool
 from vedette.record.marks import badge, sign, together, two_colours
-from vedette.record.raster import Window, fit, paint, pool
 
 _MAP = 24, 70  # most lines and columns of the map
 _TABLE = 50  # columns of the table beside the map
@@ -31,7 +31,7 @@ def screen(
     world: str,
     frame: GridFrame,
     planning: GridFrame,
-    snapshot: Snapshot,
+    snapshot: ExploreSnapshot,
     travelled: Sequence[float],
 ) -> RenderableType:
     """Return the picture of a snapshot, fitted to the console; ``travelled`` by robot [m].
@@ -65,7 +65,7 @@ def _size(frame: GridFrame, room: tuple[int, int]) -> tuple[int, int]:
     return fit(frame.shape, (2 * room[0], room[1]))
 
 
-def _figures(snapshot: Snapshot) -> Text:
+def _figures(snapshot: ExploreSnapshot) -> Text:
     known = 100 * snapshot.known_fraction
     return Text.assemble(
         ("time ", "dim"), (f"{snapshot.t:6.1f} s", "bold"),
@@ -74,14 +74,14 @@ def _figures(snapshot: Snapshot) -> Text:
     )  # fmt: skip
 
 
-def _bar(snapshot: Snapshot) -> Table:
+def _bar(snapshot: ExploreSnapshot) -> Table:
     grid = Table.grid(padding=(0, 1))
     bar = ProgressBar(total=1.0, completed=snapshot.coverage, width=40, complete_style="green")
     grid.add_row(Text("covered", "dim"), bar, Text(f"{100 * snapshot.coverage:.1f} %", "bold"))
     return grid
 
 
-def _team(snapshot: Snapshot) -> Text:
+def _team(snapshot: ExploreSnapshot) -> Text:
     style = "bold" if len(snapshot.parts) < 2 else "bold yellow"
     return Text.assemble(
         ("team    ", "dim"), (together(snapshot.parts), style), no_wrap=True, overflow="ellipsis"
@@ -115,7 +115,7 @@ class HalfBlocks:
         console: Console,
         frame: GridFrame,
         planning: GridFrame,
-        snapshot: Snapshot,
+        snapshot: ExploreSnapshot,
         room: tuple[int, int],
     ) -> HalfBlocks:
         """Draw a snapshot in at most ``room`` lines and columns; without colours as walls alone."""

@@ -1,0 +1,1 @@
+"""What an exploration leaves: what was measured, log, summary, MCAP record, pictures, film, live view."""

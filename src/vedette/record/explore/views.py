@@ -1,0 +1,81 @@
+"""What can be told of an exploring robot from outside, simulated in this process or on a network."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.domains.mapping.belief import planning_factor
+from vedette.domains.mapping.impact import Impact
+from vedette.maps import UNKNOWN, GridFrame
+from vedette.maps.world import World
+from vedette.record.explore.log import RobotSample
+from vedette.record.figures import RoundFigures
+from vedette.record.summary import Traffic
+
+
+@dataclass(frozen=True)
+class RobotFigures:
+    """What one robot has counted up to now."""
+
+    travelled_m: float = 0.0
+    collisions: int = 0  # steps in which a contact stopped it
+    min_clearance_m: float = np.inf  # from its edge to a wall or to another robot, so far
+    rounds: RoundFigures = field(default_factory=RoundFigures)
+    messages: Traffic = field(default_factory=Traffic)  # sent
+    bytes: Traffic = field(default_factory=Traffic)
+
+
+@dataclass(frozen=True, eq=False)
+class RobotView:
+    """All that can be told of one robot from outside; nothing in it changes after it is made."""
+
+    sample: RobotSample  # where it is, what it does, where it goes
+    classes: NDArray[np.uint8]  # (R, C) the map as it holds it, its own cells included: see ``held_map``
+    seen: NDArray[np.bool_]  # (R, C) what its own sensor has observed
+    impact: Impact | None  # of its last decision, over planning cells; None: it has not decided yet
+    figures: RobotFigures
+
+
+@dataclass(frozen=True)
+class Setting:
+    """How a mission was set up, as ``summary.json`` tells it."""
+
+    seed: int
+    planner: str
+    scheme: str
+    fusion: str
+    radio: str | None = None  # RANGE[,WALL_DB]; None: everybody hears everybody
+    faults: str | None = None  # a file's name, or the seed of a schedule
+
+
+def planning_frame(world: World) -> GridFrame:
+    """Return the frame of the planning cells over a world."""
+    return world.frame.coarse(planning_factor(world.frame.resolution))
+
+
+def held_map(fused: NDArray[np.uint8], own: NDArray[np.int8]) -> NDArray[np.uint8]:
+    """Return a robot's fused ``(R, C)`` classes, and where they are unknown the class of its own log-odds.
+
+    The log-odds differ from the map until the robot publishes them.
+    """
+    held: NDArray[np.uint8] = (own != 0).astype(np.uint8)  # UNKNOWN, FREE, OCCUPIED are 0, 1, 2
+    held += own > 0
+    held *= fused == UNKNOWN
+    held += fused
+    return held
+
+
+def union_map(views: Sequence[RobotView]) -> NDArray[np.uint8]:
+    """Return ``(R, C)``: what the living robots hold together, told or not; if none lives, what all held.
+
+    Where they differ, occupied wins over free, and free over unknown.
+    """
+    living = [view for view in views if view.sample.alive] or views
+    union = living[0].classes.copy()
+    for view in living[1:]:
+        np.maximum(union, view.classes, out=union)  # UNKNOWN < FREE < OCCUPIED
+    return union
