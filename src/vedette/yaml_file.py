@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import re
 from pathlib import Path
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import yaml
 
 from vedette.errors import InputError
+from vedette.input_file import open_input
 
 _MOST = 1_000_000  # [characters]
 _MOST_REFERRED = 100_000  # values that all references of a file together may stand for
@@ -20,9 +22,10 @@ class _Refused(yaml.MarkedYAMLError):
 
 
 class _Loader(yaml.SafeLoader):
-    """Reads 5e-2 as the number that it is, which YAML 1.1 takes for text; bounds what references stand for.
+    """Reads 5e-2 as the number that it is, which YAML 1.1 takes for text; refuses a key that is given twice.
 
-    With references (``*name``) a short text can stand for a huge one, and for one that holds itself.
+    What references stand for is bounded: with them (``*name``) a short text can stand for a huge one, and for
+    one that holds itself.
     """
 
     def __init__(self, stream: str) -> None:
@@ -43,6 +46,19 @@ class _Loader(yaml.SafeLoader):
         if event.anchor is not None:
             self._sizes[event.anchor] = self._values - before
         return node
+
+    def compose_mapping_node(self, anchor: Any) -> yaml.MappingNode:
+        """Return a mapping that gives no key twice; it may give what it merges (``<<``) gives as well."""
+        mapping = super().compose_mapping_node(anchor)
+        lines: dict[tuple[str, str], int] = {}
+        for key, _ in mapping.value:
+            if not isinstance(key, yaml.ScalarNode):
+                continue
+            if (key.tag, key.value) in lines:
+                problem = f"{key.value!r} is given twice, first in line {lines[key.tag, key.value]}; keep one"
+                raise _Refused(problem=problem, problem_mark=key.start_mark)
+            lines[key.tag, key.value] = key.start_mark.line + 1
+        return mapping
 
     def _refer(self, event: Any) -> None:
         """Count what a reference stands for; one to a name that nobody has given is left to YAML."""
@@ -68,33 +84,81 @@ class _Loader(yaml.SafeLoader):
 _Loader.add_implicit_resolver("tag:yaml.org,2002:float", _FLOAT, list("-+.0123456789"))
 
 
+class _TextLoader(_Loader):
+    """Leaves every scalar as it is written, but nothing for null; tags mean nothing."""
+
+    def construct_undefined(self, node: yaml.Node) -> Any:
+        """Return what the tag stands before."""
+        if isinstance(node, yaml.ScalarNode):
+            return self.construct_scalar(node)
+        if isinstance(node, yaml.SequenceNode):
+            return self.construct_sequence(node, deep=True)
+        assert isinstance(node, yaml.MappingNode)
+        return self.construct_mapping(node, deep=True)
+
+
+for _kind in ("bool", "int", "float", "binary", "timestamp"):
+    _TextLoader.add_constructor(f"tag:yaml.org,2002:{_kind}", _TextLoader.construct_scalar)
+_TextLoader.add_constructor(None, _TextLoader.construct_undefined)
+
+
 def read_yaml(path: Path, what: str, remedy: str) -> Any:
     """Return what a YAML file says, as plain data; None if it is empty.
 
     ``what`` the file should be, and a ``remedy`` that says how such files are written, go into messages.
 
     Raises:
-        InputError: unreadable, longer than a million characters, or not YAML; or it holds half a character
-            (``"\\ud800"``), or references (``*name``) that stand for very much or for themselves.
+        InputError: unreadable, no file, longer than a million characters, or not YAML; or it holds half a
+            character (``"\\ud800"``), a key twice, a tag, a second document, or references (``*name``) that
+            stand for very much or for themselves.
     """
-    try:
-        with path.open(encoding="utf-8") as file:
-            text = file.read(_MOST + 1)
-    except OSError as error:
-        raise InputError(f"cannot read {what} {path}: {error.strerror or error}") from error
-    except ValueError as error:
-        raise InputError(f"{path}: not a YAML text; {remedy}") from error
+    return _parsed(_text(path, what, remedy), path, remedy, _Loader)
+
+
+def read_yaml_texts(path: Path, what: str, remedy: str) -> Any:
+    """Return what a YAML file says, each scalar as the text that stands there, as yaml-cpp takes it.
+
+    A tag means nothing, and only the first document counts.
+
+    Raises:
+        InputError: as :func:`read_yaml`, but for tags and other documents.
+    """
+    return _parsed(_text(path, what, remedy), path, remedy, _TextLoader)
+
+
+def _text(path: Path, what: str, remedy: str) -> str:
+    with open_input(path, what) as file:
+        try:
+            raw = file.read(4 * _MOST + 4)
+        except OSError as error:
+            raise InputError(f"cannot read {what} {path}: {error.strerror or error}") from error
+    text = _decoded(raw)
     if len(text) > _MOST:
         raise InputError(f"{path}: more than {_MOST} characters; {remedy}")
-    return _parsed(text, path, remedy)
+    return text
 
 
-def _parsed(text: str, path: Path, remedy: str) -> Any:
+def _decoded(raw: bytes) -> str:
+    """Return the text: UTF-16 with its mark, else UTF-8, else what Windows took Latin-1 for."""
+    marked = raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
     try:
-        return yaml.load(text, _Loader)
+        return raw.decode("utf-16" if marked else "utf-8-sig")
+    except UnicodeDecodeError:
+        return raw.decode("cp1252", errors="replace")
+
+
+def _parsed(text: str, path: Path, remedy: str, kind: type[_Loader]) -> Any:
+    try:
+        loader: Any = kind(text)
+        content = loader.get_data() if loader.check_data() else None
+        if kind is _Loader and loader.check_data():
+            mark = loader.peek_event().start_mark
+            raise _Refused(problem="a second document begins here; keep one", problem_mark=mark)
+        return content
     except yaml.MarkedYAMLError as error:
         line = f", line {error.problem_mark.line + 1}" if error.problem_mark else ""
-        problem = error.problem if isinstance(error, _Refused) else f"not valid YAML; {remedy}"
+        own = isinstance(error, _Refused)
+        problem = error.problem if own else f"not valid YAML, {error.problem}; {remedy}"
         raise InputError(f"{path}{line}: {problem}") from error
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         raise InputError(f"{path}: not a YAML text; {remedy}") from error

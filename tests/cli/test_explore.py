@@ -144,6 +144,27 @@ def test_what_may_be_meant_otherwise_is_told_once_and_the_mission_goes_on(
     assert not known[:38].any()
 
 
+@pytest.mark.parametrize("corner", [(448262.5, 5411932.25), (-19_999_000.03, 19_999_000.07)])
+def test_a_mission_far_from_the_origin_goes_as_one_that_is_near(
+    vedette: Command, world: Path, tmp_path: Path, corner: tuple[float, float]
+) -> None:
+    """Coordinates of UTM, and the farthest there are: nothing on the way loses the centimetres."""
+    (tmp_path / "map.pgm").write_bytes((world / "map.pgm").read_bytes())
+    (tmp_path / "map.yaml").write_text(f"{{image: map.pgm, resolution: 0.1, origin: {[*corner, 0.0]}}}")
+    options = ("--robots", 2, "--link-loss", 0.1, "--return-home", "--json", "--out")
+    near = json.loads(vedette("explore", world / "map.yaml", *options, "near").out)
+    far = json.loads(vedette("explore", tmp_path / "map.yaml", *options, "far").out)
+    assert far["outcome"] == "complete"
+    assert far["collisions"] == 0
+    assert far["coverage"] == pytest.approx(near["coverage"], abs=0.001)
+    assert far["time_s"] == pytest.approx(near["time_s"], rel=0.1)
+    frame, _ = read_map(Path("far") / "map.yaml")
+    assert (frame.origin_x, frame.origin_y) == corner
+    x_min, x_max, y_min, y_max = (f"{value:.2f}".rstrip("0") for value in frame.extent)
+    ran = vedette("explore", tmp_path / "map.yaml", "--starts", f"{corner[0] + 90},{y_min}")
+    assert f"{x_min} to {x_max} m, y is {y_min} to {y_max} m" in ran.err
+
+
 def test_json_prints_the_summary_alone(vedette: Command, world: Path) -> None:
     ran = vedette("explore", world / "map.yaml", "--robots", 1, "--out", "out", "--json")
     assert (ran.status, ran.err) == (0, "")

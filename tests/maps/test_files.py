@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
@@ -41,7 +42,7 @@ def pair(folder: Path, pixels: np.ndarray, suffix: str = ".png", **fields: objec
 @given(
     classes=hnp.arrays(np.uint8, hnp.array_shapes(min_dims=2, max_dims=2), elements=st.integers(0, 2)),
     resolution=st.floats(0.005, 10),
-    origin=st.tuples(st.floats(-1e6, 1e6), st.floats(-1e6, 1e6)),
+    origin=st.tuples(st.floats(-2e7, 2e7), st.floats(-2e7, 2e7)),
     mode=st.sampled_from(["trinary", "raw"]),
 )
 @settings(deadline=None, max_examples=50)
@@ -230,28 +231,40 @@ def test_the_argument_overrides_the_pairs_resolution_and_exponents_are_numbers(t
         ({"resolution": None}, "--resolution"),
         ({"resolution": 0}, "resolution must be 0.005 to 10 m per pixel; got 0"),
         ({"resolution": -0.1}, "got -0.1"),
-        ({"resolution": ".nan"}, "got nan"),
+        ({"resolution": ".nan"}, "got .nan"),
         ({"resolution": 1000}, "got 1000"),
-        ({"resolution": "fine"}, "got 'fine'"),
-        ({"resolution": "[0.1]"}, "resolution"),
-        ({"resolution": "true"}, "got True"),
+        ({"resolution": "fine"}, "got fine"),
+        ({"resolution": "0,05"}, "got 0,05"),
+        ({"resolution": "1_0"}, "got 1_0"),
+        ({"resolution": "[0.1]"}, "got ['0.1']"),
+        ({"resolution": "true"}, "got true"),
         ({"resolution": "1" * 400}, "resolution"),
-        ({"origin": "[0, 0, 0.5]"}, "yaw 0.5 is not supported"),
-        ({"origin": "[0]"}, "origin must be"),
+        ({"origin": "[0]"}, "origin must be [x, y, yaw] [m, m, rad]; got ['0']"),
         ({"origin": "[.inf, 0, 0]"}, "origin must be"),
+        ({"origin": "[0, 0, .nan]"}, "origin must be"),
+        ({"origin": "[0, 0, [0]]"}, "origin must be"),
         ({"origin": "middle"}, "origin must be"),
+        ({"origin": "[0, 3e7, 0]"}, "origin must be within 20000000 m of 0, 0; got 0, 30000000; move it"),
         ({"negate": 2}, "negate must be 0 or 1; got 2"),
-        ({"mode": "trinity"}, "did you mean 'trinary'"),
+        ({"negate": "maybe"}, "negate must be 0 or 1; got maybe"),
+        ({"mode": "Trinity"}, "unknown mode 'trinity'; did you mean 'trinary'"),
         ({"mode": "[]"}, "unknown mode"),
         ({"occupied_thresh": 1.2}, "occupied_thresh must be 0 to 1; got 1.2"),
+        ({"occupied_thresh": "65%"}, "occupied_thresh must be 0 to 1; got 65%"),
         ({"free_thresh": ".nan"}, "free_thresh must be 0 to 1"),
-        ({"free_thresh": 0.7}, "free_thresh must be below occupied_thresh"),
+        ({"free_thresh": 0.7}, "free_thresh must be occupied_thresh at most; got 0.7 and 0.65"),
         ({"image": None}, "no 'image: FILE'"),
-        ({"image": 3}, "no 'image: FILE'"),
+        ({"image": "[a, b]"}, "no 'image: FILE'"),
+        ({"image": "''"}, "no 'image: FILE'"),
+        ({"image": 3}, "/3: No such file"),
         ({"image": "gone.png"}, "gone.png: No such file"),
         ({"image": "."}, "Is a directory"),
         ({"image": '"a\\0b"'}, "cannot read"),
         ({"image": "map.yaml"}, "not a map"),
+        (
+            {"resolution": "0.05\nresolution: 0.1"},
+            "line 3: 'resolution' is given twice, first in line 2; keep one",
+        ),
     ],
 )
 def test_a_bad_pair_is_one_clear_line(tmp_path: Path, fields: dict[str, Any], message: str) -> None:
@@ -270,10 +283,10 @@ def test_a_bad_pair_is_one_clear_line(tmp_path: Path, fields: dict[str, Any], me
         ("empty.png", b"", "empty"),
         ("empty.yaml", b"", "not a map"),
         ("text.png", b"no image", "not a map"),
-        ("noise.yaml", bytes(range(256)), "not a map"),
+        ("noise.yaml", bytes(range(256)), "not a YAML text"),
         ("list.yaml", b"- a\n- b\n", "not a map"),
-        ("open.yaml", b"image: [", "not a map"),
-        ("deep.yaml", b"[" * 500, "not a map"),
+        ("open.yaml", b"image: [", "line 1: not valid YAML"),
+        ("deep.yaml", b"[" * 500, "not a YAML text"),
         ("half.pgm", b"P5\n100 100\n255\nabc", "damaged"),
         ("none.pgm", b"P5\n0 0\n255\n", "map"),
         ("wide.pgm", b"P5\n8001 1\n255\n", "at most 8000 pixels"),
@@ -307,6 +320,15 @@ def test_a_png_cut_anywhere_is_one_clear_line_or_still_whole(tmp_path: Path) -> 
             messages.append(str(error))
     assert len(messages) > len(whole) / 3 / 2
     assert all(str(path) in message for message in messages)
+
+
+@pytest.mark.parametrize("name", ["map.yaml", "map.pgm"])
+def test_what_reading_would_wait_for_is_refused_at_once(tmp_path: Path, name: str) -> None:
+    path = pair(tmp_path, np.full((2, 2), 255, np.uint8), ".pgm")
+    (tmp_path / name).unlink()
+    os.mkfifo(tmp_path / name)
+    with pytest.raises(InputError, match=rf"cannot read map .*{name}: it is a pipe; give a file"):
+        read_map(path)
 
 
 def test_a_folder_is_refused_and_a_plain_image_points_to_its_pair(tmp_path: Path) -> None:

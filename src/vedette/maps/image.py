@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from PIL import Image, UnidentifiedImageError
 
 from vedette.errors import InputError
+from vedette.input_file import open_input
 
 MAX_SIDE = 8000  # accepted [pixels]
 _FORMATS = ("PPM", "PNG", "BMP", "JPEG")
@@ -38,7 +39,7 @@ def read_levels(path: Path) -> Levels:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # the sides are checked below
-            with Image.open(path, formats=_FORMATS) as image:
+            with open_input(path, "map") as file, Image.open(file, formats=_FORMATS) as image:
                 _check_sides(path, image)
                 return _levels(image)
     except Image.DecompressionBombError as error:

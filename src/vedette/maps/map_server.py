@@ -14,6 +14,7 @@ from vedette.maps.classes import classes_of_pair, classes_of_plain
 from vedette.maps.frame import GridFrame
 from vedette.maps.image import read_levels
 from vedette.maps.meta import checked_resolution, read_meta
+from vedette.maps.turned import upright
 
 _PIXELS = {  # grey level of UNKNOWN, FREE and OCCUPIED, as map_saver writes them
     "trinary": np.array([205, 254, 0], np.uint8),
@@ -29,13 +30,14 @@ def read_map(path: Path | str, resolution: float | None = None) -> tuple[GridFra
         resolution: side of a pixel [m]; needed for a plain image, overrides that of a pair.
 
     Returns:
-        The frame and the cell classes ``uint8[rows, cols]``, row 0 the lowest y (the image's last row).
+        The frame and the cell classes ``uint8[rows, cols]``, row 0 the lowest y: the image's last row, unless
+        the origin has a yaw, by which the map is then turned (:func:`vedette.maps.turned.upright`).
 
     Raises:
         InputError: the path is missing, a folder, unreadable or not a map, or a value in it is out of range.
 
     Warns:
-        InputWarning: grey that map savers write for unknown is free.
+        InputWarning: grey that map savers write for unknown is free, or the yaw is more than a whole turn.
     """
     path = Path(path)
     if resolution is not None:
@@ -48,9 +50,7 @@ def read_map(path: Path | str, resolution: float | None = None) -> tuple[GridFra
     resolution = resolution if resolution is not None else meta.resolution
     if resolution is None:
         raise InputError(f"{path}: no resolution; add 'resolution: 0.05' [m per pixel] or give --resolution")
-    classes = classes_of_pair(meta, read_levels(meta.image))
-    rows, cols = classes.shape
-    return GridFrame(resolution, rows, cols, *meta.origin), classes
+    return upright(classes_of_pair(meta, read_levels(meta.image)), resolution, meta.origin)
 
 
 def write_map(stem: Path | str, frame: GridFrame, classes: NDArray[np.uint8], mode: str = "trinary") -> None:

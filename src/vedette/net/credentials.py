@@ -14,6 +14,7 @@ from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import NameOID
 
 from vedette.errors import InputError
+from vedette.input_file import open_input
 from vedette.net.names import OPERATOR, Names, check_team, robot_of
 
 CA, CERT, KEY = "ca.pem", "cert.pem", "key.pem"
@@ -115,7 +116,9 @@ def read(path: Path, most: int = MOST_FILE) -> bytes:
         InputError: it cannot be read.
     """
     try:
-        with path.open("rb") as file:
+        with open_input(path) as file:
             return file.read(most)
+    except InputError as error:
+        raise InputError(f"{error}; copy the folder whole") from error
     except OSError as error:
         raise InputError(f"cannot read {path}: {error.strerror or error}; copy the folder whole") from error

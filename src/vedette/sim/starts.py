@@ -96,11 +96,12 @@ def _between_walls(world: World, radius: float) -> NDArray[np.bool_]:
 def _checked(world: World, spec: PlatformSpec) -> tuple[float, float, float]:
     assert spec.start is not None
     x, y, *heading = spec.start
-    where = f"{spec.name}: start {x:g},{y:g}"
+    where = f"{spec.name}: start {_told(x)},{_told(y)}"
     if not world.frame.contains(x, y):
         x_min, x_max, y_min, y_max = world.frame.extent
         raise InputError(
-            f"{where} is outside the map; x is {x_min:g} to {x_max:g} m, y is {y_min:g} to {y_max:g} m"
+            f"{where} is outside the map; x is {_told(x_min)} to {_told(x_max)} m, "
+            f"y is {_told(y_min)} to {_told(y_max)} m"
         )
     if world.solid[world.frame.cell(x, y)]:
         raise InputError(f"{where} is in a wall; {_free_spot(world, spec, x, y)}")
@@ -111,6 +112,11 @@ def _checked(world: World, spec: PlatformSpec) -> tuple[float, float, float]:
             f"{_free_spot(world, spec, x, y)}"
         )
     return x, y, math.radians(heading[0]) if heading else 0.0
+
+
+def _told(metres: float) -> str:
+    """Return a coordinate to the millimetre, as short as can be; UTM has seven digits before the point."""
+    return f"{metres:.3f}".rstrip("0").rstrip(".")
 
 
 def clearance(world: World, x: float, y: float, limit: float) -> float:
@@ -143,13 +149,14 @@ def _free_spot(world: World, spec: PlatformSpec, x: float, y: float) -> str:
 def _check_apart(
     specs: Sequence[PlatformSpec], starts: NDArray[np.float64], i: int, before: list[int]
 ) -> None:
+    where = f"{specs[i].name}: start {_told(starts[i, 0])},{_told(starts[i, 1])}"
     for j in before:
         apart = math.dist(starts[i, :2], starts[j, :2])
         least = specs[i].radius + specs[j].radius + _GAP
         if apart < least - _TOUCH:
             raise InputError(
-                f"{specs[i].name}: start {starts[i, 0]:g},{starts[i, 1]:g} is {apart:.2f} m from that of "
-                f"{specs[j].name}; keep them at least {least:.2f} m apart"
+                f"{where} is {apart:.2f} m from that of {specs[j].name}; "
+                f"keep them at least {least:.2f} m apart"
             )
 
 
@@ -165,7 +172,7 @@ def _check_together(
         if not _joins(world, radius, areas[radius], starts[i, 0], starts[i, 1]):
             own = reachable_poses(world, specs[first].radius, starts[first, 0], starts[first, 1])
             raise InputError(
-                f"{specs[i].name}: start {starts[i, 0]:g},{starts[i, 1]:g} is cut off; "
+                f"{specs[i].name}: start {_told(starts[i, 0])},{_told(starts[i, 1])} is cut off; "
                 f"reachable from {specs[first].name}: {_describe(world, own)}"
             )
 
