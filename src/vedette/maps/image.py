@@ -8,13 +8,14 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, UnidentifiedImageError
+from PIL import Image, ImageFile, UnidentifiedImageError
 
 from vedette.errors import InputError
 from vedette.input_file import open_input
 
 MAX_SIDE = 8000  # accepted [pixels]
 _FORMATS = ("PPM", "PNG", "BMP", "JPEG")
+_STEPS = {"L;2": 85, "L;4": 17}  # between grey levels of few bits, which Pillow spreads over 0 to 255
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +41,7 @@ def read_levels(path: Path) -> Levels:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # the sides are checked below
             with open_input(path, "map") as file, Image.open(file, formats=_FORMATS) as image:
-                _check_sides(path, image)
+                _check(path, image)
                 return _levels(image)
     except Image.DecompressionBombError as error:
         raise InputError(f"{path} is too large: at most {MAX_SIDE} pixels a side") from error
@@ -55,20 +56,25 @@ def read_levels(path: Path) -> Levels:
         raise InputError(f"cannot read map {path}: {reason}") from error
 
 
-def _check_sides(path: Path, image: Image.Image) -> None:
+def _check(path: Path, image: Image.Image) -> None:
     width, height = image.size
     if width == 0 or height == 0:
         raise InputError(f"{path} is not a map: the image is empty")
     if max(width, height) > MAX_SIDE:
         raise InputError(f"{path} is too large: {width}x{height}; at most {MAX_SIDE} pixels a side")
+    if image.mode == "F":
+        raise InputError(f"{path} is not a map: its levels are no whole numbers; save it as PGM or PNG")
 
 
-def _levels(image: Image.Image) -> Levels:
+def _levels(file: ImageFile.ImageFile) -> Levels:
+    image: Image.Image = file
     if image.mode.startswith("I"):  # 16 bits of grey
         wide = np.ascontiguousarray(np.asarray(image)[::-1], np.uint16)
         clear = image.info.get("transparency")  # a PNG's level that stands for no pixel
         alpha = None if clear is None else np.where(wide == clear, 0, 255).astype(np.uint8)
         return Levels(wide, 65535, alpha)
+    if image.mode == "L" and isinstance(clear := image.info.get("transparency"), int):
+        image.info["transparency"] = clear * _STEPS.get(str(file.tile[0].args), 1)
     alpha = None
     if "A" in image.mode or "transparency" in image.info:
         image = image.convert("RGBA")
