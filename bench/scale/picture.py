@@ -12,7 +12,7 @@ from matplotlib.ticker import LogLocator, ScalarFormatter, StrMethodFormatter
 
 from bench.scale.series import FIXED, STRIP, Row
 from vedette.record import palette
-from vedette.record.canvas import DPI, picture, save
+from vedette.record.canvas import DPI, picture, save, tidy
 
 _COLOURS = {"chain": 0, "star": 1, "balanced": 2, "random": 3, "chain, strip": 4}
 _Figure = Callable[[Row], float | None]
@@ -85,5 +85,4 @@ def _tidy(axes: Axes) -> None:
     axes.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axes.yaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
     axes.minorticks_off()
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.grid(color=palette.unit((235, 237, 240)), lw=0.8)
+    tidy(axes)

@@ -6,8 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator, ScalarFormatter, StrMethodFormatter
 
 from vedette.record import palette
-
-_GRID = palette.unit((235, 237, 240))
+from vedette.record.canvas import tidy
 
 
 def colour(index: int) -> tuple[float, float, float]:
@@ -15,11 +14,9 @@ def colour(index: int) -> tuple[float, float, float]:
     return palette.unit(palette.robot_colour(index))
 
 
-def tidy(axes: Axes, title: str = "", xlabel: str = "", ylabel: str = "") -> None:
-    """Take away what a plot does not need, and label it."""
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.grid(color=_GRID, lw=0.8)
-    axes.set_axisbelow(True)
+def label_axes(axes: Axes, title: str = "", xlabel: str = "", ylabel: str = "") -> None:
+    """Tidy a plot, and label it."""
+    tidy(axes)
     axes.set_title(title, fontsize=9.5, loc="left", fontweight="bold")
     axes.set(xlabel=xlabel, ylabel=ylabel)
 

@@ -11,7 +11,7 @@ from vedette.problem import Coverage
 from vedette.record.canvas import DPI, picture, save
 from vedette_reproduction import teams
 from vedette_reproduction.content import Section, Table, Verdict, column, table
-from vedette_reproduction.plots import colour, over_team_size, tidy
+from vedette_reproduction.plots import colour, label_axes, over_team_size
 from vedette_reproduction.quadratic import (
     MOST_STEPS,
     jacobi_step,
@@ -143,7 +143,7 @@ def _draw_duel(axes: Axes) -> None:
         axes.plot(range(len(values)), values, "o-", color=colour(1 - k), lw=1.6, label=label)
     axes.axhline(1.8, color="black", lw=0.9, ls=(0, (4, 2)))
     axes.text(5.4, 1.83, "optimum", ha="right", va="bottom", fontsize=9)
-    tidy(axes, "two robots, frontiers worth 1 and 0.8", "iterate, or turn", "value")
+    label_axes(axes, "two robots, frontiers worth 1 and 0.8", "iterate, or turn", "value")
     axes.set(ylim=(-0.05, 2.1))
     axes.legend(frameon=False, loc="center right", fontsize=8.5, bbox_to_anchor=(1.0, 0.22))
 
@@ -162,7 +162,7 @@ def _draw_shares(axes: Axes, shares: Table, run: Run) -> None:
             column(own, 1), column(own, 3), "s--", color=colour(k), lw=1.2, ms=4,
             label="its last value / the token's",
         )  # fmt: skip
-    tidy(axes, "the paper's scheme on random teams", "", "share")
+    label_axes(axes, "the paper's scheme on random teams", "", "share")
     over_team_size(axes, run.scale.dense_teams)
     axes.set(ylim=(0, 1.05))
     axes.legend(frameon=False, fontsize=8, ncols=2, loc="upper center", bbox_to_anchor=(0.45, -0.16))

@@ -10,7 +10,7 @@ from vedette.record.canvas import DPI, picture, save
 from vedette_reproduction import teams
 from vedette_reproduction.content import Section, Value, Verdict, table, wall_table
 from vedette_reproduction.costs import FIXED, GROWING, SCHEMES, TREES, Cost, measure
-from vedette_reproduction.plots import colour, log_scale, over_team_size, tidy
+from vedette_reproduction.plots import colour, label_axes, log_scale, over_team_size
 from vedette_reproduction.run import Run
 
 PICTURE = "claims-4-to-7.png"
@@ -198,19 +198,19 @@ def _draw(costs: list[Cost], run: Run) -> None:
     panels = figure.subplots(2, 2)
     papers = [cost for cost in costs if cost.scheme == SCHEMES["jacobi"]]
     _lines(panels[0, 0], papers, FIXED, ("combinations", "most_combinations"))
-    tidy(panels[0, 0], "C4: combinations a platform and iterate", "", "combinations")
+    label_axes(panels[0, 0], "C4: combinations a platform and iterate", "", "combinations")
     _lines(panels[0, 1], papers, FIXED, ("messages", "most_messages"))
-    tidy(panels[0, 1], "C5: messages a platform and iterate", "", "messages")
+    label_axes(panels[0, 1], "C5: messages a platform and iterate", "", "messages")
     _lines(panels[1, 0], papers, FIXED, ("longest",))
     _lines(panels[1, 0], papers, GROWING, (None, "longest"))
-    tidy(panels[1, 0], "C6: longest message (dashed: area grows with the team)", "", "bytes")
+    label_axes(panels[1, 0], "C6: longest message (dashed: area grows with the team)", "", "bytes")
     _lines(panels[1, 1], papers, FIXED, ("total_an_iterate",))
     sizes = np.array(run.scale.teams)
     panels[1, 1].plot(sizes, 2 * (sizes - 1), "k:", lw=1.0, zorder=5)
     panels[1, 1].text(
         0.97, 0.06, "2(n − 1), all trees alike", ha="right", fontsize=8.5, transform=panels[1, 1].transAxes
     )
-    tidy(panels[1, 1], "C7: messages of the group in an iterate", "", "messages")
+    label_axes(panels[1, 1], "C7: messages of the group in an iterate", "", "messages")
     for axes in panels.ravel():
         over_team_size(axes, run.scale.teams)
         log_scale(axes)

@@ -14,7 +14,7 @@ from vedette.problem import Coverage
 from vedette.record.canvas import DPI, picture, save
 from vedette_reproduction import teams
 from vedette_reproduction.content import Section, Table, Verdict, column, table
-from vedette_reproduction.plots import colour, log_scale, over_team_size, tidy
+from vedette_reproduction.plots import colour, label_axes, log_scale, over_team_size
 from vedette_reproduction.quadratic import jacobi_step, spectral_radius, steps_to_optimum, token_step
 from vedette_reproduction.run import Run
 from vedette_reproduction.teams import Kind
@@ -139,7 +139,7 @@ def _pattern(name: str, n: int) -> Float:
 def _draw_sweeps(axes: Axes, sweeps: Table, run: Run) -> None:
     for k, (name, own) in enumerate(sweeps.groups().items()):
         axes.plot(column(own, 1), column(own, 3), "o-", color=colour(k), lw=1.6, label=name)
-    tidy(axes, "sweeps of the token, mean", "", "sweeps")
+    label_axes(axes, "sweeps of the token, mean", "", "sweeps")
     over_team_size(axes, run.scale.dense_teams)
     axes.set_ylim(bottom=0)
     axes.legend(frameon=False, fontsize=8.5)
@@ -157,7 +157,7 @@ def _draw_coupled(axes: Axes, coupled: Table, run: Run) -> None:
         1.06 + 1 / COUPLING, 0.97, "from here all pairs\nat once diverge", fontsize=8.5, va="top",
         transform=axes.get_xaxis_transform(),
     )  # fmt: skip
-    tidy(axes, f"quadratic J, coupling {COUPLING}", "", "iterations to 1e-6")
+    label_axes(axes, f"quadratic J, coupling {COUPLING}", "", "iterations to 1e-6")
     over_team_size(axes, run.scale.teams)
     log_scale(axes)
     axes.legend(frameon=False, fontsize=8, ncols=2, loc="upper center", bbox_to_anchor=(0.45, -0.16))

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from vedette.record.canvas import DPI, picture, save
 from vedette_reproduction.content import Section, Table, table
-from vedette_reproduction.plots import colour, tidy
+from vedette_reproduction.plots import colour, label_axes
 from vedette_reproduction.run import Run
 
 PRIOR = 0.35  # P(occupied), away from 1/2 so that the prior is seen to stay
@@ -103,7 +103,7 @@ def _panel(axes: Axes, sensor: Sensor, found: list[Float], index: int) -> None:
             np.full(len(values), n), values, "o", ms=5, mec="white", mew=0.5, color=colour(index), zorder=3
         )
         axes.text(n, 1.07, str(len(values)), ha="center", fontsize=9, fontweight="bold", color=colour(index))
-    tidy(
+    label_axes(
         axes,
         f"{sensor.name} sensor",
         "sensors that look at the cell",

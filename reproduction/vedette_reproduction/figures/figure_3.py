@@ -18,7 +18,7 @@ from vedette.record.canvas import DPI, picture, save
 from vedette.sim.worlds import office
 from vedette_reproduction.content import Section, table
 from vedette_reproduction.missions import specs
-from vedette_reproduction.plots import colour, tidy
+from vedette_reproduction.plots import colour, label_axes
 from vedette_reproduction.run import Run
 from vedette_reproduction.scans import scan, spaced
 
@@ -184,7 +184,7 @@ def _curves(
     axes.plot(at, fresh.share, color=colour(0), lw=1.8, label="measured: first scans of unknown offices")
     axes.plot(at, underway.share, "o", color=colour(2), ms=4, label="measured: unknown cells in a mission")
     axes.plot(at, learned, color=colour(2), lw=1.1, label="the planner's curve from these, (V25)")
-    tidy(axes, "", "", "probability that a cell is observed")
+    label_axes(axes, "", "", "probability that a cell is observed")
     axes.set(ylim=(0, 1.02), xlim=(0, RANGE))
     handles, labels = axes.get_legend_handles_labels()
     order = (0, 1, 3, 2, 4, 5)
@@ -194,6 +194,6 @@ def _curves(
 def _counts(axes: Axes, at: Float, fresh: Measured, underway: Measured) -> None:
     axes.step(at, fresh.tried.sum(axis=0), where="mid", color=colour(0), lw=1.5)
     axes.step(at, underway.tried[0], where="mid", color=colour(2), lw=1.5)
-    tidy(axes, "", "distance [m], number of cells (× 10)", "cells tried")
+    label_axes(axes, "", "distance [m], number of cells (× 10)", "cells tried")
     axes.set_yscale("log")
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))

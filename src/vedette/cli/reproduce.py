@@ -34,7 +34,8 @@ COMPLETE, INTERRUPTED = 0, 130
 @seed_option("all chance, and the offices")
 @click.option("--force", is_flag=True, help="Write into DIR although it exists.")
 def reproduce(out: Path | None, quick: bool, seed: int, force: bool) -> None:
-    """Compute the paper's figures and try its claims, from nothing but this program.
+    """Compute the paper's figures and try its claims, from nothing but this program and its package
+    vedette-reproduction, which is in the folder reproduction of a clone.
 
     DIR gets report.html, which holds everything, and the pictures and data as files. Exit status: 0 complete,
     2 bad input, 130 interrupted: then the report has what was done until then.

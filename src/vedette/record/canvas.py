@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import matplotlib
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -23,8 +24,8 @@ _STYLE: Any = {
     "axes.labelcolor": palette.unit(palette.INK),
     "axes.edgecolor": palette.unit((150, 153, 157)),
     "axes.linewidth": 0.7,
-    "xtick.color": palette.unit((110, 113, 117)),
-    "ytick.color": palette.unit((110, 113, 117)),
+    "xtick.color": palette.unit(palette.FAINT),
+    "ytick.color": palette.unit(palette.FAINT),
 }
 
 
@@ -35,6 +36,14 @@ def picture() -> Iterator[None]:
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(_STYLE)
         yield
+
+
+def tidy(axes: Axes, grid: Literal["both", "y"] = "both") -> None:
+    """Take away what a plot does not need, and lay a faint grid under it."""
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.grid(axis=grid, color=palette.unit(palette.GRID), lw=0.8)
+    axes.set_axisbelow(True)
+    axes.tick_params(length=3)
 
 
 def save(figure: Figure, path: Path | str) -> None:

@@ -28,6 +28,8 @@ SCREEN[UNKNOWN] = 112, 117, 124
 IMPACT: Rgb = (255, 183, 0)
 IMPACT_OPACITY = 0.85  # of an impact of 1
 INK: Rgb = (40, 42, 46)
+FAINT: Rgb = (110, 113, 117)  # of ink that explains
+GRID: Rgb = (235, 237, 240)
 
 
 def robot_colour(index: int) -> Rgb:

@@ -18,7 +18,7 @@ from vedette.record import palette
 from vedette.record.links import Link
 
 INK = palette.unit(palette.INK)
-FAINT = palette.unit((110, 113, 117))
+FAINT = palette.unit(palette.FAINT)
 DASHES = (0, (3, 1.6))
 _TREE: Any = {"color": INK, "lw": 1.2}
 _OTHER: Any = {"color": INK, "lw": 0.9, "alpha": 0.3}

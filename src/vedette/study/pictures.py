@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import PercentFormatter
 
 from vedette.record import palette
-from vedette.record.canvas import DPI, picture, save
+from vedette.record.canvas import DPI, picture, save, tidy
 from vedette.study.bootstrap import Interval
 from vedette.study.compare import mean
 from vedette.study.curves import CurvesOf, averaged, lowest, time_axis
@@ -21,7 +21,6 @@ from vedette.study.facets import Facet, overview, panels, planners
 from vedette.study.metrics import AUC, TIMES, TOTAL, Metric
 from vedette.study.rows import Row
 
-_GRID = palette.unit((235, 237, 240))
 _BOUND = palette.unit((150, 153, 157))
 _DASHES = ((), (6, 2), (2, 1.5), (6, 2, 2, 2), (1, 1), (4, 1, 1, 1, 1, 1))
 _MARKERS = "osD^vPX*<>"
@@ -119,8 +118,8 @@ def _metric_panel(
     axes.set(xlabel=metric.label, ylim=(len(groups) - 0.4, -0.6))
     axes.set_xlim(left=0)
     for place in range(1, len(groups)):
-        axes.axhline(place - 0.5, color=_GRID, lw=0.8)
-    _tidy(axes)
+        axes.axhline(place - 0.5, color=palette.unit(palette.GRID), lw=0.8)
+    tidy(axes)
 
 
 def _panels(
@@ -148,7 +147,7 @@ def _panels(
                 draw(axes, facet)
                 axes.set_title(str(facet), fontsize=9, loc="left", fontweight="bold")
                 axes.set(xlabel=xlabel, ylabel=ylabel)
-                _tidy(axes)
+                tidy(axes)
         _legend(figure, handles, labels)
         save(figure, path)
 
@@ -171,10 +170,3 @@ def _bars(interval: Interval) -> list[list[float]] | None:
 
 def _colour(i: int) -> tuple[float, float, float]:
     return palette.unit(palette.robot_colour(i))
-
-
-def _tidy(axes: Axes) -> None:
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.grid(axis="both", color=_GRID, lw=0.8)
-    axes.set_axisbelow(True)
-    axes.tick_params(length=3)

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter, PercentFormatter
 
 from vedette.record import palette
-from vedette.record.canvas import DPI, picture, save
+from vedette.record.canvas import DPI, picture, save, tidy
 from vedette.record.explore.log import ExploreLog
 from vedette.record.explore.summary import ExploreSummary
 
@@ -40,13 +40,14 @@ def curves_png(log: ExploreLog, summary: ExploreSummary, path: Path | str) -> No
         entropy.yaxis.set_major_formatter(EngFormatter(sep=""))
         _distance(distance, log)
         for axes in (coverage, entropy, distance):
-            _tidy(axes, last=axes is distance)
+            tidy(axes, "y")
+            axes.tick_params(labelbottom=axes is distance)
         coverage.set_xlim(0, max(1.0, float(log.times[-1])))
         team = f"{summary.robots} robot" + ("s" if summary.robots > 1 else "")
         figure.text(
             0.095, 0.955, f"{summary.world}: {team}, {summary.planner}", fontsize=12, fontweight="bold"
         )
-        figure.text(0.98, 0.955, f"seed {summary.seed}", ha="right", color=palette.unit((110, 113, 117)))
+        figure.text(0.98, 0.955, f"seed {summary.seed}", ha="right", color=palette.unit(palette.FAINT))
         figure.align_ylabels()
         save(figure, path)
 
@@ -97,10 +98,3 @@ def _apart(shared: Sequence[Axes], log: ExploreLog, summary: ExploreSummary) -> 
         for axes in shared:
             axes.axvspan(begin, over, color=_APART, alpha=0.14, lw=0, zorder=0, label=label)
             label = "_"
-
-
-def _tidy(axes: Axes, last: bool) -> None:
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.grid(axis="y", color=palette.unit((235, 237, 240)), lw=0.8)
-    axes.set_axisbelow(True)
-    axes.tick_params(length=3, labelbottom=last)

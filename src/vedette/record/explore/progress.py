@@ -20,7 +20,7 @@ from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save
 from vedette.record.explore.log import ExploreLog, ExploreSnapshot, RobotSample
 from vedette.record.explore.raster import Window, enlarge, known_window, paint
-from vedette.record.signs import DASHES, badge, draw_links, legend_line, link_signs, scale_bar
+from vedette.record.signs import DASHES, FAINT, badge, draw_links, legend_line, link_signs, scale_bar
 
 _GAP, _MARGIN, _TOP = 0.14, 0.2, 0.72  # [inch]
 _LINE = 0.25  # of the legend [inch]
@@ -179,13 +179,12 @@ def _robots_a_row(width: float, robots: Sequence[RobotSample]) -> int:
 
 
 def _signs() -> list[Line2D | Patch]:
-    ink = palette.unit((110, 113, 117))
     classes = ((FREE, "free"), (OCCUPIED, "wall"), (UNKNOWN, "unknown"))
     return [
-        Line2D((), (), color=ink, lw=1.3, label="travelled"),
-        Line2D((), (), color=ink, lw=1.4, ls=DASHES, label="planned"),
-        Line2D((), (), ls="", marker="s", color="white", mec=ink, mew=1.6, ms=6, label="goal"),
-        *(Patch(fc=tuple(palette.CLASSES[c] / 255), ec=ink, lw=0.6, label=name) for c, name in classes),
+        Line2D((), (), color=FAINT, lw=1.3, label="travelled"),
+        Line2D((), (), color=FAINT, lw=1.4, ls=DASHES, label="planned"),
+        Line2D((), (), ls="", marker="s", color="white", mec=FAINT, mew=1.6, ms=6, label="goal"),
+        *(Patch(fc=tuple(palette.CLASSES[c] / 255), ec=FAINT, lw=0.6, label=name) for c, name in classes),
     ]
 
 

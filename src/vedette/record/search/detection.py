@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import PercentFormatter
 
 from vedette.record import palette
-from vedette.record.canvas import DPI, picture, save
+from vedette.record.canvas import DPI, picture, save, tidy
 from vedette.record.search.curves import Curves
 from vedette.record.search.summary import SearchSummary
 from vedette.record.signs import FAINT, INK
@@ -50,10 +50,7 @@ def detection_png(curves: Curves, summary: SearchSummary, path: Path | str) -> N
         axes.set(xlabel="time [s]", ylabel="probability of detection", ylim=(0.0, 1.08))
         axes.set(xlim=(0.0, float(curves.times[-1]) or 1.0), yticks=np.linspace(0.0, 1.0, 6))
         axes.yaxis.set_major_formatter(PercentFormatter(1.0))
-        axes.spines[["top", "right"]].set_visible(False)
-        axes.grid(axis="y", color=palette.unit((235, 237, 240)), lw=0.8)
-        axes.set_axisbelow(True)
-        axes.tick_params(length=3)
+        tidy(axes, "y")
         axes.legend(loc="lower right", framealpha=0.9, edgecolor="none", labelspacing=0.45)
         count = f"{summary.vehicles} vehicle" + ("s" if summary.vehicles > 1 else "")
         figure.text(0.085, 0.935, f"{summary.scenario}: {count}", fontsize=12, fontweight="bold")

@@ -12,12 +12,12 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from vedette.record import palette
-from vedette.record.canvas import DPI, picture, save
+from vedette.record.canvas import DPI, picture, save, tidy
 from vedette.record.track.log import TrackLog
 from vedette.record.track.summary import dimensions, nees_band
 
 _SIZE = 8.0, 6.0  # [inch]
-_FAINT = palette.unit((110, 113, 117))
+_FAINT = palette.unit(palette.FAINT)
 _STYLES: dict[str, dict[str, Any]] = {  # a line differs in more than its colour
     "none": {"color": palette.unit((213, 94, 0)), "ls": (0, (1, 1.2)), "lw": 1.6, "zorder": 2},
     "shared": {"color": palette.unit((0, 158, 115)), "ls": (0, (6, 2)), "lw": 1.6, "zorder": 3},
@@ -48,7 +48,8 @@ def entropy_png(logs: Mapping[str, TrackLog], left_out: Mapping[str, str], path:
         _entropy(above, logs, left_out)
         _nees(below, logs, dimensions(some))
         for axes in (above, below):
-            _tidy(axes, last=axes is below)
+            tidy(axes, "y")
+            axes.tick_params(labelbottom=axes is below)
         above.set_xlim(0.0, max(float(log.times[-1]) for log in logs.values()) or 1.0)
         scene = some.scene
         counts = f"{len(scene.vehicles)} vehicles, {len(scene.targets)} targets"
@@ -87,10 +88,3 @@ def _nees(axes: Axes, logs: Mapping[str, TrackLog], numbers: int) -> None:
     axes.annotate(text, (0.99, low), (0, -3), xycoords=("axes fraction", "data"),
                   textcoords="offset points", ha="right", va="top", fontsize=8, color=_FAINT)  # fmt: skip
     axes.set(ylabel="NEES a dimension", xlabel="time [s]", ylim=(0.0, 1.15 * min(top, 6.0)))
-
-
-def _tidy(axes: Axes, last: bool) -> None:
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.grid(axis="y", color=palette.unit((235, 237, 240)), lw=0.8)
-    axes.set_axisbelow(True)
-    axes.tick_params(length=3, labelbottom=last)

@@ -77,9 +77,7 @@ def _heading(figure: Figure, layout: _Layout, log: TrackLog) -> None:
         _MARGIN / layout.width, y, f"{scene.name}: {counts}", fontsize=12, fontweight="bold", va="top"
     )
     held = f"tracks as {scene.vehicles[last.holder]} holds them"
-    figure.text(
-        1 - _MARGIN / layout.width, y, held, ha="right", va="top", color=palette.unit((110, 113, 117))
-    )
+    figure.text(1 - _MARGIN / layout.width, y, held, ha="right", va="top", color=palette.unit(palette.FAINT))
 
 
 def _legend(figure: Figure, layout: _Layout, log: TrackLog) -> None:
@@ -100,7 +98,7 @@ def _legend(figure: Figure, layout: _Layout, log: TrackLog) -> None:
 
 
 def _signs() -> list[Line2D | Patch]:
-    grey = palette.unit((110, 113, 117))
+    grey = palette.unit(palette.FAINT)
     return [
         Line2D((), (), color=grey, lw=1.4, label="flown, the last 20 s"),
         Line2D((), (), color=(*grey, 0.4), lw=0.9, label="before"),
