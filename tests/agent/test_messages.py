@@ -154,12 +154,12 @@ def test_a_repeated_freeze_does_not_change_the_belief_of_the_round() -> None:
     team, _, _ = toy_team(Tree.chain(2))
     child = team.agents[1]
     team.run_until(lambda: toy(child).prepared == 1)
-    before = child.rounds._round
+    before = child.rounds.round
     assert before is not None
     belief = before.belief
     toy(child).belief = belief + 1.0
     team.tell(1, Message(0, messages.encode(messages.Freeze(*child.rounds.stamp, 0, 12345, 2))))
-    assert child.rounds._round is before
+    assert child.rounds.round is before
     assert before.belief is belief
     assert toy(child).prepared == 1
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -68,6 +68,11 @@ class ToyMission:
     def __post_init__(self) -> None:
         self.objective = Coverage()
 
+    @property
+    def platform(self) -> ToyMission:
+        """Itself."""
+        return self
+
     def observe(self, scan: Scan, pose: Pose, mates: Sequence[Mate], now: float) -> None:
         """Count."""
         self.observed += 1
@@ -92,10 +97,6 @@ class ToyMission:
         self.prepared += 1
         self.blocked.append(blocked)
 
-    def key(self, strategy: int | None) -> Hashable:
-        """The index itself."""
-        return strategy
-
     def _chooser(self, belief: Float, strategy: int | None) -> Chooser[Float, Float]:
         return Chooser(self.objective, belief, self.candidates, start=strategy)
 
@@ -108,18 +109,6 @@ class ToyMission:
         chooser = self._chooser(belief, current)
         chooser.reply(others)
         return chooser.index
-
-    def nothing(self, belief: Float) -> Float:
-        """No sighting."""
-        return self.objective.nothing(belief)
-
-    def combine(self, a: Float, b: Float) -> Float:
-        """Misses multiply."""
-        return self.objective.combine(a, b)
-
-    def value(self, belief: Float, impact: Float) -> float:
-        """Of the coverage."""
-        return self.objective.value(belief, impact)
 
     def slack(self, belief: Float, base: Float) -> float:
         """Of the candidates."""
@@ -146,10 +135,6 @@ class ToyMission:
 
     def reach(self, now: float) -> None:
         """Anywhere."""
-
-    def clip(self, belief: Any, impact: Any, reach: Any) -> Any:
-        """Leave nothing out."""
-        return impact
 
     def admit(self, belief: Any, impact: Float, robots: int) -> None:
         """As many points as there are can be claimed."""

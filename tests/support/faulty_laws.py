@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tests.support.faulty_world import Belief, Impact, Life, SiteMission, Sites, Stamp, check, worth
 from vedette.agent import Agent, GroundBehaviour, State
-from vedette.agent.rounds import _Round as RoundSeen
+from vedette.agent.round import Round as RoundSeen
 from vedette.fusion.tiles import WORDS, classes_of, codes_of
 from vedette.negotiation import Outcome, TokenNode
 

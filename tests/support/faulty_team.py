@@ -103,7 +103,7 @@ class FaultyTeam(SiteTeam):
 
     def _let(self, i: int, act: Act) -> None:
         rounds = self.network.agents[i].rounds
-        seen, decisions, cuts = rounds._round, rounds.decisions, rounds.cuts
+        seen, decisions, cuts = rounds.round, rounds.decisions, rounds.cuts
         super()._let(i, act)
         agent = self.network.agents[i]
         mission = mission_of(agent)

@@ -7,9 +7,8 @@ were made in, notes name round and robot. So whoever mixes rounds, or counts a r
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import msgspec
 import numpy as np
@@ -19,7 +18,7 @@ from vedette.agent.effects import Route
 from vedette.agent.events import Pose, Sensed
 from vedette.agent.mates import Mate
 from vedette.agent.messages import Note
-from vedette.agent.rounds import MOST_NOTES
+from vedette.agent.round import MOST_NOTES
 from vedette.fusion import ReplicatedEvidence
 from vedette.maps import FREE, GridFrame
 from vedette.problem import Coverage
@@ -172,6 +171,16 @@ class SiteMission:
 
     # -- evidence ------------------------------------------------------------------------------------
 
+    @property
+    def platform(self) -> SiteMission:
+        """Itself."""
+        return self
+
+    @property
+    def objective(self) -> SiteMission:
+        """Itself."""
+        return self
+
     def observe(self, seen: Sensed, pose: Pose, mates: Sequence[Mate], now: float) -> None:
         """See sites; what is beside them looks otherwise to robots of odd number."""
         assert isinstance(seen.data, list)
@@ -221,10 +230,6 @@ class SiteMission:
         if self.strategy not in self._candidates:
             self.strategy = None
 
-    def key(self, strategy: int | None) -> Hashable:
-        """Return the site itself."""
-        return strategy
-
     def impact(self, belief: Belief, strategy: int | None) -> Impact:
         """Return what going to a site would achieve."""
         miss = self._candidates.get(-1 if strategy is None else strategy)
@@ -263,10 +268,6 @@ class SiteMission:
 
     def reach(self, now: float) -> None:
         """Anywhere."""
-
-    def clip(self, belief: Belief, impact: Impact, reach: Any) -> Impact:
-        """Leave nothing out."""
-        return impact
 
     def admit(self, belief: Belief, impact: Impact, robots: int) -> None:
         """No more robots have made it than there are."""

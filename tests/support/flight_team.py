@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -17,7 +17,7 @@ from vedette.agent.mates import Mate
 from vedette.fusion import ReplicatedEvidence
 from vedette.negotiation import Chooser
 from vedette.outcome import Outcome
-from vedette.problem import Coverage, Reach
+from vedette.problem import Coverage
 from vedette.sim.planted import PlantedTree
 from vedette.sim.simulation import Setup, Simulation
 from vedette.sim.vehicles import Vehicles
@@ -65,9 +65,19 @@ class Spreading:
     against: Float | None = None  # others' impact at the last reply
 
     def __post_init__(self) -> None:
-        self.objective = Coverage()
+        self._coverage = Coverage()
         self._index: dict[Turns, int] = {}
         self._impacts: list[Float] = []
+
+    @property
+    def platform(self) -> Spreading:
+        """Itself."""
+        return self
+
+    @property
+    def objective(self) -> Spreading:
+        """Itself."""
+        return self
 
     def observe(self, seen: Any, pose: Pose, mates: Sequence[Mate], now: float) -> None:
         """Keep it."""
@@ -103,11 +113,7 @@ class Spreading:
 
     def _chooser(self, belief: Belief, strategy: Turns | None) -> Chooser[Float, Float]:
         start = None if strategy is None else self._index[strategy]
-        return Chooser(self.objective, belief.worth, self._impacts, start=start)
-
-    def key(self, strategy: Turns | None) -> Hashable:
-        """The turns themselves."""
-        return strategy
+        return Chooser(self._coverage, belief.worth, self._impacts, start=start)
 
     def impact(self, belief: Belief, strategy: Turns | None) -> Float:
         """Miss probability of each point."""
@@ -122,15 +128,15 @@ class Spreading:
 
     def nothing(self, belief: Belief) -> Float:
         """No sighting."""
-        return self.objective.nothing(belief.worth)
+        return self._coverage.nothing(belief.worth)
 
     def combine(self, a: Float, b: Float) -> Float:
         """Misses multiply."""
-        return self.objective.combine(a, b)
+        return self._coverage.combine(a, b)
 
     def value(self, belief: Belief, impact: Float) -> float:
         """Worth seen."""
-        return self.objective.value(belief.worth, impact)
+        return self._coverage.value(belief.worth, impact)
 
     def slack(self, belief: Belief, base: Float) -> float:
         """Of the sequences."""
@@ -138,10 +144,6 @@ class Spreading:
 
     def reach(self, now: float) -> None:
         """Anywhere."""
-
-    def clip(self, belief: Belief, impact: Float, reach: Reach) -> Float:
-        """Leave nothing out."""
-        return impact
 
     def admit(self, belief: Belief, impact: Float, robots: int) -> None:
         """As many points as there are can be claimed."""

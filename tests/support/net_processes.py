@@ -18,6 +18,7 @@ import numpy as np
 
 from tests.support.small_missions import robots
 from vedette.maps.world import World
+from vedette.missions.explore.options import ExploreOptions
 from vedette.net.launch import TeamPlan, TeamProcesses
 from vedette.net.names import Topic
 from vedette.net.report import Condition, read_report
@@ -26,7 +27,6 @@ from vedette.net.transport import Operator, Published
 from vedette.record.explore.log import ExploreSnapshot
 from vedette.record.explore.observer import ExploreReport
 from vedette.record.explore.views import Setting
-from vedette.sim.explore.simulation import ExploreSetup
 from vedette.sim.starts import choose_starts
 
 SPEED = 5.0  # times real time
@@ -38,7 +38,7 @@ def plan_of(world: World, count: int, speed: float = SPEED, lease: float = LEASE
     """A team that starts together, as ``vedette team explore`` starts one with seed 0."""
     specs = robots(count)
     places = choose_starts(world, specs, np.random.default_rng([0, 1]))
-    return TeamPlan(world, specs, places, ExploreSetup(), 0, speed, lease)
+    return TeamPlan(world, specs, places, ExploreOptions(), 0, speed, lease)
 
 
 @dataclass(frozen=True)
@@ -206,7 +206,7 @@ def run(
         diary = Diary(plan, processes)
         operator.subscribe(Topic.REPORT, diary.take)
         fate = _Fate(diary, sorted(faults, key=lambda fault: fault.coverage))
-        setting = Setting(0, plan.how.planner, plan.how.scheme, plan.how.fusion)
+        setting = Setting(0, plan.options.planner, plan.options.scheme, plan.options.fusion)
         watch = TeamWatch(plan, processes, operator, setting, max_time, sinks=(fate,))
         report = watch.run()
         ended = time.monotonic()

@@ -13,6 +13,12 @@ from numpy.typing import ArrayLike, NDArray
 from vedette.vehicle import drive
 
 _ROUNDING = 1e-9  # [s], and of a step: times this near a boundary are at it
+_SEEN = 1e-6  # of a step: what was seen this near its beginning was seen at it
+
+
+def step_of(time: float, step: float) -> int:
+    """Return the step that a time [s] lies in; step k begins at ``k dt``."""
+    return floor(time / step + _SEEN)
 
 
 def start_step(t0: float, lead: float, step: float) -> int:

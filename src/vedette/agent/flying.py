@@ -6,6 +6,7 @@ Vehicles keep altitudes of their own, so that nobody makes room for anybody, and
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +26,7 @@ class FlightBehaviour:
     When it has run out, and before the first one, the vehicle circles at its greatest turn rate.
     """
 
-    mission: FlightMission
+    mission: FlightMission[Any, Any, Any]
     speed: float  # [m/s]
     turn_rate: float  # greatest [rad/s]
     state: State = State.WAITING

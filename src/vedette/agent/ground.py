@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import hypot
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +28,7 @@ CHECK_PERIOD = 1.0  # of the present goal's point [s]
 class GroundBehaviour:
     """Drives from goal to goal of the latest decision; ``vedette.agent.state.Behaviour``."""
 
-    mission: GroundMission
+    mission: GroundMission[Any, Any, Any]
     driver: Driver
     return_home: bool = False
     expected: int = 1  # robots, itself included, that it waits for before it begins

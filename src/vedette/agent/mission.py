@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 from vedette.agent.effects import Route
 from vedette.agent.events import Pose
 from vedette.agent.flight import FlightPlan
 from vedette.agent.mates import Mate
 from vedette.agent.messages import Note
-from vedette.problem import Codec, Reach
+from vedette.problem import Codec, Objective, Reach
+
+BeliefT = TypeVar("BeliefT")
+BeliefT_contra = TypeVar("BeliefT_contra", contravariant=True)
+ImpactT = TypeVar("ImpactT")
 
 
 class Exchange(Protocol):
@@ -30,10 +34,26 @@ class Exchange(Protocol):
         """Take in a payload (ValueError if malformed)."""
 
 
-class Mission(Protocol):
-    """One robot's share of a mission, as rounds need it.
+StrategyT = TypeVar("StrategyT", bound=Hashable)  # within a round equal ones have equal impacts
 
-    Beliefs, strategies, impacts and what is observed are the domain's own (Any).
+
+class RoundPlatform(Protocol[BeliefT_contra, StrategyT, ImpactT]):
+    """A robot's platform, prepared for a round; compare ``vedette.problem.Platform``."""
+
+    def impact(self, belief: BeliefT_contra, strategy: StrategyT) -> ImpactT:
+        """Return ``Y_i(strategy)`` (paper, eq. (13))."""
+
+    def reply(self, belief: BeliefT_contra, others: ImpactT, current: StrategyT) -> StrategyT:
+        """Return the best strategy against the rest of the team, ``current`` if none is better; fast."""
+
+    def slack(self, belief: BeliefT_contra, base: ImpactT) -> float:
+        """Return the most that a strategy of this platform adds to ``base``; infinite: not known."""
+
+
+class Mission(Protocol[BeliefT, StrategyT, ImpactT]):
+    """One robot's share of a mission, as rounds need it: its evidence, its platform, the team's objective.
+
+    Beliefs, strategies, impacts and what is observed are the domain's own.
     """
 
     @property
@@ -41,10 +61,18 @@ class Mission(Protocol):
         """How this robot shares evidence."""
 
     @property
-    def codec(self) -> Codec[Any]:
+    def codec(self) -> Codec[ImpactT]:
         """How impacts travel."""
 
-    strategy: Any  # what the robot is doing; kept between rounds
+    @property
+    def objective(self) -> Objective[BeliefT, ImpactT]:
+        """The team's ``*`` and ``psi``."""
+
+    @property
+    def platform(self) -> RoundPlatform[BeliefT, StrategyT, ImpactT]:
+        """What this robot can do; ``prepare`` below prepares it."""
+
+    strategy: StrategyT  # what the robot is doing; kept between rounds
 
     def observe(self, seen: Any, pose: Pose, mates: Sequence[Mate], now: float) -> None:
         """Take a ``Scan`` or what was ``Sensed`` into the robot's own evidence."""
@@ -58,48 +86,24 @@ class Mission(Protocol):
     def hear_notes(self, notes: Sequence[Note]) -> None:
         """Take in what anybody had to tell: all of it, anew in each round."""
 
-    def freeze(self, t0: float) -> Any:
+    def freeze(self, t0: float) -> BeliefT:
         """Return the belief of a round: a snapshot of what the team knows.
 
         ``t0``: when the round froze [s], by the root's clock and the same for the whole team; from it
         (``flight.start_step``) everybody gets the same steps to plan for.
         """
 
-    def prepare(self, belief: Any, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float) -> None:
+    def prepare(self, belief: BeliefT, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float) -> None:
         """Do the slow part of planning, the present strategy restated for the round included.
 
         ``pose``: where the robot will be when its strategy starts. ``blocked``: the robot cannot go on as it
         would, so that its mates count as obstacles.
         """
 
-    def key(self, strategy: Any) -> Hashable:
-        """Return a hashable name of a strategy, unique within a round."""
-
-    def impact(self, belief: Any, strategy: Any) -> Any:
-        """Return what a strategy would achieve."""
-
-    def reply(self, belief: Any, others: Any, current: Any) -> Any:
-        """Return the best strategy against the rest of the team; ``current`` itself if none beats it."""
-
-    def nothing(self, belief: Any) -> Any:
-        """Return the identity of ``*``."""
-
-    def combine(self, a: Any, b: Any) -> Any:
-        """Return ``a * b``."""
-
-    def value(self, belief: Any, impact: Any) -> float:
-        """Return ``psi(impact)``."""
-
-    def slack(self, belief: Any, base: Any) -> float:
-        """Return the most that a strategy of this robot adds to ``base``."""
-
     def reach(self, now: float) -> Reach | None:
         """Return where this robot can make a difference in a round that begins now; None: anywhere."""
 
-    def clip(self, belief: Any, impact: Any, reach: Reach) -> Any:
-        """Return what of an impact can matter to robots that make a difference only within ``reach``."""
-
-    def admit(self, belief: Any, impact: Any, robots: int) -> None:
+    def admit(self, belief: BeliefT, impact: ImpactT, robots: int) -> None:
         """Raise ``ValueError`` if so many robots' sensors cannot make a combined impact that claims so much.
 
         No impact that robots of the team do have may be refused.
@@ -112,7 +116,7 @@ class Mission(Protocol):
         """
 
 
-class GroundMission(Mission, Protocol):
+class GroundMission(Mission[BeliefT, StrategyT, ImpactT], Protocol[BeliefT, StrategyT, ImpactT]):
     """A mission whose strategies are places to drive to, one after another."""
 
     def goal(self) -> tuple[float, float] | None:
@@ -133,10 +137,10 @@ class GroundMission(Mission, Protocol):
         """Return a way to a goal on the newest map, or None."""
 
 
-class FlightMission(Mission, Protocol):
+class FlightMission(Mission[BeliefT, StrategyT, ImpactT], Protocol[BeliefT, StrategyT, ImpactT]):
     """A mission whose strategies are turn rates, held for a step each from a common time on."""
 
-    def start(self, belief: Any) -> float:
+    def start(self, belief: BeliefT) -> float:
         """Return when strategies planned on a belief start [s]."""
 
     def plan(self) -> FlightPlan | None:

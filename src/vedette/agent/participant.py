@@ -3,70 +3,65 @@
 from __future__ import annotations
 
 from collections.abc import Hashable
-from typing import Any
+from typing import Generic, cast
 
-from vedette.agent.mission import Mission
-from vedette.problem import Reach
+from vedette.agent.mission import BeliefT, ImpactT, Mission, StrategyT
+from vedette.problem import Clippable, Reach
 
 
-class RoundParticipant:
+class RoundParticipant(Generic[BeliefT, StrategyT, ImpactT]):
     """Holds the robot's strategy and impact while a round lasts; ``vedette.negotiation.Participant``."""
 
-    def __init__(self, mission: Mission, belief: Any) -> None:
-        self._mission = mission
+    def __init__(self, mission: Mission[BeliefT, StrategyT, ImpactT], belief: BeliefT) -> None:
+        self._platform, self._objective = mission.platform, mission.objective
         self._belief = belief
-        self._chosen = mission.strategy
-        self._had: dict[Hashable, Any] = {mission.key(self._chosen): self._chosen}
-        self._impact = mission.impact(belief, self._chosen)
+        self._take(mission.strategy)
 
     @property
-    def chosen(self) -> Any:
-        """The strategy itself."""
-        return self._chosen
-
-    @property
-    def impact(self) -> Any:
+    def impact(self) -> ImpactT:
         """Own impact of the present strategy."""
         return self._impact
 
     @property
-    def strategy(self) -> Hashable:
-        """A name of the present strategy."""
-        return self._mission.key(self._chosen)
+    def strategy(self) -> StrategyT:
+        """Present strategy."""
+        return self._strategy
 
     def adopt(self, strategy: Hashable) -> None:
         """Take up a strategy that the robot had before in this round."""
-        self._take(self._had[strategy])
+        self._take(cast(StrategyT, strategy))
 
-    def reply(self, others: Any) -> bool:
+    def reply(self, others: ImpactT) -> bool:
         """Take up the best strategy against the rest of the team, if that is another; tell if so."""
-        best = self._mission.reply(self._belief, others, self._chosen)
-        if self._mission.key(best) == self.strategy:
+        best = self._platform.reply(self._belief, others, self._strategy)
+        if best == self._strategy:
             return False
         self._take(best)
         return True
 
-    def _take(self, strategy: Any) -> None:
-        self._chosen = strategy
-        self._had[self._mission.key(strategy)] = strategy
-        self._impact = self._mission.impact(self._belief, strategy)
+    def _take(self, strategy: StrategyT) -> None:
+        self._strategy = strategy
+        self._impact = self._platform.impact(self._belief, strategy)
 
-    def nothing(self) -> Any:
+    def nothing(self) -> ImpactT:
         """Identity of ``*``."""
-        return self._mission.nothing(self._belief)
+        return self._objective.nothing(self._belief)
 
-    def combine(self, a: Any, b: Any) -> Any:
+    def combine(self, a: ImpactT, b: ImpactT) -> ImpactT:
         """``a * b``."""
-        return self._mission.combine(a, b)
+        return self._objective.combine(a, b)
 
-    def value(self, team: Any) -> float:
+    def value(self, team: ImpactT) -> float:
         """``psi(team)``."""
-        return self._mission.value(self._belief, team)
+        return self._objective.value(self._belief, team)
 
-    def slack(self, base: Any) -> float:
+    def slack(self, base: ImpactT) -> float:
         """Most that any strategy of this robot would add to ``base``."""
-        return self._mission.slack(self._belief, base)
+        return self._platform.slack(self._belief, base)
 
-    def clip(self, impact: Any, reach: Reach) -> Any:
-        """Return what of an impact can matter within ``reach``."""
-        return self._mission.clip(self._belief, impact, reach)
+    def clip(self, impact: ImpactT, reach: Reach) -> ImpactT:
+        """Return what of an impact can matter within ``reach``; all of it if the objective cannot tell."""
+        if not isinstance(self._objective, Clippable):
+            return impact
+        clipped: ImpactT = self._objective.clip(self._belief, impact, reach)
+        return clipped

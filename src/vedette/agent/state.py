@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import Enum
 from math import inf
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,7 +50,7 @@ class Behaviour(Protocol):
     """What one kind of robot does with its strategy: the part of an agent between decisions and motion."""
 
     @property
-    def mission(self) -> Mission:
+    def mission(self) -> Mission[Any, Any, Any]:
         """The robot's share of the mission."""
 
     @property
@@ -104,7 +104,7 @@ class Agent:
         self.rounds = Rounds(self.mission, self.scheme, self._decided, self.pace)
 
     @property
-    def mission(self) -> Mission:
+    def mission(self) -> Mission[Any, Any, Any]:
         """The robot's share of the mission."""
         return self.behaviour.mission
 

@@ -15,13 +15,13 @@ from vedette.domains.mapping.planners import DEFAULT, PLANNERS
 from vedette.errors import InputError
 from vedette.maps import write_map
 from vedette.maps.world import World
+from vedette.missions.explore.assemble import FUSIONS
 from vedette.negotiation import SCHEMES
 from vedette.record.explore.curves import curves_png
 from vedette.record.explore.film import animate_gif
 from vedette.record.explore.observer import ExploreReport
 from vedette.record.explore.progress import progress_png
 from vedette.record.explore.summary import ExploreSummary
-from vedette.sim.explore.simulation import FUSIONS
 from vedette.sim.starts import parse_starts
 from vedette.sim.worlds import office
 from vedette.team import PlatformSpec, load_team

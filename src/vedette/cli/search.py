@@ -18,6 +18,7 @@ from vedette.cli.options import (
     seed_option,
 )
 from vedette.missions.search.case import default_case, read_case
+from vedette.missions.search.options import COORDINATIONS, FUSIONS
 from vedette.negotiation import SCHEMES
 from vedette.record.files import new_directory, output_directory
 from vedette.record.search.detection import detection_png
@@ -29,7 +30,7 @@ from vedette.record.search.summary import SearchOutcome, SearchSummary
 from vedette.sim.radio import Radio
 from vedette.sim.search.run import SearchReport, scene_of
 from vedette.sim.search.run import search as run_search
-from vedette.sim.search.simulation import COORDINATIONS, FUSIONS, SearchSetup, SearchSimulation
+from vedette.sim.search.simulation import SearchSetup, SearchSimulation
 from vedette.sim.search.trials import Running, assessed
 
 STATUS = {SearchOutcome.FOUND: 0, SearchOutcome.INTERRUPTED: 130}  # any other end: 1

@@ -15,6 +15,7 @@ import numpy as np
 
 from vedette.cli.exploring import closing, exploring_options, team_of, world_of, write_outputs
 from vedette.cli.options import STATUS, Positive, ending_on_ctrl_c, output_options
+from vedette.missions.explore.options import ExploreOptions
 from vedette.net.launch import TeamPlan, TeamProcesses
 from vedette.net.names import robot_name
 from vedette.net.team import TeamWatch
@@ -23,7 +24,6 @@ from vedette.record.explore.live import LiveView
 from vedette.record.explore.mcap import ExploreMcapWriter
 from vedette.record.explore.views import Setting, planning_frame
 from vedette.record.files import new_directory, output_directory
-from vedette.sim.explore.simulation import ExploreSetup, scheme_of
 from vedette.sim.starts import choose_starts
 
 SPEED = 3.0  # more costs mission time, as thoughts and messages take as long as ever: 5 % at 5, 16 % at 10
@@ -80,8 +80,8 @@ def explore(
     world = world_of(map_path, resolution, seed)
     specs = team_of(team, robots, starts)
     places = choose_starts(world, specs, np.random.default_rng([seed, 1]))
-    how = ExploreSetup(planner=planner, scheme=scheme, fusion=fusion, return_home=return_home)
-    plan = TeamPlan(world, specs, places, how, seed, speed, lease)
+    options = ExploreOptions(planner, scheme, fusion, return_home)
+    plan = TeamPlan(world, specs, places, options, seed, speed, lease)
     folder = new_directory("runs", world.name) if out is None else output_directory(out, force)
     planning = planning_frame(world)
     with ExitStack() as stack:
@@ -94,7 +94,7 @@ def explore(
         mcap = stack.enter_context(
             ExploreMcapWriter(folder / "run.mcap", world.name, world.frame, planning, names)
         )
-        setting = Setting(seed, planner, scheme_of(how), fusion)
+        setting = Setting(seed, planner, options.negotiates_by, fusion)
         watch = TeamWatch(plan, processes, operator, setting, max_time, (live, mcap))
         stack.enter_context(ending_on_ctrl_c(watch.stop))
         report = watch.run()

@@ -21,6 +21,7 @@ from vedette.cli.options import (
 )
 from vedette.domains.tracking.objective import OBJECTIVES
 from vedette.fusion.gaussian import WAYS
+from vedette.missions.track.options import COORDINATIONS
 from vedette.missions.track.scenario import default_scenario, read_scenario
 from vedette.negotiation import SCHEMES
 from vedette.record.files import new_directory, output_directory
@@ -34,7 +35,7 @@ from vedette.record.track.tracks import tracks_png
 from vedette.sim.radio import Radio
 from vedette.sim.track.run import TrackReport, compared, scene_of
 from vedette.sim.track.run import track as run_mission
-from vedette.sim.track.simulation import COORDINATIONS, TrackSetup, TrackSimulation
+from vedette.sim.track.simulation import TrackSetup, TrackSimulation
 
 
 @click.command()

@@ -11,14 +11,15 @@ from typing import Annotated
 
 from msgspec import Meta, Struct
 
-from vedette.domains.mapping.planners import DEFAULT, PLANNERS, planner
+from vedette.domains.mapping.planners import PLANNERS, planner
 from vedette.errors import InputError, nearest_name
+from vedette.missions.explore.assemble import FUSIONS
+from vedette.missions.explore.options import ExploreOptions
 from vedette.negotiation import SCHEMES
 from vedette.net.access import Access
 from vedette.net.credentials import credentials
 from vedette.net.names import MOST_ROBOTS
 from vedette.scenario import load_scenario
-from vedette.sim.explore.simulation import FUSIONS
 from vedette.team import PlatformSpec
 
 OF_BODY = tuple(field.name for field in fields(PlatformSpec) if field.name not in ("name", "start"))
@@ -46,15 +47,6 @@ class Links(Struct, forbid_unknown_fields=True, frozen=True):
         return tuple(
             re.sub(r"/(?:0\.0\.0\.0|\[::\]):", f"/{self.address}:", endpoint) for endpoint in self.listen
         )
-
-
-class Exploring(Struct, forbid_unknown_fields=True, frozen=True):
-    """How the robot explores; the same for the whole team."""
-
-    planner: str = DEFAULT
-    scheme: str = "token"
-    fusion: str = "replicated"
-    return_home: bool = False
 
 
 class Body(Struct, forbid_unknown_fields=True, frozen=True):
@@ -100,7 +92,7 @@ class AgentConfig(Struct, forbid_unknown_fields=True, frozen=True):
     robots: Robot = 1  # it waits for so many, itself included, before it begins; for a while
     best: Best | None = None  # of the whole team; None: as this robot
     links: Links = Links()
-    explore: Exploring = Exploring()
+    explore: ExploreOptions = ExploreOptions()
 
 
 def load_config(path: Path | str) -> AgentConfig:

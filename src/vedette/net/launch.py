@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.maps.world import World
+from vedette.missions.explore.options import ExploreOptions
 from vedette.net.access import Access
 from vedette.net.config import OF_BODY
 from vedette.net.credentials import credentials
@@ -26,7 +27,6 @@ from vedette.net.endpoints import free_port
 from vedette.net.keys import issue_team
 from vedette.net.names import OPERATOR, robot_name
 from vedette.record.files import write_text
-from vedette.sim.explore.simulation import Exploring
 from vedette.team import PlatformSpec
 
 TEAM = "team"
@@ -41,7 +41,7 @@ class TeamPlan:
     world: World
     specs: Sequence[PlatformSpec]
     starts: NDArray[np.float64]  # (n, 3) x, y, heading [m, m, rad], team frame
-    how: Exploring
+    options: ExploreOptions
     seed: int
     speed: float  # times real time
     lease: float = 3.0  # [s]
@@ -160,12 +160,7 @@ class TeamProcesses:
                 "keys": f"keys/{robot_name(i)}",
                 "lease": plan.lease,
             },
-            "explore": {
-                "planner": plan.how.planner,
-                "scheme": plan.how.scheme,
-                "fusion": plan.how.fusion,
-                "return_home": plan.how.return_home,
-            },
+            "explore": msgspec.to_builtins(plan.options),
             "body": {
                 "map": "map.yaml",
                 "start": [x, y, float(np.degrees(heading))],

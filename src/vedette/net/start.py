@@ -10,13 +10,13 @@ import numpy as np
 
 from vedette.agent import NetworkedAgent
 from vedette.maps.world import World
+from vedette.missions.explore.assemble import assemble
 from vedette.net.config import AgentConfig, access_of
 from vedette.net.inbox import Inbox
 from vedette.net.names import robot_name
 from vedette.net.process import AgentProcess, MissionClock
 from vedette.net.transport import Transport
 from vedette.net.witness import Witness
-from vedette.sim.explore.simulation import explorer
 from vedette.sim.own_body import OwnBody
 from vedette.sim.starts import choose_starts
 from vedette.team import Most
@@ -47,7 +47,7 @@ def agent_process(config: AgentConfig, folder: Path, speed: float) -> AgentProce
     rng = np.random.default_rng([config.body.seed, robot])
     body = OwnBody(world, spec, start, robot, max(MOST_BODIES, robot + 1), rng)
     best = config.best
-    agent = explorer(
+    agent = assemble(
         world.frame,
         spec,
         config.explore,

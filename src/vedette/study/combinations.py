@@ -11,9 +11,10 @@ from typing import Any, TypeVar
 
 from vedette.domains.mapping.planners import planner
 from vedette.errors import InputError, nearest_name
+from vedette.missions.explore.assemble import FUSIONS
 from vedette.negotiation import SCHEMES
 from vedette.scenario import as_scenario
-from vedette.sim.explore.simulation import FUSIONS, ExploreSetup
+from vedette.sim.explore.simulation import ExploreSetup
 from vedette.sim.faults import Schedule, load_faults
 from vedette.sim.radio import Radio, parse_radio
 from vedette.sim.worlds.size import world_frame

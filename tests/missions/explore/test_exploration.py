@@ -123,7 +123,7 @@ def test_two_robots_that_exchange_hold_the_same_map_and_freeze_the_same_belief()
 def prepared(mission: Exploration, now: float = 0.0) -> None:
     belief = mission.freeze(0.0)
     mission.prepare(belief, HERE, [], False, now)
-    mission.strategy = mission.reply(belief, mission.nothing(belief), mission.strategy)
+    mission.strategy = mission.platform.reply(belief, mission.objective.nothing(belief), mission.strategy)
 
 
 def reachable(mission: Exploration, target: list[float]) -> bool:

@@ -14,12 +14,13 @@ from vedette.agent.events import Pose, Sensed
 from vedette.domains.search.belief import freeze
 from vedette.domains.search.impact import NOTHING
 from vedette.errors import InputError
+from vedette.missions.search.options import COORDINATIONS, FUSIONS
 from vedette.missions.search.searching import Looks, Searching
 from vedette.outcome import Outcome
 from vedette.record.search.summary import SearchOutcome
 from vedette.sim.search.curves import detected_at, dkw, ideal, wilson
 from vedette.sim.search.run import search
-from vedette.sim.search.simulation import COORDINATIONS, FUSIONS, SearchSetup, SearchSimulation
+from vedette.sim.search.simulation import SearchSetup, SearchSimulation
 
 STILL: dict[str, Any] = {}
 SURE = {"type": "definite", "detection": 1.0, "range": 70, "noise": 5}
@@ -88,12 +89,12 @@ def test_until_plans_take_over_every_candidate_holds_the_present_flights_turn_ra
     belief = freeze(mission.pdf(9), mission.team.worth, committed=2)
     pose = Pose(400.0, 300.0, 0.3)
     mission.prepare(belief, pose, [], False, 18.0)
-    assert mission.platform.options is not None
-    flights = mission.platform.options.flights
+    assert mission.vehicle.options is not None
+    flights = mission.vehicle.options.flights
     assert len({flight.turn_rates[:2].tobytes() for flight in flights}) == 1
     assert len({flight.turn_rates.tobytes() for flight in flights}) > 8
-    after = mission.platform.look_poses(mission.platform.pose, flights[0].turn_rates[0], belief.dt)[-1]
-    after = mission.platform.look_poses(after, flights[0].turn_rates[1], belief.dt)[-1]
+    after = mission.vehicle.look_poses(mission.vehicle.pose, flights[0].turn_rates[0], belief.dt)[-1]
+    after = mission.vehicle.look_poses(after, flights[0].turn_rates[1], belief.dt)[-1]
     assert after == pytest.approx((pose.x, pose.y, pose.heading), abs=1e-9)
     assert mission.start(belief) == 22.0
 
@@ -120,7 +121,7 @@ def test_sensors_look_from_where_the_plans_say() -> None:
         assert flight is not None
         step = flight.step + 1  # in force by then: the first step was flown as planned before
         if step + 1 in looks:
-            planned = mission.platform.look_poses(looks[step][-1], flight.turn_rates[1], 2.0)
+            planned = mission.vehicle.look_poses(looks[step][-1], flight.turn_rates[1], 2.0)
             np.testing.assert_allclose(looks[step + 1], planned, atol=1e-6)
 
 

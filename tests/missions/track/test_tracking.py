@@ -18,12 +18,14 @@ from vedette.agent.events import Pose, Sensed
 from vedette.domains.tracking.impact import Impact
 from vedette.domains.tracking.platform import TrackingPlatform
 from vedette.errors import InputError
+from vedette.missions.flying import RoundTimes
+from vedette.missions.track.options import COORDINATIONS
 from vedette.missions.track.scenario import default_scenario
 from vedette.outcome import Outcome
 from vedette.record.track.summary import nees_band
-from vedette.sim.flights import lead
+from vedette.sim.simulation import JOB_TIME
 from vedette.sim.track.run import TrackReport
-from vedette.sim.track.simulation import COORDINATIONS, TrackSetup, TrackSimulation
+from vedette.sim.track.simulation import TrackSetup, TrackSimulation
 
 SEEDS = range(3)
 
@@ -211,7 +213,7 @@ def test_leads_let_rounds_end_in_time_and_hopeless_links_are_refused() -> None:
         for mission, agent in zip(simulation.missions, simulation.agents, strict=True):
             assert mission.plan() is not None
             assert agent.dropped == 0
-    assert lead(4, 0.02) < 0.8
+    assert RoundTimes(0.02, JOB_TIME).lead(4) < 0.8
     with pytest.raises(InputError, match=r"round of 3 vehicles takes .* longer horizon"):
         TrackSimulation(scenario(), TrackSetup(link_delay=0.3))
 

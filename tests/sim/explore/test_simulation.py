@@ -10,10 +10,11 @@ from vedette.agent.effects import Send, Traffic
 from vedette.domains.mapping.planners import PLANNERS
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.maps.world import World
+from vedette.missions.explore.assemble import FUSIONS
 from vedette.negotiation import SCHEMES
 from vedette.record.explore.score import Reference
 from vedette.sim.explore.run import explore, observer_of, prepare, views
-from vedette.sim.explore.simulation import FUSIONS, ExploreSetup
+from vedette.sim.explore.simulation import ExploreSetup
 from vedette.sim.links import Links
 from vedette.team import PlatformSpec
 

@@ -36,6 +36,13 @@ class Tour:
     def __len__(self) -> int:
         return len(self.targets)
 
+    def __eq__(self, other: object) -> bool:
+        """Within a round, tours over the same stops are the same."""
+        return isinstance(other, Tour) and np.array_equal(self.stops, other.stops)
+
+    def __hash__(self) -> int:
+        return hash(self.stops.tobytes())
+
     def after_first(self) -> Tour:
         """Return the tour without its first stop."""
         return Tour(self.targets[1:], self.views[1:], self.arrivals[1:], self.unknown[1:], self.stops[1:])

@@ -19,9 +19,14 @@ class Flight:
     turn_rates: NDArray[np.float64]  # (K,) [rad/s]
     goal: tuple[float, float] | None = None  # where to search after the horizon [m], team frame
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Flight) and self._key == other._key
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
     @property
-    def name(self) -> Hashable:
-        """Equal for equal flights."""
+    def _key(self) -> Hashable:
         return self.step, self.turn_rates.tobytes(), self.goal
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +19,7 @@ class Options:
     """What a vehicle can choose from in a round."""
 
     flights: list[Flight]  # the present one, restated, first
-    index: dict[Hashable, int]  # of each flight, by name
+    index: dict[Flight, int]  # of each flight
     to_best: int  # the flight to the best block, for when none detects anything
     paths: Paths  # their looks, beginnings shared, and promises
     ends: NDArray[np.int64]  # (C,) the last look of each flight

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -110,9 +109,9 @@ class SearchPlatform:
             Flight(belief.step, rates, places[goal] if goal >= 0 else None)
             for rates, goal in zip(turn_rates, after, strict=True)
         ]
-        index: dict[Hashable, int] = {}
+        index: dict[Flight, int] = {}
         for k, flight in enumerate(flights):
-            index.setdefault(flight.name, k)
+            index.setdefault(flight, k)
         to_best = len(flights) - len(goals) if len(goals) else 0
         promised = goals if belief.worth.promises else NO_GOALS
         boxes = boxes_of(belief, paths, promised)
@@ -130,7 +129,7 @@ class SearchPlatform:
         """What the flight would detect, each step's looks in a layer, and its promise; paper, eq. (39)."""
         options = self.options
         assert options is not None
-        return impact_of(options.paths, int(options.ends[options.index[strategy.name]]), belief.layers)
+        return impact_of(options.paths, int(options.ends[options.index[strategy]]), belief.layers)
 
     def gains(self, belief: SearchBelief, others: Impact) -> NDArray[np.float64]:
         """``psi(others * own_k) - psi(others)`` of each of the round's flights, ``(C,)``.
@@ -161,7 +160,7 @@ class SearchPlatform:
         best = int(np.argmax(gains)) if gains.max() > 0.0 else options.to_best
         if gains[best] <= 0.0:
             return options.flights[best]
-        present = gains[options.index[current.name]]
+        present = gains[options.index[current]]
         return options.flights[best] if gains[best] > present * (1.0 + HYSTERESIS) else current
 
     def slack(self, belief: SearchBelief, team: Impact) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -28,7 +28,6 @@ from vedette.domains.mapping.stops import CLEARANCES, MOST_STOPS, Disc, block, u
 from vedette.fusion import Fusion
 from vedette.kernels import distance, frontier, lidar
 from vedette.maps import GridFrame
-from vedette.problem import Reach
 from vedette.team import Most, PlatformSpec
 
 GAIN_HIT, GAIN_MISS, CLAMP = 4, 2, 20  # log-odds of one observation and of all [0.2 nats]
@@ -204,40 +203,8 @@ class Exploration:
             if mate.silent(now) or (blocked and np.hypot(mate.x - pose.x, mate.y - pose.y) < 3.0)
         ]
 
-    def key(self, strategy: Tour) -> Hashable:
-        """Name a tour by its stops."""
-        return tuple(strategy.stops.tolist())
-
-    def impact(self, belief: MapBelief, strategy: Tour) -> Impact:
-        """Return what a tour would reveal."""
-        return self.platform.impact(belief, strategy)
-
-    def reply(self, belief: MapBelief, others: Impact, current: Tour) -> Tour:
-        """Return the best tour against the rest of the team."""
-        return self.platform.reply(belief, others, current)
-
-    def nothing(self, belief: MapBelief) -> Impact:
-        """Identity of ``*``."""
-        return self.objective.nothing(belief)
-
-    def combine(self, a: Impact, b: Impact) -> Impact:
-        """``a * b``."""
-        return self.objective.combine(a, b)
-
-    def value(self, belief: MapBelief, impact: Impact) -> float:
-        """``psi(impact)`` [nats]."""
-        return self.objective.value(belief, impact)
-
-    def slack(self, belief: MapBelief, base: Impact) -> float:
-        """Return the most that a tour of this robot adds to ``base`` [nats]."""
-        return self.platform.slack(belief, base)
-
     def reach(self, now: float) -> None:
         """Tours lead anywhere."""
-
-    def clip(self, belief: MapBelief, impact: Impact, reach: Reach) -> Impact:
-        """Leave nothing out."""
-        return impact
 
     def admit(self, belief: MapBelief, impact: Impact, robots: int) -> None:
         """Refuse more than so many of the team's best robots can see."""

@@ -2,31 +2,29 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Hashable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vedette.agent.events import Pose, Sensed
-from vedette.agent.flight import FlightPlan, start_step
+from vedette.agent.flight import FlightPlan, start_step, step_of
 from vedette.agent.mates import Mate
-from vedette.agent.messages import Note
+from vedette.agent.mission import RoundPlatform
 from vedette.domains.search.belief import SearchBelief, TargetPdf, freeze
 from vedette.domains.search.detectors import Report
 from vedette.domains.search.evidence import LEVELS_PER_NAT, Evidence, evidence_of_looks
 from vedette.domains.search.flights import Flight
-from vedette.domains.search.impact import Impact, ImpactCodec, check_claim, clip
+from vedette.domains.search.impact import Impact, ImpactCodec, check_claim
 from vedette.domains.search.objective import SearchObjective
 from vedette.domains.search.platform import SearchPlatform
 from vedette.domains.search.worth import Worth
 from vedette.fusion.steps import Refilter, Sparse, SparseIntegers, StepEvidence
+from vedette.missions.flying import FlyingMission, SharedBelief, box_around
 from vedette.problem import Reach
 from vedette.team import Most
 from vedette.vehicle import drive
-
-_ROUNDING = 1e-6  # of a step: times this near its beginning are at it
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +40,7 @@ class SearchPlan:
 
     def step(self, time: float) -> int:
         """Return the step that a time [s] lies in; step k begins at ``k dt``."""
-        return math.floor(time / self.prior.dt + _ROUNDING)
+        return step_of(time, self.prior.dt)
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,19 +62,21 @@ class Declared:
 
 
 @dataclass(eq=False)
-class Searching:
+class Searching(FlyingMission):
     """One vehicle's share of a search; ``vedette.agent.mission.FlightMission``.
 
     Evidence waits to be published: a round's must not change while it lasts.
     """
 
-    platform: SearchPlatform
+    vehicle: SearchPlatform
     team: SearchPlan
     fusion: StepEvidence[Sparse]
-    strategy: Flight | None = None
+    tells_plans: bool = True  # False: the team shares beliefs alone
+    strategy: Flight = field(default_factory=lambda: Flight(0, np.empty(0)))
     declared: Declared | None = None
     objective: SearchObjective = field(default_factory=SearchObjective)
     codec: ImpactCodec = field(init=False)
+    platform: RoundPlatform[SearchBelief, Flight, Impact] = field(init=False)
     _elements: SparseIntegers = field(init=False)
     _filter: Refilter[TargetPdf, Sparse] = field(init=False)
     _waiting: list[tuple[int, Evidence]] = field(default_factory=list)
@@ -86,6 +86,7 @@ class Searching:
     def __post_init__(self) -> None:
         prior = self.team.prior
         self.codec = ImpactCodec(prior.frame.size, len(self.team.worth.weights))
+        self.platform = self.vehicle if self.tells_plans else SharedBelief(self.vehicle, self.objective)
         self._elements = SparseIntegers(prior.frame.size)
         self._filter = Refilter(self.fusion, prior, prior.step, predict=_moved, update=_observed)
 
@@ -95,7 +96,7 @@ class Searching:
         """``ln p(reports | target in the cell)``, relative to that elsewhere; docs/search.md (V42)."""
         assert isinstance(seen.data, Looks)
         self._seen_at = pose.x, pose.y, now
-        detector, reports = self.platform.detector, seen.data.reports
+        detector, reports = self.vehicle.detector, seen.data.reports
         told = evidence_of_looks(detector, self.team.prior.frame, seen.data.poses, reports)
         self._waiting.append((self.team.step(seen.time), told))
         places = [report for report in reports if report is not None]
@@ -114,13 +115,6 @@ class Searching:
 
     # -- planning -----------------------------------------------------------------------------------
 
-    def notes(self) -> list[Note]:
-        """Tell nothing beside the evidence."""
-        return []
-
-    def hear_notes(self, notes: Sequence[Note]) -> None:
-        """Hear nothing beside the evidence."""
-
     def freeze(self, t0: float) -> SearchBelief:
         """Snapshot the pdf of the present step; plans take over at the first step that all can make.
 
@@ -128,7 +122,7 @@ class Searching:
         """
         step = max(self.team.step(t0), self._filter.first)
         pdf = self.pdf(step)
-        if self.declared is None and self.platform.detector.false_alarm > 0.0:
+        if self.declared is None and self.vehicle.detector.false_alarm > 0.0:
             self.declared = self._sure(pdf, t0)
         return freeze(pdf, self.team.worth, max(0, start_step(t0, self.team.lead, pdf.dt) - step))
 
@@ -150,46 +144,18 @@ class Searching:
         flown = self._taken_to(belief)
         kept = flown.turn_rates[max(0, belief.step - flown.step) :][: belief.committed]
         end = np.array((pose.x, pose.y, pose.heading))
-        begin = drive(end, -kept[::-1], -self.platform.speed, belief.dt)[-1] if len(kept) else end
-        self.platform.place(begin, flown)
-        self.platform.prepare(belief)
-        self.strategy = self.platform.start
+        begin = drive(end, -kept[::-1], -self.vehicle.speed, belief.dt)[-1] if len(kept) else end
+        self.vehicle.place(begin, flown)
+        self.vehicle.prepare(belief)
+        self.strategy = self.vehicle.start
 
     def _taken_to(self, belief: SearchBelief) -> Flight:
         """Return the flight under way, with the circles that follow it until new plans take over."""
-        until, circle = belief.step + belief.committed, self.platform.turn_rate
+        until, circle = belief.step + belief.committed, self.vehicle.turn_rate
         flown = self._flown or Flight(belief.step, np.empty(0))
         circles = np.full(max(0, until - flown.step - len(flown.turn_rates)), circle)
         goal = flown.goal if not len(circles) else None
         return Flight(flown.step, np.concatenate((flown.turn_rates, circles)), goal)
-
-    def key(self, strategy: Flight | None) -> Hashable:
-        """Name a flight."""
-        return None if strategy is None else strategy.name
-
-    def impact(self, belief: SearchBelief, strategy: Flight) -> Impact:
-        """Return what a flight would detect."""
-        return self.platform.impact(belief, strategy)
-
-    def reply(self, belief: SearchBelief, others: Impact, current: Flight) -> Flight:
-        """Return the best flight against the rest of the team."""
-        return self.platform.reply(belief, others, current)
-
-    def nothing(self, belief: SearchBelief) -> Impact:
-        """Identity of ``*``."""
-        return self.objective.nothing(belief)
-
-    def combine(self, a: Impact, b: Impact) -> Impact:
-        """``a * b``."""
-        return self.objective.combine(a, b)
-
-    def value(self, belief: SearchBelief, impact: Impact) -> float:
-        """``psi(impact)``."""
-        return self.objective.value(belief, impact)
-
-    def slack(self, belief: SearchBelief, base: Impact) -> float:
-        """Return the most that a flight of this vehicle adds to ``base``."""
-        return self.platform.slack(belief, base)
 
     def reach(self, now: float) -> Reach | None:
         """Return the box that its gains depend on in a round frozen within ``lead`` of now; (V14), (V49).
@@ -201,24 +167,15 @@ class Searching:
         if self._seen_at is None or team.worth.promises:
             return None
         x, y, then = self._seen_at
-        flown = self.platform.speed * (now - then + team.lead + team.worth.horizon * prior.dt)
+        flown = self.vehicle.speed * (now - then + team.lead + team.worth.horizon * prior.dt)
         drift = (prior.stencil.reach * team.worth.horizon + 1.0) * prior.frame.resolution
-        most = flown + self.platform.detector.range + drift
-        return ((x - most, y - most, x + most, y + most),)
-
-    def clip(self, belief: SearchBelief, impact: Impact, reach: Reach) -> Impact:
-        """Leave out the cells outside of ``reach``."""
-        return clip(impact, belief.frame, belief.layers, reach)
+        return box_around(x, y, flown + self.vehicle.detector.range + drift)
 
     def admit(self, belief: SearchBelief, impact: Impact, robots: int) -> None:
         """Refuse more than so many of the team's best vehicles can look at."""
         if self.team.most is not None:
             side, horizon = belief.frame.resolution, belief.horizon
             check_claim(impact, robots, self.team.most, side, belief.layers, horizon, belief.dt)
-
-    def nothing_left(self, value: float, now: float) -> bool:
-        """A search goes on until the target is declared."""
-        return False
 
     # -- flying -------------------------------------------------------------------------------------
 
@@ -228,30 +185,11 @@ class Searching:
 
     def plan(self) -> FlightPlan | None:
         """Return the flight decided on; None before the first round."""
-        if self.strategy is None:
+        if not len(self.strategy.turn_rates):
             return None
         self._flown = self.strategy
         dt = self.team.prior.dt
         return FlightPlan(self.strategy.step * dt, dt, self.strategy.turn_rates)
-
-
-class SharedBeliefSearching(Searching):
-    """Tells what it has seen, but nothing of what it will do: the classic "coordinated" team.
-
-    Everybody plans alone on the common pdf. So an impact is nothing, to others and to the team's value.
-    """
-
-    def impact(self, belief: SearchBelief, strategy: Flight) -> Impact:
-        """Tell nothing."""
-        return self.nothing(belief)
-
-    def reply(self, belief: SearchBelief, others: Impact, current: Flight) -> Flight:
-        """Return the best flight as if nobody else were there."""
-        return self.platform.reply(belief, self.nothing(belief), current)
-
-    def slack(self, belief: SearchBelief, base: Impact) -> float:
-        """Promise nothing of what the team could gain."""
-        return math.inf
 
 
 def _moved(pdf: TargetPdf, step: int) -> TargetPdf:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -11,22 +11,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.agent.events import Pose, Sensed
-from vedette.agent.flight import FlightPlan, start_step
+from vedette.agent.flight import FlightPlan, start_step, step_of
 from vedette.agent.mates import Mate
-from vedette.agent.messages import Note
+from vedette.agent.mission import RoundPlatform
 from vedette.domains.tracking.belief import Tracks
 from vedette.domains.tracking.codec import ImpactCodec
 from vedette.domains.tracking.courses import Course
 from vedette.domains.tracking.filter import predict
 from vedette.domains.tracking.impact import Impact, check_claim
 from vedette.domains.tracking.models import TargetModel
+from vedette.domains.tracking.objective import TrackingObjective
 from vedette.domains.tracking.platform import TrackingPlatform
 from vedette.domains.tracking.sensing import evidence
 from vedette.fusion.gaussian import Information, TrackFusion
+from vedette.missions.flying import FlyingMission, SharedBelief, box_around
 from vedette.problem import Reach
 
 NEAR = 2.0  # standard deviations of its place: a target must be farther away than that for a line to fit
-_ROUNDING = 1e-6  # of a step: times this near its beginning are at it
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,7 @@ class Plan:
 
     def step(self, time: float) -> int:
         """Return the step that a time [s] lies in; step k begins at ``k dt``."""
-        return math.floor(time / self.dt + _ROUNDING)
+        return step_of(time, self.dt)
 
 
 class Bounds(NamedTuple):
@@ -51,7 +52,7 @@ class Bounds(NamedTuple):
 
 
 @dataclass(eq=False)
-class Tracking:
+class Tracking(FlyingMission):
     """One vehicle's share of tracking; ``vedette.agent.mission.FlightMission``.
 
     Measurements are linearised as they come, about the vehicle's own estimate, and wait to be published: a
@@ -62,14 +63,22 @@ class Tracking:
     team: Plan
     fusion: TrackFusion
     bounds: Bounds
+    tells_plans: bool = True  # False: the team shares beliefs alone
     strategy: Course = field(default_factory=lambda: Course(0, ()))
     skipped: int = 0  # measurements that could not be linearised, or whose likelihood exceeded the bounds
     codec: ImpactCodec = field(init=False)
+    platform: RoundPlatform[Tracks, Course, Impact] = field(init=False)
     _waiting: list[tuple[int, Information]] = field(default_factory=list)  # step, likelihood
     _seen_at: tuple[float, float, float] | None = None  # x, y [m], time [s] of the last pose
 
     def __post_init__(self) -> None:
         self.codec = ImpactCodec(len(self.team.models), self.team.horizon)
+        self.platform = self.vehicle if self.tells_plans else SharedBelief(self.vehicle, self.objective)
+
+    @property
+    def objective(self) -> TrackingObjective:
+        """What the team gains."""
+        return self.vehicle.objective
 
     # -- evidence -----------------------------------------------------------------------------------
 
@@ -119,13 +128,6 @@ class Tracking:
 
     # -- planning -----------------------------------------------------------------------------------
 
-    def notes(self) -> list[Note]:
-        """Tell nothing beside the evidence."""
-        return []
-
-    def hear_notes(self, notes: Sequence[Note]) -> None:
-        """Hear nothing beside the evidence."""
-
     def freeze(self, t0: float) -> Tracks:
         """Predict the team's tracks to the first step that everybody can still plan for.
 
@@ -141,34 +143,6 @@ class Tracking:
         self.vehicle.prepare(belief)
         self.strategy = self.vehicle.carry_over(belief, self.strategy)
 
-    def key(self, strategy: Course) -> Hashable:
-        """The course itself."""
-        return strategy
-
-    def impact(self, belief: Tracks, strategy: Course) -> Impact:
-        """Return the information that a course would bring."""
-        return self.vehicle.impact(belief, strategy)
-
-    def reply(self, belief: Tracks, others: Impact, current: Course) -> Course:
-        """Return the best course against the rest of the team."""
-        return self.vehicle.reply(belief, others, current)
-
-    def nothing(self, belief: Tracks) -> Impact:
-        """Identity of ``*``."""
-        return self.vehicle.objective.nothing(belief)
-
-    def combine(self, a: Impact, b: Impact) -> Impact:
-        """``a * b``."""
-        return self.vehicle.objective.combine(a, b)
-
-    def value(self, belief: Tracks, impact: Impact) -> float:
-        """``psi(impact)`` in the objective's unit."""
-        return self.vehicle.objective.value(belief, impact)
-
-    def slack(self, belief: Tracks, base: Impact) -> float:
-        """Return the most that a course of this vehicle adds to ``base``."""
-        return self.vehicle.slack(belief, base)
-
     def reach(self, now: float) -> Reach | None:
         """Return the box that it can see into by the end of plans frozen within ``lead`` of now.
 
@@ -180,20 +154,11 @@ class Tracking:
         x, y, then = self._seen_at
         team = self.team
         flown = self.vehicle.speed * (now - then + 2.0 * team.lead + (team.horizon + 1) * team.dt)
-        most = flown + self.vehicle.sensor.range
-        return ((x - most, y - most, x + most, y + most),)
-
-    def clip(self, belief: Tracks, impact: Impact, reach: Reach) -> Impact:
-        """Leave out the targets that nobody who sees into ``reach`` can see."""
-        return self.vehicle.objective.clip(belief, impact, reach)
+        return box_around(x, y, flown + self.vehicle.sensor.range)
 
     def admit(self, belief: Tracks, impact: Impact, robots: int) -> None:
         """Refuse more information than so many of the team's best sensors have."""
         check_claim(impact, robots, self.bounds.matrix)
-
-    def nothing_left(self, value: float, now: float) -> bool:
-        """Targets move on: there is always something to gain."""
-        return False
 
     # -- flying -------------------------------------------------------------------------------------
 
@@ -206,22 +171,3 @@ class Tracking:
         if not self.strategy.rates:
             return None
         return FlightPlan(self.strategy.k0 * self.team.dt, self.team.dt, np.array(self.strategy.rates))
-
-
-class SharedBeliefTracking(Tracking):
-    """Tells what it has seen, but nothing of what it will do: the classic "coordinated" team.
-
-    Everybody plans alone on the common belief. So an impact is nothing, to others and to the team's value.
-    """
-
-    def impact(self, belief: Tracks, strategy: Course) -> Impact:
-        """Tell nothing."""
-        return self.nothing(belief)
-
-    def reply(self, belief: Tracks, others: Impact, current: Course) -> Course:
-        """Return the best course as if nobody else were there."""
-        return self.vehicle.reply(belief, self.nothing(belief), current)
-
-    def slack(self, belief: Tracks, base: Impact) -> float:
-        """Promise nothing of what the team could gain."""
-        return math.inf

@@ -13,7 +13,7 @@ from vedette.record.explore.observer import ExploreObserver, ExploreReport
 from vedette.record.explore.views import RobotFigures, RobotView, Setting, held_map
 from vedette.record.figures import RoundFigures, traffic_of
 from vedette.record.summary import Traffic
-from vedette.sim.explore.simulation import ExploreSetup, ExploreSimulation, scheme_of
+from vedette.sim.explore.simulation import ExploreSetup, ExploreSimulation
 from vedette.sim.starts import choose_starts
 from vedette.team import PlatformSpec
 
@@ -45,7 +45,7 @@ def observer_of(simulation: ExploreSimulation, sinks: Sequence[Sink] = ()) -> Ex
     setting = Setting(
         setup.seed,
         setup.planner,
-        scheme_of(setup),
+        setup.options.negotiates_by,
         setup.fusion,
         radio=None if setup.radio is None else str(setup.radio),
         faults=setup.faults_from,

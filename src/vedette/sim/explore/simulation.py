@@ -2,50 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol, cast
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vedette.agent import Agent, GroundBehaviour
 from vedette.agent.driving import Driver
-from vedette.domains.mapping.planners import DEFAULT, planner
-from vedette.domains.mapping.sightings import BINS
-from vedette.errors import InputError, nearest_name
-from vedette.fusion import ChannelFilter, Fusion, ReplicatedEvidence
-from vedette.maps import GridFrame
+from vedette.domains.mapping.planners import DEFAULT
 from vedette.maps.world import World
+from vedette.missions.explore.assemble import assemble
 from vedette.missions.explore.exploration import Exploration
+from vedette.missions.explore.options import ExploreOptions
 from vedette.sim.robots import Robots
 from vedette.sim.simulation import Setup, Simulation, random_streams
 from vedette.team import Most, PlatformSpec
-
-FUSIONS: Mapping[str, type[ReplicatedEvidence] | type[ChannelFilter]] = {
-    "replicated": ReplicatedEvidence,
-    "channel": ChannelFilter,
-}
-
-
-class Exploring(Protocol):
-    """How a team explores."""
-
-    @property
-    def planner(self) -> str:
-        """A name of `vedette.domains.mapping.planners`."""
-
-    @property
-    def scheme(self) -> str:
-        """Of negotiation."""
-
-    @property
-    def fusion(self) -> str:
-        """A name of ``FUSIONS``."""
-
-    @property
-    def return_home(self) -> bool:
-        """Robots drive back to their starts in the end."""
 
 
 @dataclass(frozen=True)
@@ -55,6 +28,11 @@ class ExploreSetup(Setup):
     planner: str = DEFAULT
     fusion: str = "replicated"
     return_home: bool = False
+
+    @property
+    def options(self) -> ExploreOptions:
+        """How the team explores."""
+        return ExploreOptions(self.planner, self.scheme, self.fusion, self.return_home)
 
 
 class ExploreSimulation(Simulation):
@@ -81,9 +59,8 @@ class ExploreSimulation(Simulation):
 
     def _explorer(self, robot: int, boot: int) -> Agent:
         specs = self.specs
-        return explorer(
-            self.world.frame, specs[robot], self.setup, robot, boot, robots=len(specs), most=Most.of(specs)
-        )
+        frame, options, most = self.world.frame, self.setup.options, Most.of(specs)
+        return assemble(frame, specs[robot], options, robot, boot, robots=len(specs), most=most)
 
     @property
     def missions(self) -> list[Exploration]:
@@ -94,42 +71,3 @@ class ExploreSimulation(Simulation):
     def drivers(self) -> list[Driver]:
         """Everybody's driver, by index."""
         return [cast(GroundBehaviour, agent.behaviour).driver for agent in self.network.agents]
-
-
-def explorer(
-    frame: GridFrame,
-    spec: PlatformSpec,
-    how: Exploring,
-    robot: int,
-    boot: int,
-    *,
-    robots: int,
-    most: Most,
-    waits_for: int = 1,
-) -> Agent:
-    """Return a fresh agent of a team.
-
-    Args:
-        frame: of the map.
-        spec: its body.
-        how: it explores.
-        robot: its number.
-        boot: of its start.
-        robots: in the team.
-        most: what none of them exceeds.
-        waits_for: so many robots, itself included, before it begins; for a while.
-
-    Raises:
-        InputError: the planner or the way of fusing is unknown, or cannot serve such a team.
-    """
-    if how.fusion not in FUSIONS:
-        raise InputError(f"unknown fusion {how.fusion!r}; {nearest_name(how.fusion, FUSIONS)}")
-    fusion: Fusion = FUSIONS[how.fusion](robot, boot, frame.shape, 4 * BINS)
-    mission = Exploration(frame, spec, planner(how.planner, robots), fusion, most=most)
-    behaviour = GroundBehaviour(mission, Driver(robot, spec, frame), how.return_home, waits_for)
-    return Agent(robot, boot, spec, behaviour, scheme_of(how))
-
-
-def scheme_of(how: Exploring) -> str:
-    """Return how the team negotiates: as its planner has it, if that is part of the planner."""
-    return planner(how.planner).scheme or how.scheme

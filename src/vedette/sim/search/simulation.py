@@ -3,26 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
-from math import ceil, floor
+from math import floor
 from typing import cast
 
 import numpy as np
 
-from vedette.agent import Agent, FlightBehaviour, Pace
-from vedette.errors import InputError
-from vedette.fusion.steps import ReplicatedSteps, Sparse, SparseIntegers, StepEvidence, StepSums
+from vedette.missions.search.assemble import SearchTeam
 from vedette.missions.search.case import SearchCase
-from vedette.missions.search.searching import Declared, Searching, SearchPlan, SharedBeliefSearching
+from vedette.missions.search.options import SearchOptions
+from vedette.missions.search.searching import Declared, Searching
 from vedette.outcome import Outcome
-from vedette.sim.flights import FlightSetup, lead
+from vedette.sim.flights import FlightSetup
 from vedette.sim.search.hidden import Hidden, Searchers
 from vedette.sim.simulation import Simulation, random_streams
-from vedette.team import Most
-
-COORDINATIONS = ("none", "shared", "negotiated")
-FUSIONS = ("replicated", "sums")
-_WINDOW = 30.0  # steps stay open for late evidence, with sums [s]
 
 
 @dataclass(frozen=True)
@@ -31,6 +24,11 @@ class SearchSetup(FlightSetup):
 
     fusion: str = "replicated"
     blind: bool = False  # nobody ever reports anything: the run that plans are made for
+
+    @property
+    def options(self) -> SearchOptions:
+        """How the team searches."""
+        return SearchOptions(self.coordination, self.scheme, self.fusion)
 
 
 class SearchSimulation(Simulation):
@@ -45,7 +43,8 @@ class SearchSimulation(Simulation):
             InputError: rounds take longer over these links than plans reach ahead.
         """
         self.case, self.names = case, case.names
-        self.plan = self._plan(case, setup)
+        team = SearchTeam(case, setup.options, setup.times)
+        self.plan = team.plan
         vehicles, step = case.scenario.vehicles, case.scenario.step
         streams = random_streams(setup.seed, len(self.names))
         rng = np.random.default_rng([setup.seed, 3])
@@ -59,18 +58,12 @@ class SearchSimulation(Simulation):
             None if setup.blind else self.hidden,
             lambda now: None if self.declared is None else Outcome.COMPLETE,
         )
-        super().__init__(partial(self._searcher, setup), self.vehicles, setup)
+        super().__init__(team.assemble, self.vehicles, setup)
 
     @property
     def missions(self) -> list[Searching]:
         """Everybody's share of the mission, by index."""
         return [cast(Searching, agent.mission) for agent in self.network.agents]
-
-    def _searcher(self, setup: SearchSetup, robot: int, boot: int) -> Agent:
-        vehicle, scenario = self.case.scenario.vehicles[robot], self.case.scenario
-        behaviour = FlightBehaviour(self._mission(robot, boot, setup), vehicle.speed, vehicle.turn_rate)
-        pace = Pace.each(scenario.replan * scenario.step)
-        return Agent(robot, boot, vehicle, behaviour, setup.scheme, pace)
 
     @property
     def steps(self) -> int:
@@ -84,29 +77,3 @@ class SearchSimulation(Simulation):
             (i, mission.declared) for i, mission in enumerate(self.missions) if mission.declared is not None
         ]
         return min(told, key=lambda each: (not each[1].certain, each[1].time, each[0]), default=None)
-
-    def _plan(self, case: SearchCase, setup: SearchSetup) -> SearchPlan:
-        scenario = case.scenario
-        team = setup.team(len(scenario.vehicles))
-        ahead = lead(team, setup.link_delay)
-        taken = ceil(ahead / scenario.step) + 1
-        if taken >= scenario.horizon:
-            raise InputError(
-                f"horizon: a round of {team} vehicles takes {ahead:.1f} s where links delay by "
-                f"{setup.link_delay:g} s; plan more than {taken} steps of {scenario.step:g} s"
-            )
-        declare = scenario.declare
-        most = Most(
-            max(detector.range for detector in case.detectors), max(each.speed for each in scenario.vehicles)
-        )
-        return SearchPlan(case.pdf, scenario.weights, ahead, declare.probability, declare.radius, most)
-
-    def _mission(self, i: int, boot: int, setup: SearchSetup) -> Searching:
-        kind = SharedBeliefSearching if setup.coordination == "shared" else Searching
-        return kind(self.case.platform(i), self.plan, self._fusion(i, boot, setup.fusion))
-
-    def _fusion(self, i: int, boot: int, name: str) -> StepEvidence[Sparse]:
-        elements = SparseIntegers(self.case.pdf.frame.size)
-        if name == "sums":
-            return StepSums(i, boot, elements, window=ceil(_WINDOW / self.case.scenario.step))
-        return ReplicatedSteps(i, boot, elements)

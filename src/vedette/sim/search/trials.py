@@ -15,12 +15,13 @@ from msgspec import structs
 from numpy.typing import NDArray
 
 from vedette.missions.search.case import SearchCase
+from vedette.missions.search.options import COORDINATIONS
 from vedette.outcome import Outcome
 from vedette.record.search.curves import CountedCurve
 from vedette.record.search.summary import Counted, Quality, SearchOutcome
 from vedette.sim.search.curves import Looks, detected_at, dkw, predicted, wilson
 from vedette.sim.search.run import SearchReport, ended_as
-from vedette.sim.search.simulation import COORDINATIONS, SearchSetup, SearchSimulation
+from vedette.sim.search.simulation import SearchSetup, SearchSimulation
 
 LOOKED_AT, RUNS = 1000, 20  # trials by default: without and with false alarms
 _NORMAL = 1.959963984540054  # 97.5 % quantile

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import reduce
 from typing import TypeAlias
 
@@ -12,7 +13,6 @@ from vedette.domains.tracking.belief import Tracks
 from vedette.domains.tracking.courses import CHOICES, Course
 from vedette.domains.tracking.impact import Impact
 from vedette.domains.tracking.platform import TrackingPlatform
-from vedette.missions.track.tracking import Tracking
 from vedette.problem import exhaustive
 
 Joint: TypeAlias = tuple[tuple[Course, ...], Impact]  # some vehicles' courses and what they bring together
@@ -30,41 +30,39 @@ class Oracle:
 
     def __init__(self) -> None:
         """Know nobody yet."""
-        self.missions: list[Tracking] = []
-        self._round: tuple[int, list[Tracking], tuple[Course, ...]] | None = None
+        self.vehicles: list[TrackingPlatform] = []
+        self._round: tuple[int, list[TrackingPlatform], tuple[Course, ...]] | None = None
 
-    def course(self, mission: Tracking, belief: Tracks) -> Course:
+    def course(self, vehicle: TrackingPlatform, belief: Tracks) -> Course:
         """Return a vehicle's part of the best joint choice on the belief.
 
         Where it has nothing to gain within the horizon, it heads for a target as it would on its own.
         """
-        if self._round is None or self._round[0] != belief.k0 or mission not in self._round[1]:
+        if self._round is None or self._round[0] != belief.k0 or vehicle not in self._round[1]:
             self._round = (belief.k0, *self._best(belief))
         _, team, choice = self._round
-        place = team.index(mission)
-        objective = mission.vehicle.objective
+        place = team.index(vehicle)
+        objective = vehicle.objective
         rest = [
-            other.vehicle.impact(belief, course)
+            other.impact(belief, course)
             for k, (other, course) in enumerate(zip(team, choice, strict=True))
             if k != place
         ]
         others = reduce(objective.combine, rest, objective.nothing(belief))
-        return mission.vehicle.reply(belief, others, choice[place])
+        return vehicle.reply(belief, others, choice[place])
 
-    def _best(self, belief: Tracks) -> tuple[list[Tracking], tuple[Course, ...]]:
+    def _best(self, belief: Tracks) -> tuple[list[TrackingPlatform], tuple[Course, ...]]:
         """Return who takes part in the round, and everybody's course."""
         team = [
-            mission
-            for mission in self.missions
-            if mission.vehicle.courses and mission.vehicle.courses[0].k0 == belief.k0
+            vehicle for vehicle in self.vehicles if vehicle.courses and vehicle.courses[0].k0 == belief.k0
         ]
-        choice = [mission.vehicle.courses[0] for mission in team]
-        for group in _interacting([mission.vehicle for mission in team]):
-            lists = [_distinct(team[i].vehicle) for i in group]
+        choice = [vehicle.courses[0] for vehicle in team]
+        for group in _interacting(team):
+            lists = [_distinct(team[i]) for i in group]
             middle = len(group) // 2  # two halves, each as one platform: the kernel takes many at a time
             halves = [_together(belief, half) for half in (lists[:middle], lists[middle:])]
             each = [[impact for _, impact in half] for half in halves]
-            best = exhaustive(team[0].vehicle.objective, belief, each)
+            best = exhaustive(team[0].objective, belief, each)
             found = [course for half, k in zip(halves, best.choice, strict=True) for course in half[k][0]]
             for i, course in zip(group, found, strict=True):
                 choice[i] = course
@@ -108,14 +106,20 @@ def _interacting(vehicles: Sequence[TrackingPlatform]) -> list[list[int]]:
     return [members for members, _ in groups]
 
 
-class DictatedTracking(Tracking):
-    """Does what the oracle says."""
+@dataclass(frozen=True, eq=False)
+class Dictated:
+    """A vehicle that does what the oracle says; ``vedette.agent.mission.RoundPlatform``."""
 
+    vehicle: TrackingPlatform
     oracle: Oracle
+
+    def impact(self, belief: Tracks, strategy: Course) -> Impact:
+        """Return the information that a course would bring."""
+        return self.vehicle.impact(belief, strategy)
 
     def reply(self, belief: Tracks, others: Impact, current: Course) -> Course:
         """Return this vehicle's part of the best joint choice."""
-        return self.oracle.course(self, belief)
+        return self.oracle.course(self.vehicle, belief)
 
     def slack(self, belief: Tracks, base: Impact) -> float:
         """Promise nothing: replies are not this vehicle's own."""

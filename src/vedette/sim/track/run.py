@@ -13,6 +13,7 @@ from vedette.domains.tracking.belief import Tracks
 from vedette.domains.tracking.filter import nees, predict
 from vedette.domains.tracking.sensors import SENSORS
 from vedette.errors import InputError
+from vedette.missions.track.options import COORDINATIONS
 from vedette.missions.track.scenario import TrackScenario
 from vedette.outcome import Outcome
 from vedette.record.figures import Negotiated, RoundFigures, traffic
@@ -25,7 +26,7 @@ from vedette.record.track.summary import (
     nees_band,
     squared_position_error,
 )
-from vedette.sim.track.simulation import COORDINATIONS, TrackSetup, TrackSimulation, check_optimum
+from vedette.sim.track.simulation import TrackSetup, TrackSimulation, check_optimum
 
 
 @dataclass(frozen=True, eq=False)

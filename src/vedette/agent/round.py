@@ -1,0 +1,217 @@
+"""One round, as one robot of the team goes through it: from evidence to a decision."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from typing import Any
+
+from msgspec import structs
+
+from vedette.agent.effects import Effect, Job, Send, Traffic
+from vedette.agent.events import Pose, TreeChanged
+from vedette.agent.mates import Mate
+from vedette.agent.messages import Areas, Begin, Call, Evidence, Flushed, Freeze, Negotiate, Note, encode
+from vedette.agent.mission import Mission
+from vedette.agent.participant import RoundParticipant
+from vedette.agent.reaches import reaches_to_tell
+from vedette.negotiation import Claims, JacobiNode, Negotiator, Outcome, TokenNode, messages
+from vedette.negotiation import Send as Reply
+from vedette.problem import Reach
+
+MAX_SWEEPS = 12
+MOST_NOTES = 512  # in one message
+MOST_EARLY = 8  # negotiation messages of one neighbour that wait for this robot's preparation
+
+
+@dataclass
+class Round:
+    """The paper's Table 1 with the fusion before it (section 3.5), over links that bring messages in order.
+
+    =============  ==========================================================  ==========================
+    step           what this robot does, once it can                           paper
+    =============  ==========================================================  ==========================
+    ``begin``      hands on that a round begins                                section 3.5
+    ``flush``      hands its part's evidence up, when its children have        section 3.5
+    ``freeze``     hands the team's evidence down, and holds the belief still  Table 1: the prior belief
+    ``prepare``    lists its strategies, the present one among them            Table 1, step 1
+    ``start``      sends its own impact                                        Table 1, step 2
+    ``negotiate``  hears the rest of the team's impact, replies, sends again   Table 1, steps 3 to 6
+    ``finished``   holds the strategy that the team has agreed on              Table 1, step 6, yes
+    =============  ==========================================================  ==========================
+
+    On links that lose nothing, everybody freezes the same belief. A child that does not answer in time is
+    ``cut``, and the round goes on without its part of the tree.
+    """
+
+    mission: Mission[Any, Any, Any]
+    scheme: str  # "token" or "jacobi"
+    tree: TreeChanged  # without who joined after it began, or was cut from it
+    sequence: int
+    depth: int  # links to the root
+    heard: float  # when it last went on [s]
+    waiting: set[int] = field(init=False)  # children that have not flushed yet
+    notes: set[Note] = field(default_factory=set)  # told by children
+    reaches: dict[int, Reach | None] = field(default_factory=dict)  # beyond each neighbour, as it told
+    robots: dict[int, int] = field(default_factory=dict)  # behind each neighbour, as it told
+    belief: Any = None
+    approximate: bool = False  # this robot's belief is not the root's
+    preparing: bool = False
+    blocked: bool = False  # this robot plans with its mates in the way
+    participant: RoundParticipant[Any, Any, Any] | None = None
+    negotiator: Negotiator[Any] | None = None
+    early: list[tuple[int, Negotiate]] = field(default_factory=list)  # came before this robot was ready
+
+    def __post_init__(self) -> None:
+        self.waiting = set(self.children)
+
+    @property
+    def children(self) -> list[int]:
+        """The neighbours further from the root."""
+        return [k for k in self.tree.neighbours if k != self.tree.parent]
+
+    @property
+    def part(self) -> int:
+        """Count the robots from this one on away from the root."""
+        return 1 + sum(self.robots.get(child, 0) for child in self.children)
+
+    @property
+    def awaited(self) -> set[int]:
+        """Whose answer this robot waits for; empty while it has to do something itself."""
+        if self.negotiator is not None:
+            return set(self.negotiator.waiting_for)
+        if self.belief is not None:
+            return set()
+        return self.waiting or ({self.tree.parent} if self.tree.parent is not None else set())
+
+    @property
+    def finished(self) -> Outcome | None:
+        """What the team has agreed on; None while the round lasts."""
+        return None if self.negotiator is None else self.negotiator.finished
+
+    # -- evidence comes together ------------------------------------------------------------------------
+
+    def begin(self, message: Begin, now: float) -> list[Effect]:
+        """Hand on that a round begins; without children, flush at once."""
+        self.mission.publish(now)
+        onwards = structs.replace(message, depth=message.depth + 1)
+        return [*(say(child, onwards) for child in self.children), *self.flush(now)]
+
+    def hear_flushed(self, sender: int, message: Flushed, now: float) -> list[Effect]:
+        """Note that a child's part of the tree has been heard."""
+        if sender not in self.waiting:
+            return []
+        self.waiting.discard(sender)
+        self.notes.update(message.notes)
+        self.reaches[sender] = message.reach
+        self.robots[sender] = message.robots
+        self.heard = now
+        return self.flush(now)
+
+    def flush(self, now: float) -> list[Effect]:
+        """Hand this part's evidence up once all of it is here; at the root, all is known then: freeze it."""
+        if self.waiting or self.belief is not None:
+            return []
+        notes = tuple(sorted(self.notes.union(self.mission.notes())))[:MOST_NOTES]
+        epoch, parent = self.tree.epoch, self.tree.parent
+        if parent is None:
+            t0, digest = round(1000.0 * now), self.mission.fusion.digest
+            return self.freeze(Freeze(epoch, self.sequence, t0, digest, self.part, notes), now)
+        news = send_news(self.mission, parent, now)
+        reach = self._told(now)[parent]
+        return [*news, say(parent, Flushed(epoch, self.sequence, self.part, notes, reach))]
+
+    def freeze(self, message: Freeze, now: float) -> list[Effect]:
+        """Hand the team's evidence down, and freeze the belief: everything known has arrived.
+
+        Raises:
+            ValueError: a child has not been heard, so the root cannot have heard all.
+        """
+        if self.belief is not None:
+            return []
+        if self.waiting:
+            raise ValueError(f"freeze: children {sorted(self.waiting)} have not been heard")
+        self.heard = now
+        if self.tree.parent is not None:
+            self.reaches[self.tree.parent] = message.reach
+            self.robots[self.tree.parent] = max(message.robots - self.part, 1)
+        told, effects = self._told(now), list[Effect]()
+        for child in self.children:
+            effects += send_news(self.mission, child, now)
+            effects.append(say(child, structs.replace(message, reach=told[child])))
+        self.approximate = self.mission.fusion.digest != message.digest
+        self.mission.hear_notes(message.notes)
+        self.belief = self.mission.freeze(message.t0 / 1000.0)
+        return effects
+
+    def _told(self, now: float) -> dict[int, Areas | None]:
+        return reaches_to_tell(self.mission.reach(now), self.reaches, self.tree.neighbours)
+
+    # -- the team negotiates ----------------------------------------------------------------------------
+
+    def prepare(self, pose: Pose, mates: list[Mate], blocked: bool, now: float) -> Job:
+        """Return the job to do between freezing and negotiating; ``pose``: where the strategy will start."""
+        self.preparing, self.blocked = True, blocked
+        key, belief = (self.tree.epoch, self.sequence), self.belief
+        return Job(key, lambda: self.mission.prepare(belief, pose, mates, blocked, now))
+
+    def start(self, now: float) -> list[Effect]:
+        """Send the own impact, by the scheme's first message."""
+        self.heard = now
+        self.participant = RoundParticipant(self.mission, self.belief)
+        links, parent, own = self.tree.neighbours, self.tree.parent, self.participant
+        bounded = {k: reach for k, reach in self.reaches.items() if reach is not None}
+        claims = Claims(self.robots, partial(self.mission.admit, self.belief))
+        self.negotiator = (
+            TokenNode(links, parent, own, max_sweeps=MAX_SWEEPS, reaches=bounded, claims=claims)
+            if self.scheme == "token"
+            else JacobiNode(links, parent, own, max_sweeps=MAX_SWEEPS, claims=claims)
+        )
+        return self._replies(self.negotiator.start())
+
+    def negotiate(self, sender: int, message: Negotiate, now: float) -> list[Effect]:
+        """Hear of the rest of the team, and reply; what comes too early waits."""
+        if self.negotiator is None:
+            if sum(early == sender for early, _ in self.early) < MOST_EARLY:
+                self.early.append((sender, message))
+            return []
+        replies = self.negotiator.receive(sender, messages.decode(message.data, self.mission.codec))
+        self.heard = now
+        return self._replies(replies)
+
+    def take_early(self) -> list[tuple[int, Negotiate]]:
+        """Return the negotiation messages, with their senders, that came before this robot was prepared."""
+        if self.negotiator is None:
+            return []
+        early, self.early = self.early, []
+        return early
+
+    def _replies(self, replies: Sequence[Reply[Any]]) -> list[Effect]:
+        epoch, codec = self.tree.epoch, self.mission.codec
+        return [
+            say(reply.to, Negotiate(epoch, self.sequence, messages.encode(reply.message, codec)))
+            for reply in replies
+        ]
+
+    # -- somebody is silent -----------------------------------------------------------------------------
+
+    def cut(self, child: int, now: float) -> list[Effect]:
+        """Go on without a child and all behind it."""
+        self.heard = now
+        self.waiting.discard(child)
+        self.reaches.pop(child, None)
+        self.robots.pop(child, None)
+        self.tree = replace(self.tree, neighbours=tuple(k for k in self.tree.neighbours if k != child))
+        return self.flush(now) if self.negotiator is None else self._replies(self.negotiator.cut(child))
+
+
+def say(to: int, message: Call | Begin | Flushed | Freeze | Negotiate) -> Send:
+    """Return a message of a round to a neighbour."""
+    return Send(to, Traffic.NEGOTIATION, encode(message))
+
+
+def send_news(mission: Mission[Any, Any, Any], neighbour: int, now: float) -> list[Effect]:
+    """Return what a neighbour lacks of the evidence, if anything."""
+    data = mission.fusion.outgoing(neighbour, now)
+    return [] if data is None else [Send(neighbour, Traffic.FUSION, encode(Evidence(data)))]

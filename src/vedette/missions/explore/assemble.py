@@ -1,0 +1,55 @@
+"""An exploring robot's agent, put together: the mapping domain, a planner, a way of fusing, driving."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from vedette.agent import Agent, GroundBehaviour
+from vedette.agent.driving import Driver
+from vedette.domains.mapping.planners import planner
+from vedette.domains.mapping.sightings import BINS
+from vedette.errors import InputError, nearest_name
+from vedette.fusion import ChannelFilter, Fusion, ReplicatedEvidence
+from vedette.maps import GridFrame
+from vedette.missions.explore.exploration import Exploration
+from vedette.missions.explore.options import ExploreOptions
+from vedette.team import Most, PlatformSpec
+
+FUSIONS: Mapping[str, type[ReplicatedEvidence] | type[ChannelFilter]] = {
+    "replicated": ReplicatedEvidence,
+    "channel": ChannelFilter,
+}
+
+
+def assemble(
+    frame: GridFrame,
+    spec: PlatformSpec,
+    options: ExploreOptions,
+    robot: int,
+    boot: int,
+    *,
+    robots: int,
+    most: Most,
+    waits_for: int = 1,
+) -> Agent:
+    """Return a fresh agent of a team.
+
+    Args:
+        frame: of the map.
+        spec: its body.
+        options: how the team explores.
+        robot: its number, from 0.
+        boot: of its start.
+        robots: in the team.
+        most: what none of them exceeds.
+        waits_for: so many robots, itself included, before it begins; for a while.
+
+    Raises:
+        InputError: the planner or the way of fusing is unknown, or cannot serve such a team.
+    """
+    if options.fusion not in FUSIONS:
+        raise InputError(f"unknown fusion {options.fusion!r}; {nearest_name(options.fusion, FUSIONS)}")
+    fusion: Fusion = FUSIONS[options.fusion](robot, boot, frame.shape, 4 * BINS)
+    mission = Exploration(frame, spec, planner(options.planner, robots), fusion, most=most)
+    behaviour = GroundBehaviour(mission, Driver(robot, spec, frame), options.return_home, waits_for)
+    return Agent(robot, boot, spec, behaviour, options.negotiates_by)

@@ -1,0 +1,99 @@
+"""A tracking vehicle's agent, put together: the tracking domain, a way of fusing, flight."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from vedette.agent import Agent, FlightBehaviour, Pace
+from vedette.domains.tracking.belief import Tracks
+from vedette.domains.tracking.objective import TrackingObjective, objective
+from vedette.domains.tracking.platform import TrackingPlatform
+from vedette.domains.tracking.sensing import Sensor
+from vedette.errors import InputError
+from vedette.fusion.gaussian import Information, Motion, track_fusion
+from vedette.missions.flying import RoundTimes
+from vedette.missions.track.options import TrackOptions
+from vedette.missions.track.scenario import TrackScenario
+from vedette.missions.track.tracking import Bounds, Plan, Tracking
+
+_EXTENT = 10.0  # evidence holds up to so many times the area's farthest corner from the origin
+
+
+@dataclass(frozen=True, eq=False)
+class TrackTeam:
+    """What all vehicles of a team know beforehand."""
+
+    scenario: TrackScenario
+    options: TrackOptions
+    times: RoundTimes
+
+    def __post_init__(self) -> None:
+        """Raise InputError where plans would be over before they can be replaced."""
+        span = self.scenario.horizon * self.scenario.step
+        if self.lead >= span:
+            raise InputError(
+                f"a round of {self.size} vehicles takes {self.lead:.1f} s with a link delay of "
+                f"{self.times.link_delay:g} s, but a plan lasts {span:g} s; set a longer horizon or step"
+            )
+
+    @property
+    def size(self) -> int:
+        """How many vehicles plan together: without coordination each is a team of one."""
+        return 1 if self.options.coordination == "none" else len(self.scenario.vehicles)
+
+    @property
+    def lead(self) -> float:
+        """From freezing a round to the start of its plans, at least [s]."""
+        return self.times.lead(self.size)
+
+    @cached_property
+    def objective(self) -> TrackingObjective:
+        """What the team gains; InputError if it is unknown."""
+        return objective(self.options.objective or self.scenario.objective)
+
+    @cached_property
+    def sensors(self) -> list[Sensor]:
+        """By vehicle."""
+        return self.scenario.sensors
+
+    @cached_property
+    def prior(self) -> Tracks:
+        """The targets as they are known at step 0."""
+        return self.scenario.prior()
+
+    @cached_property
+    def bounds(self) -> Bounds:
+        """On everybody's likelihoods; the same for the whole team, which fusion sums exactly."""
+        extent = _EXTENT * max(1.0, *map(abs, self.scenario.area))
+        each = [sensor.most_evidence(extent) for sensor in self.sensors]
+        return Bounds(max(matrix for matrix, _ in each), max(vector for _, vector in each))
+
+    def assemble(self, robot: int, boot: int) -> Agent:
+        """Return a fresh agent for a vehicle, by its number from 0; InputError if the fusion is unknown."""
+        scenario, vehicle = self.scenario, self.scenario.vehicles[robot]
+        behaviour = FlightBehaviour(self._mission(robot, boot), vehicle.speed, vehicle.turn_rate)
+        return Agent(robot, boot, vehicle, behaviour, self.options.scheme, Pace.each(scenario.step))
+
+    def _mission(self, robot: int, boot: int) -> Tracking:
+        scenario, prior, vehicle = self.scenario, self.prior, self.scenario.vehicles[robot]
+        platform = TrackingPlatform(
+            vehicle.speed,
+            vehicle.turn_rate,
+            self.sensors[robot],
+            self.objective,
+            decisions=scenario.decisions,
+            continuous=self.options.continuous,
+        )
+        fusion = track_fusion(
+            self.options.fusion,
+            robot,
+            boot,
+            Information(prior.Y, prior.y),
+            Motion(prior.motion.transitions, prior.motion.noises),
+            0,
+            most_matrix=self.bounds.matrix,
+            most_vector=self.bounds.vector,
+        )
+        plan = Plan(prior.models, prior.dt, prior.horizon, self.lead)
+        return Tracking(platform, plan, fusion, self.bounds, self.options.coordination != "shared")
