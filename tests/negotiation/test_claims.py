@@ -28,14 +28,13 @@ from vedette.domains.mapping.platform import STAY, MappingPlatform
 from vedette.domains.mapping.stops import MOST_STOPS
 from vedette.domains.search import impact as search
 from vedette.domains.search import worth
+from vedette.domains.search.platform import SearchPlatform
 from vedette.domains.tracking import impact as tracking
+from vedette.domains.tracking.platform import TrackingPlatform
 from vedette.kernels.coverage import LAYERS
 from vedette.kernels.misses import SparseMisses
 from vedette.maps import GridFrame
 from vedette.maps.swept import most_cells_swept
-from vedette.missions.explore.exploration import Exploration
-from vedette.missions.search.searching import Searching
-from vedette.missions.track.tracking import Tracking
 from vedette.negotiation import Chooser, Claims, JacobiNode, TokenNode, decode
 from vedette.negotiation.messages import Gather, Outcome, Stop, Tally, Token, Up
 from vedette.team import Most, PlatformSpec
@@ -113,7 +112,7 @@ def test_no_course_of_any_trackers_claims_too_much(seed: int) -> None:
 
 
 def recorded(monkeypatch: pytest.MonkeyPatch, kind: type[Any]) -> Seen:
-    """Everything that robots of a kind of mission will say of themselves."""
+    """Everything that robots with a kind of platform will say of themselves."""
     seen: Seen = []
     honest = kind.impact
 
@@ -126,7 +125,7 @@ def recorded(monkeypatch: pytest.MonkeyPatch, kind: type[Any]) -> Seen:
 
 
 def test_whole_missions_say_nothing_that_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    seen = recorded(monkeypatch, Exploration)
+    seen = recorded(monkeypatch, MappingPlatform)
     specs = robots(2)
     simulation, _ = run(small_maze(), specs)
     explorer = simulation.missions[0]
@@ -134,12 +133,12 @@ def test_whole_missions_say_nothing_that_is_refused(monkeypatch: pytest.MonkeyPa
     for belief, impact in seen:
         explorer.admit(belief, impact, 1)
     assert len(seen) > 20
-    seen = recorded(monkeypatch, Tracking)
+    seen = recorded(monkeypatch, TrackingPlatform)
     tracker = flown(scenario())[0].missions[0]
     for belief, impact in seen:
         tracker.admit(belief, impact, 1)
     assert len(seen) > 20
-    seen = recorded(monkeypatch, Searching)
+    seen = recorded(monkeypatch, SearchPlatform)
     searcher = blind(case()).missions[0]
     searcher.team = replace(searcher.team, most=Most(range=100.0, speed=30.0))
     for belief, impact in seen:

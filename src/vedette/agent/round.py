@@ -16,7 +16,7 @@ from vedette.agent.messages import Areas, Begin, Call, Evidence, Flushed, Freeze
 from vedette.agent.mission import Mission
 from vedette.agent.participant import RoundParticipant
 from vedette.agent.reaches import reaches_to_tell
-from vedette.negotiation import Claims, JacobiNode, Negotiator, Outcome, TokenNode, messages
+from vedette.negotiation import Claims, Negotiator, Outcome, messages, node_of
 from vedette.negotiation import Send as Reply
 from vedette.problem import Reach
 
@@ -163,10 +163,8 @@ class Round:
         links, parent, own = self.tree.neighbours, self.tree.parent, self.participant
         bounded = {k: reach for k, reach in self.reaches.items() if reach is not None}
         claims = Claims(self.robots, partial(self.mission.admit, self.belief))
-        self.negotiator = (
-            TokenNode(links, parent, own, max_sweeps=MAX_SWEEPS, reaches=bounded, claims=claims)
-            if self.scheme == "token"
-            else JacobiNode(links, parent, own, max_sweeps=MAX_SWEEPS, claims=claims)
+        self.negotiator = node_of(
+            self.scheme, links, parent, own, max_sweeps=MAX_SWEEPS, reaches=bounded, claims=claims
         )
         return self._replies(self.negotiator.start())
 
