@@ -7,16 +7,14 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from vedette.domains.mapping.planners import DEFAULT, PLANNERS
-from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save
 from vedette.record.explore.log import ExploreSnapshot
 from vedette.record.explore.raster import Window, enlarge, paint
-from vedette.record.signs import DASHES, FAINT, badge, draw_vehicle, legend_line, scale_bar
+from vedette.record.signs import FAINT, badge, draw_vehicle, legend_line, map_signs, scale_bar
 from vedette_reproduction.content import Section, Table, Value, table
 from vedette_reproduction.missions import PAPERS, Mission
 from vedette_reproduction.run import Run
@@ -151,12 +149,8 @@ def _panel(
 def _legend(figure: Figure, mission: Mission, width: float) -> None:
     """Explain robots, ways and colours in one line under the panels."""
     names = [spec.name for spec in mission.report.log.specs]
-    classes = ((FREE, "free"), (OCCUPIED, "wall"), (UNKNOWN, "unknown"))
     signs = [
-        Line2D((), (), color=FAINT, lw=1.1, label="travelled"),
-        Line2D((), (), color=FAINT, lw=1.4, ls=DASHES, label="planned"),
-        Line2D((), (), ls="", marker="s", color="white", mec=FAINT, mew=1.6, ms=6, label="goal"),
-        *(Patch(fc=tuple(palette.CLASSES[c] / 255), ec=FAINT, lw=0.6, label=name) for c, name in classes),
+        *map_signs(),
         Patch(
             fc=palette.unit(palette.IMPACT),
             ec=FAINT,

@@ -11,9 +11,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.legend_handler import HandlerTuple
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
+from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.record import palette
 from vedette.record.links import Link
 
@@ -90,6 +92,17 @@ def link_signs() -> list[Line2D]:
     return [
         Line2D((), (), label="link on the team's tree", **_TREE),
         Line2D((), (), label="other link", **_OTHER),
+    ]
+
+
+def map_signs() -> list[Line2D | Patch]:
+    """Return the signs of ways, goals and classes of cells in a legend, with their labels."""
+    classes = ((FREE, "free"), (OCCUPIED, "wall"), (UNKNOWN, "unknown"))
+    return [
+        Line2D((), (), color=FAINT, lw=1.3, label="travelled"),
+        Line2D((), (), color=FAINT, lw=1.4, ls=DASHES, label="planned"),
+        Line2D((), (), ls="", marker="s", color="white", mec=FAINT, mew=1.6, ms=6, label="goal"),
+        *(Patch(fc=tuple(palette.CLASSES[c] / 255), ec=FAINT, lw=0.6, label=name) for c, name in classes),
     ]
 
 

@@ -15,12 +15,12 @@ from matplotlib.patches import Patch
 from matplotlib.transforms import ScaledTranslation
 from numpy.typing import NDArray
 
-from vedette.maps import FREE, OCCUPIED, UNKNOWN
+from vedette.maps import UNKNOWN
 from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save
 from vedette.record.explore.log import ExploreLog, ExploreSnapshot, RobotSample
 from vedette.record.explore.raster import Window, enlarge, known_window, paint
-from vedette.record.signs import DASHES, FAINT, badge, draw_links, legend_line, link_signs, scale_bar
+from vedette.record.signs import DASHES, badge, draw_links, legend_line, link_signs, map_signs, scale_bar
 
 _GAP, _MARGIN, _TOP = 0.14, 0.2, 0.72  # [inch]
 _LINE = 0.25  # of the legend [inch]
@@ -157,7 +157,7 @@ def _legend(figure: Figure, layout: _Layout, last: ExploreSnapshot) -> None:
     if last.links is not None:
         _explain(figure, y, link_signs())
         y -= _LINE
-    _explain(figure, y, _signs())
+    _explain(figure, y, map_signs())
     _impact_ramp(figure, layout, y if layout.width >= _WIDE else y - _LINE)
 
 
@@ -176,16 +176,6 @@ def _robots_a_row(width: float, robots: Sequence[RobotSample]) -> int:
     """Count the robots that a line of the legend holds, by the longest name."""
     entry = 0.5 + 0.07 * max(len(robot.name) + (0 if robot.alive else 7) for robot in robots)
     return max(1, int((width - 2 * _MARGIN) / entry))
-
-
-def _signs() -> list[Line2D | Patch]:
-    classes = ((FREE, "free"), (OCCUPIED, "wall"), (UNKNOWN, "unknown"))
-    return [
-        Line2D((), (), color=FAINT, lw=1.3, label="travelled"),
-        Line2D((), (), color=FAINT, lw=1.4, ls=DASHES, label="planned"),
-        Line2D((), (), ls="", marker="s", color="white", mec=FAINT, mew=1.6, ms=6, label="goal"),
-        *(Patch(fc=tuple(palette.CLASSES[c] / 255), ec=FAINT, lw=0.6, label=name) for c, name in classes),
-    ]
 
 
 def _impact_ramp(figure: Figure, layout: _Layout, y: float) -> None:
