@@ -32,10 +32,10 @@ from vedette.fusion.tiles import CELLS, Tiling
 from vedette.maps import GridFrame
 from vedette.negotiation import messages as negotiation_messages
 from vedette.negotiation.messages import Down, Gather, Outcome, Stop, Tally, Token, Up
-from vedette.net import body, report
+from vedette.net import report
 from vedette.net.gather import status_of, view_of
 from vedette.overlay import hello, packet
-from vedette.sim.own_body import Seen
+from vedette.sim import shown
 
 Decode = Callable[[bytes], Any]
 Encode = Callable[[Any], bytes]
@@ -44,6 +44,7 @@ TARGETS, HORIZON = 5, 3
 TILES = Tiling(50, 70)
 FRAME = GridFrame(0.1, 20, 30)
 COUNTS = 3
+SHOWN = shown.ShownBody(1.0, 2.0, 0.5, 0.3, -0.2, 0.25)
 STREAM = 3  # bytes that an entry of step evidence may inflate to, for each of its numbers
 
 
@@ -227,7 +228,7 @@ def decoders() -> list[Target]:
         _decoder("decode-vector", vectors.decode, vectors.encode, partial(_vectors, vectors)),
         _decoder("decode-track-message", track_wire.decode, track_wire.encode, lambda: [message]),
         _decoder("decode-tracks", packing.decode, packing.encode, _tracks),
-        _decoder("decode-body", body.decode, body.encode, lambda: [Seen(1.0, 2.0, 0.5, 0.3, -0.2, 0.25)]),
+        _decoder("decode-body", shown.decode, shown.encode, lambda: [SHOWN]),
         _decoder("decode-condition", report.read_condition, report.encode, conditions),
         Target("decode-report", _reports, _read_report, mutate_message),
     ]

@@ -36,13 +36,14 @@ from tests.support.net_processes import (
 )
 from tests.support.net_team import issue, real_time, wait_until
 from tests.support.small_missions import drawn, robots, small_maze
+from vedette.agent.body import TICK
 from vedette.agent.effects import Drive, Route
 from vedette.cli.status import status as status_command
 from vedette.net import Access, Transport, credentials
-from vedette.net.body import inside
 from vedette.net.launch import TEAM, TeamProcesses
 from vedette.outcome import Outcome
-from vedette.sim.own_body import OwnBody, Seen
+from vedette.sim.own_body import OwnBody
+from vedette.sim.shown import ShownBody, decode, encode
 
 pytestmark = real_time
 
@@ -164,15 +165,15 @@ def test_a_robot_that_cannot_start_is_named_with_its_reason(tmp_path: Path) -> N
 def test_bodies_that_met_unseen_pass_through_each_other_until_they_are_apart() -> None:
     world = drawn(TWO_ROOMS)
     spec = robots(1)[0]
-    body = OwnBody(world, spec, (1.0, 2.0, 0.0), 0, 2, np.random.default_rng(0))
-    other = Seen(1.1, 2.0, 0.0, 0.0, 0.0, spec.radius)
+    body = OwnBody.put(world, spec, (1.0, 2.0, 0.0), 0, 2, np.random.default_rng(0))
+    other = ShownBody(1.1, 2.0, 0.0, 0.0, 0.0, spec.radius)
     body.carry_out(Drive(Route(np.array([[1.0, 2.0], [3.0, 2.0]]), ~world.solid)), 0.0)
-    for tick in range(1, 100):
-        body.see(1, None if inside(other, body.shown) else other)
-        body.advance(0.05 * tick, 0.05)
-    assert not inside(other, body.shown)
+    for tick in range(1, 50):
+        body.see(1, encode(other), TICK * tick)
+        body.sense(TICK * tick)
+    assert not other.inside(decode(body.show(5.0)))
     assert body.pose[0] > 2.5
-    assert body.collisions == 0
+    assert body.figures.collisions == 0
 
 
 # -- faults in mid-mission ---------------------------------------------------------------------------------

@@ -126,8 +126,8 @@ def _beacon(agent: Agent, pose: Pose) -> list[Effect]:
         round(pose.y * 100),
         round(pose.heading * 1000),
         round(pose.slowed * 10),
-        ceil(agent.body.radius * 100),
-        max(ceil(agent.body.speed * 100), 1),
+        ceil(agent.hull.radius * 100),
+        max(ceil(agent.hull.speed * 100), 1),
         tuple(offsets.ravel().tolist()),
     )
     return _beacon_to(agent, beacon, agent.rounds.tree.neighbours)

@@ -10,6 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.agent.body import Hull
 from vedette.agent.effects import Effect
 from vedette.agent.events import Arrived, Pose, Scan, Sensed, Stuck
 from vedette.agent.mates import Mates
@@ -32,18 +33,6 @@ class State(Enum):
     FLYING = "flying"
     CIRCLING = "circling"  # its plan has run out
     DONE = "done"
-
-
-class Body(Protocol):
-    """What team-mates are told of a robot's body."""
-
-    @property
-    def radius(self) -> float:
-        """Of the disc that it fills [m]."""
-
-    @property
-    def speed(self) -> float:
-        """At most [m/s]."""
 
 
 class Behaviour(Protocol):
@@ -72,6 +61,10 @@ class Behaviour(Protocol):
     def look_out(self, agent: Agent, pose: Pose, now: float) -> list[Effect]:
         """Mind the mates, and whether the strategy still has a point."""
 
+    @property
+    def path(self) -> NDArray[np.float64]:
+        """The whole way that the robot means to go, ``(L, 2)`` [m], team frame; for people to see."""
+
     def ahead(self, pose: Pose) -> NDArray[np.float64]:
         """Return the next few metres of the robot's path, ``(L, 2)`` [m], team frame, for its beacon."""
 
@@ -85,7 +78,7 @@ class Agent:
 
     robot: int
     boot: int
-    body: Body
+    hull: Hull
     behaviour: Behaviour
     scheme: str = "token"
     pace: Pace = field(default_factory=Pace)  # of rounds

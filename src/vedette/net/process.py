@@ -5,23 +5,20 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import partial
 
 from vedette.agent import Datagram, NetworkedAgent
-from vedette.agent.body import TICK
+from vedette.agent.body import TICK, Body, Shown
 from vedette.agent.effects import Drive, Fly, Job
 from vedette.agent.events import JobDone
 from vedette.agent.networked import Output
-from vedette.net import body as bodies
 from vedette.net.inbox import Datagram as Received
 from vedette.net.inbox import Inbox, PeerGone, PeerSeen
 from vedette.net.names import Topic
 from vedette.net.transport import Published, Transport
 from vedette.net.witness import Witness
-from vedette.sim.own_body import OwnBody
 
-UNSEEN = 2.0  # a body not told of for so long is taken away [s]
 REPORT_PERIOD = 0.5  # of mission time, but not more often than LEAST_REPORTS apart [s]
 LEAST_REPORTS = 0.1  # [s]
 MOST_HEARING = 0.05  # at a stretch, before the body moves on [s]
@@ -68,14 +65,14 @@ class AgentProcess:
     """
 
     node: NetworkedAgent
-    body: OwnBody
+    body: Body
+    shown: Shown | None  # the body, where it is simulated and others are to see it
     transport: Transport
     inbox: Inbox
     witness: Witness
     mission: MissionClock
     clock: Callable[[], float] = time.monotonic
     stopped: bool = False
-    _seen: dict[int, float] = field(default_factory=dict)  # when each other body was last told of [s]
     _reported: float = -1e9  # [s]
     _reported_at: float = -1e9  # mission time [s]
 
@@ -85,12 +82,14 @@ class AgentProcess:
 
     def run(self) -> None:
         """Run until stopped; then say goodbye."""
-        self.transport.subscribe(Topic.BODY, self.inbox.put)
+        if self.shown is not None:
+            self.transport.subscribe(Topic.BODY, self.inbox.put)
         self.transport.answer_status(lambda: self.witness.status)
         self.mission.ticked = self.clock()
         with ThreadPoolExecutor(1, thread_name_prefix="planning") as self._worker:
             while not self.stopped:
                 self._turn()
+        self.body.stop(self.mission.shows(self.clock()))
         for goodbye in self.node.leave(self.clock()):
             self.transport.send(goodbye.to, goodbye.payload)
         self._report(self.clock(), state="left")
@@ -135,23 +134,20 @@ class AgentProcess:
         """Move the body, and let the agent know what it senses."""
         self.mission.tick(now)
         at = self.mission.ticks * TICK
-        self.body.advance(at, TICK)
-        self.transport.publish(Topic.BODY, bodies.encode(self.body.shown))
-        for robot in [k for k, when in self._seen.items() if now > when + UNSEEN]:
-            del self._seen[robot]
-            self.body.see(robot, None)
-        self._do(partial(self.node.step, self.body.sense(at), now))
+        sensed = self.body.sense(at)
+        if self.shown is not None:
+            self.transport.publish(Topic.BODY, self.shown.show(now))
+        self._do(partial(self.node.step, sensed, now))
         if at >= self._reported_at + REPORT_PERIOD and now >= self._reported + LEAST_REPORTS:
             self._report(now)
 
     def _see(self, robot: int, payload: bytes, now: float) -> None:
+        if self.shown is None:
+            return
         try:
-            seen = bodies.decode(payload)
+            self.shown.see(robot, payload, now)
         except ValueError:
             self.witness.malformed += 1
-            return
-        self._seen[robot] = now
-        self.body.see(robot, None if bodies.inside(seen, self.body.shown) else seen)
 
     def _report(self, now: float, state: str | None = None) -> None:
         """Tell the operator, if any, how it goes; not while the agent is at work in another thread."""

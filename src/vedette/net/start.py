@@ -6,8 +6,6 @@ import time
 from datetime import UTC, datetime
 from pathlib import Path
 
-import numpy as np
-
 from vedette.agent import NetworkedAgent
 from vedette.maps.world import World
 from vedette.missions.explore.assemble import assemble
@@ -15,13 +13,11 @@ from vedette.net.config import AgentConfig, access_of
 from vedette.net.inbox import Inbox
 from vedette.net.names import robot_name
 from vedette.net.process import AgentProcess, MissionClock
+from vedette.net.simulated import simulated_robot
 from vedette.net.transport import Transport
 from vedette.net.witness import Witness
-from vedette.sim.own_body import OwnBody
-from vedette.sim.starts import choose_starts
 from vedette.team import Most
 
-MOST_BODIES = 64  # of others that a simulated robot can see
 EPOCH = datetime(2025, 1, 1, tzinfo=UTC)
 
 
@@ -42,19 +38,15 @@ def agent_process(config: AgentConfig, folder: Path, speed: float) -> AgentProce
     now = datetime.now(UTC)
     robot, boot = config.robot - 1, boot_at(now)
     world = World.from_map(folder / config.body.map, config.body.resolution)
-    spec = config.body.spec(robot_name(robot))
-    start = choose_starts(world, [spec], np.random.default_rng(0))[0]
-    rng = np.random.default_rng([config.body.seed, robot])
-    body = OwnBody(world, spec, start, robot, max(MOST_BODIES, robot + 1), rng)
-    best = config.best
+    body, best = simulated_robot(config, world), config.best
     agent = assemble(
         world.frame,
-        spec,
+        body.hull,
         config.explore,
         robot,
         boot,
         robots=config.robots,
-        most=Most.of([spec]) if best is None else Most(best.range, best.speed),
+        most=Most.of([body.hull]) if best is None else Most(best.range, best.speed),
         waits_for=config.robots,
     )
     clock = MissionClock(speed)
@@ -66,5 +58,5 @@ def agent_process(config: AgentConfig, folder: Path, speed: float) -> AgentProce
         lease=config.links.lease,
         mission_time=clock.shows,
     )
-    witness = Witness(node, body, transport, spec.name)
-    return AgentProcess(node, body, transport, inbox, witness, clock)
+    witness = Witness(node, body, transport, robot_name(robot))
+    return AgentProcess(node, body, body, transport, inbox, witness, clock)

@@ -8,7 +8,8 @@ from typing import cast
 import numpy as np
 from msgspec import structs
 
-from vedette.agent import GroundBehaviour, NetworkedAgent
+from vedette.agent import NetworkedAgent
+from vedette.agent.body import Body
 from vedette.maps import UNKNOWN
 from vedette.missions.explore.exploration import Exploration
 from vedette.net import report as wire
@@ -18,7 +19,6 @@ from vedette.overlay import LinkStatus
 from vedette.record.clock import Clock
 from vedette.record.explore.views import held_map
 from vedette.record.summary import Spread as Statistics
-from vedette.sim.own_body import OwnBody
 
 
 @dataclass
@@ -26,7 +26,7 @@ class Witness:
     """Counts what the process does, and tells of the robot; call it from the agent's thread."""
 
     node: NetworkedAgent
-    body: OwnBody
+    body: Body
     transport: Transport
     name: str
     clock: Clock = field(default_factory=Clock)
@@ -70,9 +70,9 @@ class Witness:
 
     def _condition(self, now: float, mission_time: float, known: float) -> Condition:
         agent, overlay = self.node.agent, self.node.overlay.status(now)
-        x, y, heading = self.body.pose.tolist()
-        wanted = cast(GroundBehaviour, agent.behaviour).driver.wanted
-        path = () if wanted is None else tuple(wanted.path.ravel().tolist())
+        x, y, heading = self.body.pose
+        path = tuple(agent.behaviour.path.ravel().tolist())
+        counted = self.body.figures
         return Condition(
             robot=agent.robot,
             boot=agent.boot,
@@ -99,9 +99,9 @@ class Witness:
             cuts=agent.rounds.cuts,
             bounded=len(agent.rounds.bound_ratios),
             bound_ratios=float(sum(agent.rounds.bound_ratios)),
-            travelled=self.body.travelled,
-            collisions=self.body.collisions,
-            min_clearance=self.body.min_clearance,
+            travelled=counted.travelled,
+            collisions=counted.collisions,
+            min_clearance=counted.min_clearance,
             messages={kind.value: count for kind, count in self.node.messages_sent.items()},
             bytes={kind.value: count for kind, count in self.node.bytes_sent.items()},
             dropped={

@@ -3,99 +3,106 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vedette.agent.effects import Motion
+from vedette.agent.body import TICK, BodyFigures
+from vedette.agent.effects import Drive, Motion
 from vedette.agent.events import Event
 from vedette.maps.world import World
 from vedette.sim.robots import Robots
+from vedette.sim.shown import ShownBody, decode, encode
 from vedette.team import PlatformSpec
 
 ELSEWHERE = 1e6  # where bodies are that nobody tells of, out of everybody's sight [m]
+UNSEEN = 2.0  # a body not told of for so long is taken away [s]
 
 
-@dataclass(frozen=True)
-class Seen:
-    """Another body, as its process tells of it."""
-
-    x: float  # [m], team frame
-    y: float
-    heading: float  # [rad]
-    vx: float  # [m/s], team frame
-    vy: float
-    radius: float  # [m]
-
-
+@dataclass
 class OwnBody:
-    """A disc robot with a lidar that feels and scans the bodies it is told of, and moves no other."""
+    """A disc robot with a lidar that feels and scans the bodies it is told of, and moves no other.
 
-    def __init__(
-        self,
+    ``vedette.agent.body.Body`` and ``Shown``.
+    """
+
+    hull: PlatformSpec
+    robot: int
+    _robots: Robots
+    _seen: dict[int, float] = field(default_factory=dict)  # when each other body was last told of [s]
+
+    @classmethod
+    def put(
+        cls,
         world: World,
         spec: PlatformSpec,
         start: Sequence[float],
         robot: int,
         robots: int,
         rng: np.random.Generator,
-    ) -> None:
+    ) -> OwnBody:
         """Put robot ``robot`` of at most ``robots`` at its start: x, y [m], heading [rad], team frame."""
         starts = np.full((robots, 3), ELSEWHERE)
         starts[robot] = start
-        self.robot = robot
-        self._corner = np.array((world.frame.origin_x, world.frame.origin_y))
-        self._robots = Robots(world, [spec] * robots, starts, [rng] * robots)
-        self._bodies = self._robots.bodies
-        self._bodies.alive[np.arange(robots) != robot] = False
+        body = cls(spec, robot, Robots(world, [spec] * robots, starts, [rng] * robots))
+        body._robots.bodies.alive[np.arange(robots) != robot] = False
+        return body
+
+    @property
+    def pose(self) -> tuple[float, float, float]:
+        """Where it is in truth."""
+        return self._robots.pose(self.robot)
+
+    @property
+    def figures(self) -> BodyFigures:
+        """What it has counted."""
+        bodies, i = self._robots.bodies, self.robot
+        return BodyFigures(
+            float(bodies.travelled[i]), int(bodies.collisions[i]), float(bodies.min_clearance[i])
+        )
 
     def sense(self, now: float) -> list[Event]:
-        """Return what the robot is told at a tick: its pose first."""
+        """Move for the tick that ends now, and return what the robot is told."""
+        self._robots.advance(now, TICK)
         return self._robots.sense(self.robot, now)
 
     def carry_out(self, motion: Motion, now: float) -> None:
         """Follow a route, or stand."""
         self._robots.carry_out(self.robot, motion, now)
 
-    def advance(self, now: float, dt: float) -> None:
-        """Move for the tick of ``dt`` that ends now [s]."""
-        self._robots.advance(now, dt)
+    def stop(self, now: float) -> None:
+        """Stand."""
+        self.carry_out(Drive(None), now)
 
-    def see(self, robot: int, seen: Seen | None) -> None:
-        """Put another robot's body where it is said to be; None: away. Strangers and nonsense are not put."""
-        if robot == self.robot or not 0 <= robot < len(self._bodies.specs):
+    # -- among other processes' bodies -----------------------------------------------------------------
+
+    def show(self, now: float) -> bytes:
+        """Return where it is, and take bodies away that have not been shown for long."""
+        for robot in [k for k, when in self._seen.items() if now > when + UNSEEN]:
+            self._take_away(robot)
+        return encode(self._shown)
+
+    def see(self, robot: int, shown: bytes, now: float) -> None:
+        """Put another robot's body where it shows itself; strangers are not put, nor who is in one place."""
+        body = decode(shown)
+        bodies = self._robots.bodies
+        if robot == self.robot or not 0 <= robot < len(bodies.specs):
             return
-        if seen is None:
-            self._bodies.poses[robot] = ELSEWHERE
+        if body.inside(self._shown):
+            self._take_away(robot)
             return
-        self._bodies.poses[robot] = (*(np.array((seen.x, seen.y)) - self._corner), seen.heading)
-        self._bodies.velocities[robot] = seen.vx, seen.vy
-        self._bodies.radii[robot] = seen.radius
+        self._seen[robot] = now
+        corner = self._robots.corner
+        bodies.poses[robot] = (*(np.array((body.x, body.y)) - corner), body.heading)
+        bodies.velocities[robot] = body.vx, body.vy
+        bodies.radii[robot] = body.radius
+
+    def _take_away(self, robot: int) -> None:
+        self._seen.pop(robot, None)
+        self._robots.bodies.poses[robot] = ELSEWHERE
 
     @property
-    def shown(self) -> Seen:
-        """This body, for the others."""
-        x, y, heading = self._robots.pose(self.robot)
-        vx, vy = self._bodies.velocities[self.robot].tolist()
-        return Seen(x, y, heading, vx, vy, self._bodies.specs[self.robot].radius)
-
-    @property
-    def travelled(self) -> float:
-        """Way driven so far [m]."""
-        return float(self._bodies.travelled[self.robot])
-
-    @property
-    def collisions(self) -> int:
-        """Steps in which a contact stopped it."""
-        return int(self._bodies.collisions[self.robot])
-
-    @property
-    def min_clearance(self) -> float:
-        """From its edge to a wall or another robot, so far [m]."""
-        return float(self._bodies.min_clearance[self.robot])
-
-    @property
-    def pose(self) -> NDArray[np.float64]:
-        """``(3,)`` x, y [m], heading [rad], team frame."""
-        return np.array(self._robots.pose(self.robot))
+    def _shown(self) -> ShownBody:
+        x, y, heading = self.pose
+        vx, vy = self._robots.bodies.velocities[self.robot].tolist()
+        return ShownBody(x, y, heading, vx, vy, self.hull.radius)

@@ -32,9 +32,9 @@ class Robots:
         """Put the team at its starts, (n, 3) x, y, heading [m, m, rad], and give each lidar its noise."""
         n = len(specs)
         self._world, self._specs, self._noise = world, specs, noise
-        self._corner = np.array((world.frame.origin_x, world.frame.origin_y))
+        self.corner = np.array((world.frame.origin_x, world.frame.origin_y))
         local = starts.copy()
-        local[:, :2] -= self._corner
+        local[:, :2] -= self.corner
         self.bodies = Bodies(world.solid, world.frame.resolution, specs, local)
         self._beams = [
             np.radians(spec.view) * ((np.arange(spec.beams) + 0.5) / spec.beams - 0.5) for spec in specs
@@ -53,7 +53,7 @@ class Robots:
     def pose(self, i: int) -> tuple[float, float, float]:
         """Return x, y [m] and heading [rad] of a robot, team frame."""
         x, y, heading = self.bodies.poses[i].tolist()
-        return x + float(self._corner[0]), y + float(self._corner[1]), heading
+        return x + float(self.corner[0]), y + float(self.corner[1]), heading
 
     def sense(self, i: int, now: float) -> list[Event]:
         """Return pose, scan, and whether the robot has arrived or is stuck."""
@@ -108,7 +108,7 @@ class Robots:
         if route is None:
             self.bodies.command(i, None)
             return
-        path, passable, localiser = route.path - self._corner, route.passable, self._localisers[i]
+        path, passable, localiser = route.path - self.corner, route.passable, self._localisers[i]
         if localiser is not None:
             east, north = localiser.error[:2].tolist()
             resolution = self._world.frame.resolution
