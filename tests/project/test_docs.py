@@ -13,7 +13,6 @@ import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -74,15 +73,16 @@ def program(block: Block) -> list[str]:
     return ["bash", "-e", "-x", "-o", "pipefail", "-c", commands(block)]
 
 
-def cases() -> Sequence[object]:
-    """Return a test case for every block."""
-    found = []
-    for path in DOCUMENTS:
-        document = path.relative_to(ROOT).as_posix()
-        for block in blocks(document, path.read_text(encoding="utf-8")):
-            marks = [pytest.mark.slow] if block.slow else []
-            found.append(pytest.param(block, id=f"{document}:{block.line}", marks=marks))
-    return found
+def documented() -> list[Block]:
+    """Return the blocks of all documents."""
+    texts = {path.relative_to(ROOT).as_posix(): path.read_text(encoding="utf-8") for path in DOCUMENTS}
+    return [block for document, text in texts.items() for block in blocks(document, text)]
+
+
+def case(block: Block) -> object:
+    """Return the test case of a block."""
+    marks = [pytest.mark.slow] if block.slow else []
+    return pytest.param(block, id=f"{block.document}:{block.line}", marks=marks)
 
 
 @pytest.fixture(scope="module")
@@ -100,7 +100,8 @@ def directory(block: Block, copies: dict[str, Path], tmp_path_factory: pytest.Te
     return copies[block.document]
 
 
-@pytest.mark.parametrize("block", cases())
+@pytest.mark.in_order
+@pytest.mark.parametrize("block", [case(block) for block in documented()])
 def test_a_documented_block_runs(block: Block, directory: Path) -> None:
     binaries = Path(sys.executable).parent
     result = subprocess.run(
@@ -152,6 +153,13 @@ def test_commands_are_what_a_reader_would_type_but_for_make_and_clone() -> None:
     assert commands(shell) == "vedette --version  # says which"
     assert commands(console) == "echo one\necho two"
     assert python.body == 'print("indented")\n'
+
+
+def test_blocks_run_from_the_top_of_their_document_down_in_whatever_order_tests_run() -> None:
+    command = [sys.executable, "-m", "pytest", "--collect-only", "--randomly-seed=1", __file__]
+    listed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True, timeout=TIMEOUT_S)
+    run = re.findall(r"::test_a_documented_block_runs\[(.+)\]", listed.stdout)
+    assert run == [f"{block.document}:{block.line}" for block in documented()]
 
 
 @pytest.mark.parametrize("text", ["", "# No blocks\n", "```sh\nnever closed\n"])
