@@ -112,7 +112,7 @@ def read_yaml(path: Path, what: str, remedy: str) -> Any:
             character (``"\\ud800"``), a key twice, a tag, a second document, or references (``*name``) that
             stand for very much or for themselves.
     """
-    return _parsed(_text(path, what, remedy), path, remedy, _Loader)
+    return _parsed(yaml_text(path, what, remedy), path, remedy, _Loader)
 
 
 def read_yaml_texts(path: Path, what: str, remedy: str) -> Any:
@@ -123,10 +123,15 @@ def read_yaml_texts(path: Path, what: str, remedy: str) -> Any:
     Raises:
         InputError: as :func:`read_yaml`, but for tags and other documents.
     """
-    return _parsed(_text(path, what, remedy), path, remedy, _TextLoader)
+    return _parsed(yaml_text(path, what, remedy), path, remedy, _TextLoader)
 
 
-def _text(path: Path, what: str, remedy: str) -> str:
+def yaml_text(path: Path, what: str, remedy: str = "write less") -> str:
+    """Return the text of a YAML file, whatever its encoding.
+
+    Raises:
+        InputError: unreadable, no file, or longer than a million characters.
+    """
     with open_input(path, what) as file:
         try:
             raw = file.read(4 * _MOST + 4)

@@ -25,6 +25,38 @@ def test_an_existing_folder_is_refused_without_force_and_kept_with_it(tmp_path: 
 
 
 @pytest.mark.parametrize("force", [False, True])
+def test_a_folder_that_holds_an_input_is_refused_however_it_is_named(
+    tmp_path: Path, force: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder, other = tmp_path / "m", tmp_path / "other"
+    folder.mkdir()
+    other.mkdir()
+    (folder / "map.yaml").write_text("mine")
+    (other / "team.yaml").write_text("mine")
+    (other / "linked.yaml").symlink_to(folder / "map.yaml")
+    (folder / "team.yaml").symlink_to(other / "team.yaml")
+    (tmp_path / "also-m").symlink_to(folder)
+    monkeypatch.chdir(folder)
+    for place in (folder, Path("."), Path("../m"), tmp_path / "also-m"):
+        for file in (folder / "map.yaml", Path("map.yaml"), other / "linked.yaml", folder / "team.yaml"):
+            with pytest.raises(InputError) as caught:
+                output_directory(place, force, [other / "team.yaml", file])
+            assert (
+                str(caught.value)
+                == f"{place} holds {file.name}, which this command reads; choose another folder"
+            )
+    assert sorted(path.name for path in folder.iterdir()) == ["map.yaml", "team.yaml"]
+
+
+def test_inputs_elsewhere_and_those_that_are_none_are_no_hindrance(tmp_path: Path) -> None:
+    (tmp_path / "map.yaml").write_text("mine")
+    (tmp_path / "out").mkdir()
+    inputs = [tmp_path / "map.yaml", Path("7"), tmp_path / "out" / "gone.yaml", tmp_path / "no" / "such.yaml"]
+    assert output_directory(tmp_path / "out", True, inputs) == tmp_path / "out"
+    assert output_directory(tmp_path / "new", False, inputs) == tmp_path / "new"
+
+
+@pytest.mark.parametrize("force", [False, True])
 def test_a_file_in_the_place_of_the_folder_is_refused(tmp_path: Path, force: bool) -> None:
     (tmp_path / "out").write_text("")
     with pytest.raises(InputError, match="is a file"):

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from vedette.cli.exploring import closing, exploring_options, team_of, world_of, write_outputs
+from vedette.cli.exploring import closing, exploring_options, inputs_of, team_of, world_of, write_outputs
 from vedette.cli.options import (
     STATUS,
     ending_on_ctrl_c,
@@ -20,7 +20,7 @@ from vedette.record.explore.live import LiveView
 from vedette.record.explore.mcap import ExploreMcapWriter
 from vedette.record.explore.observer import ExploreReport
 from vedette.record.explore.views import planning_frame
-from vedette.record.files import new_directory, output_directory
+from vedette.record.folder import OutputFolder
 from vedette.sim.explore.run import explore as run_mission
 from vedette.sim.explore.run import prepare
 from vedette.sim.explore.simulation import ExploreSetup, ExploreSimulation
@@ -76,21 +76,22 @@ def explore(
     )
     # Everything that can be wrong with the input is found before the folder is made.
     prepared = prepare(world, specs, setup)
-    folder = new_directory("runs", world.name) if out is None else output_directory(out, force)
-    with ending_on_ctrl_c(prepared.stop):
+    made = OutputFolder.make(out, force, world.name, inputs_of(map_path, team, faults))
+    with made as folder, ending_on_ctrl_c(prepared.stop):
         report = _run(prepared, folder, quiet=as_json)
         write_outputs(report, world, folder, animate)
-    click.echo(report.summary.to_json() if as_json else closing(report.summary, folder), nl=not as_json)
+        said = report.summary.to_json() if as_json else closing(report.summary, folder.path)
+    click.echo(said, nl=not as_json)
     raise SystemExit(STATUS.get(report.summary.outcome, 1))
 
 
-def _run(prepared: ExploreSimulation, folder: Path, quiet: bool) -> ExploreReport:
+def _run(prepared: ExploreSimulation, folder: OutputFolder, quiet: bool) -> ExploreReport:
     """Run the mission, shown live unless ``quiet`` and recorded in the folder."""
     world, planning = prepared.world, planning_frame(prepared.world)
     with ExitStack() as sinks:
         live = sinks.enter_context(LiveView(world.name, world.frame, planning, quiet=quiet))
         names = [spec.name for spec in prepared.specs]
         mcap = sinks.enter_context(
-            ExploreMcapWriter(folder / "run.mcap", world.name, world.frame, planning, names)
+            ExploreMcapWriter(lambda: folder / "run.mcap", world.name, world.frame, planning, names)
         )
-        return run_mission(prepared, (live, mcap))
+        return run_mission(prepared, (live, mcap, folder))

@@ -13,7 +13,7 @@ import numpy as np
 from vedette.cli.options import OneOf, Positive, seed_option, with_options
 from vedette.domains.mapping.planners import DEFAULT, PLANNERS
 from vedette.errors import InputError
-from vedette.maps import write_map
+from vedette.maps import map_files, write_map
 from vedette.maps.world import World
 from vedette.missions.explore.assemble import FUSIONS
 from vedette.negotiation import SCHEMES
@@ -22,6 +22,7 @@ from vedette.record.explore.film import animate_gif
 from vedette.record.explore.observer import ExploreReport
 from vedette.record.explore.progress import progress_png
 from vedette.record.explore.summary import ExploreSummary
+from vedette.record.folder import OutputFolder
 from vedette.sim.starts import parse_starts
 from vedette.sim.worlds import office
 from vedette.team import PlatformSpec, load_team
@@ -118,7 +119,13 @@ def team_of(team: Path | None, robots: int | None, starts: str | None) -> list[P
     return [replace(spec, start=places[i]) if i < len(places) else spec for i, spec in enumerate(specs)]
 
 
-def write_outputs(report: ExploreReport, world: World, folder: Path, animate: bool) -> None:
+def inputs_of(map_path: Path | None, team: Path | None, faults: str | None = None) -> list[Path]:
+    """Return the files that a command reads; ``faults`` may be a seed, which is no file."""
+    maps = [] if map_path is None else map_files(map_path)
+    return [*maps, *(Path(name) for name in (team, faults) if name is not None)]
+
+
+def write_outputs(report: ExploreReport, world: World, folder: OutputFolder, animate: bool) -> None:
     """Write all files of a mission but the run record, which grows while it lasts."""
     report.summary.write(folder / "summary.json")
     report.timing.write(folder / "timing.json")

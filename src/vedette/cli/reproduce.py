@@ -17,7 +17,7 @@ from rich.text import Text
 
 from vedette.cli.options import seed_option
 from vedette.errors import InputError
-from vedette.record.files import new_directory, output_directory
+from vedette.record.folder import OutputFolder
 from vedette.study.provenance import provenance
 
 if TYPE_CHECKING:
@@ -45,11 +45,13 @@ def reproduce(out: Path | None, quick: bool, seed: int, force: bool) -> None:
     from vedette_reproduction.reproduce import reproduce as run_all
     from vedette_reproduction.run import FULL, QUICK
 
-    folder = new_directory("runs", "reproduce") if out is None else output_directory(out, force)
     made = datetime.now().astimezone().isoformat(" ", "seconds")
     source = provenance(shlex.join(["vedette", *sys.argv[1:]]), made)
-    with LineProgress(Console(stderr=True)) as progress:
-        result = run_all(folder, QUICK if quick else FULL, seed, source, progress)
+    with (
+        OutputFolder.make(out, force, "reproduce") as folder,
+        LineProgress(Console(stderr=True)) as progress,
+    ):
+        result = run_all(folder.path, QUICK if quick else FULL, seed, source, progress)
     click.echo(_closing(result))
     raise SystemExit(COMPLETE if result.complete else INTERRUPTED)
 

@@ -17,10 +17,11 @@ from vedette.cli.options import (
     parse_kills,
     seed_option,
 )
-from vedette.missions.search.case import default_case, read_case
+from vedette.missions.search.case import SearchCase, default_case, read_case
 from vedette.missions.search.options import COORDINATIONS, FUSIONS
+from vedette.missions.search.scenario import Heat
 from vedette.negotiation import SCHEMES
-from vedette.record.files import new_directory, output_directory
+from vedette.record.folder import OutputFolder
 from vedette.record.search.detection import detection_png
 from vedette.record.search.film import search_gif
 from vedette.record.search.live import search_display
@@ -110,18 +111,28 @@ def search(
     )
     # Everything that can be wrong with the input is found before the folder is made.
     simulation = SearchSimulation(case, setup)
-    folder = new_directory("runs", case.name) if out is None else output_directory(out, force)
     running = Running()
-    with ending_on_ctrl_c(running.stop):
+    made = OutputFolder.make(out, force, case.name, _inputs(case, scenario_path, faults))
+    with made as folder, ending_on_ctrl_c(running.stop):
         report = _run(simulation, folder, running, trials, not no_compare, quiet=as_json)
         _write(report, folder, animate)
-    click.echo(report.summary.to_json() if as_json else _closing(report.summary, folder), nl=not as_json)
+        said = report.summary.to_json() if as_json else _closing(report.summary, folder.path)
+    click.echo(said, nl=not as_json)
     raise SystemExit(STATUS.get(report.summary.outcome, 1))
+
+
+def _inputs(case: SearchCase, scenario_path: Path | None, faults: str | None) -> list[Path]:
+    """Return the files that the command reads; ``faults`` may be a seed, which is no file."""
+    files = [] if faults is None else [Path(faults)]
+    if scenario_path is not None:
+        heat = [part.file for part in case.scenario.prior if isinstance(part, Heat)]
+        files += [scenario_path, *(scenario_path.parent / file for file in heat)]
+    return files
 
 
 def _run(
     simulation: SearchSimulation,
-    folder: Path,
+    folder: OutputFolder,
     running: Running,
     trials: int | None,
     compare: bool,
@@ -132,13 +143,13 @@ def _run(
     running.current = simulation
     with ExitStack() as sinks:
         live = sinks.enter_context(search_display(scene, quiet))
-        mcap = sinks.enter_context(SearchMcapWriter(folder / "run.mcap", scene))
-        report = run_search(simulation, (live, mcap))
+        mcap = sinks.enter_context(SearchMcapWriter(lambda: folder / "run.mcap", scene))
+        report = run_search(simulation, (live, mcap, folder))
     running.say = live.say
     return assessed(report, simulation, running, trials, compare)
 
 
-def _write(report: SearchReport, folder: Path, animate: bool) -> None:
+def _write(report: SearchReport, folder: OutputFolder, animate: bool) -> None:
     report.summary.write(folder / "summary.json")
     report.timing.write(folder / "timing.json")
     pdf_png(report.log, report.summary, folder / "pdf.png")

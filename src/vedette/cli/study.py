@@ -13,10 +13,12 @@ import click
 from rich.console import Console
 
 from vedette.cli.options import OneOf
+from vedette.maps import map_files
+from vedette.record.lock import locked
 from vedette.study.backends import BACKENDS, Backend, require
 from vedette.study.combinations import runs_of
 from vedette.study.provenance import provenance
-from vedette.study.spec import find_spec, load_spec
+from vedette.study.spec import COPY, Spec, find_spec, load_spec
 
 if TYPE_CHECKING:
     from vedette.study.conduct import Conducted
@@ -66,11 +68,18 @@ def _conducted(path: Path, folder: Path, jobs: int, backend: Backend) -> Conduct
     made = provenance(
         shlex.join(["vedette", *sys.argv[1:]]), datetime.now().astimezone().isoformat(" ", "seconds")
     )
-    store = Store.open(folder, made.code)
-    conducted = conduct(runs, store, Workers(jobs, backend), Console())
-    if conducted.results:
-        write_outputs(conducted, path, spec.reference or spec.planners[0], folder, made)
+    store = Store.open(folder, made.code, _inputs(spec, path, folder))
+    with locked(folder):
+        conducted = conduct(runs, store, Workers(jobs, backend), Console())
+        if conducted.results:
+            write_outputs(conducted, path, spec.reference or spec.planners[0], folder, made)
     return conducted
+
+
+def _inputs(spec: Spec, path: Path, folder: Path) -> list[Path]:
+    """Return the files that a study reads; its spec may be the one that it left when it was stopped."""
+    own = [] if path.resolve() == (folder / COPY).resolve() else [path]
+    return [*own, *(file for entry in spec.maps for file in map_files(path.parent / entry.file))]
 
 
 def _closing(conducted: Conducted, folder: Path) -> str:

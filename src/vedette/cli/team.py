@@ -13,7 +13,7 @@ from types import FrameType
 import click
 import numpy as np
 
-from vedette.cli.exploring import closing, exploring_options, team_of, world_of, write_outputs
+from vedette.cli.exploring import closing, exploring_options, inputs_of, team_of, world_of, write_outputs
 from vedette.cli.options import STATUS, Positive, ending_on_ctrl_c, output_options
 from vedette.missions.explore.options import ExploreOptions
 from vedette.net.launch import TeamPlan, TeamProcesses
@@ -23,7 +23,7 @@ from vedette.net.transport import Operator
 from vedette.record.explore.live import LiveView
 from vedette.record.explore.mcap import ExploreMcapWriter
 from vedette.record.explore.views import Setting, planning_frame
-from vedette.record.files import new_directory, output_directory
+from vedette.record.folder import OutputFolder
 from vedette.sim.starts import choose_starts
 
 SPEED = 3.0  # more costs mission time, as thoughts and messages take as long as ever: 5 % at 5, 16 % at 10
@@ -82,26 +82,27 @@ def explore(
     places = choose_starts(world, specs, np.random.default_rng([seed, 1]))
     options = ExploreOptions(planner, scheme, fusion, return_home)
     plan = TeamPlan(world, specs, places, options, seed, speed, lease)
-    folder = new_directory("runs", world.name) if out is None else output_directory(out, force)
     planning = planning_frame(world)
-    with ExitStack() as stack:
-        stack.enter_context(_ending_on_any_signal())
-        secrets = stack.enter_context(TemporaryDirectory(prefix="vedette-team-"))
-        processes = stack.enter_context(TeamProcesses(plan, Path(secrets), folder / "agents"))
-        operator = stack.enter_context(Operator(processes.operator))
-        live = stack.enter_context(LiveView(world.name, world.frame, planning, quiet=as_json))
-        names = [spec.name for spec in specs]
-        mcap = stack.enter_context(
-            ExploreMcapWriter(folder / "run.mcap", world.name, world.frame, planning, names)
-        )
-        setting = Setting(seed, planner, options.negotiates_by, fusion)
-        watch = TeamWatch(plan, processes, operator, setting, max_time, (live, mcap))
-        stack.enter_context(ending_on_ctrl_c(watch.stop))
-        report = watch.run()
-    write_outputs(report, world, folder, animate)
+    with OutputFolder.make(out, force, world.name, inputs_of(map_path, team)) as folder:
+        with ExitStack() as stack:
+            stack.enter_context(_ending_on_any_signal())
+            secrets = stack.enter_context(TemporaryDirectory(prefix="vedette-team-"))
+            processes = stack.enter_context(TeamProcesses(plan, Path(secrets), folder / "agents"))
+            operator = stack.enter_context(Operator(processes.operator))
+            live = stack.enter_context(LiveView(world.name, world.frame, planning, quiet=as_json))
+            names = [spec.name for spec in specs]
+            mcap = stack.enter_context(
+                ExploreMcapWriter(lambda: folder / "run.mcap", world.name, world.frame, planning, names)
+            )
+            setting = Setting(seed, planner, options.negotiates_by, fusion)
+            watch = TeamWatch(plan, processes, operator, setting, max_time, (live, mcap, folder))
+            stack.enter_context(ending_on_ctrl_c(watch.stop))
+            report = watch.run()
+        write_outputs(report, world, folder, animate)
+        said = report.summary.to_json() if as_json else closing(report.summary, folder.path)
     for line in _remarks(watch, report.timing.real_time_factor, speed):
         click.echo(f"vedette: {line}", err=True)
-    click.echo(report.summary.to_json() if as_json else closing(report.summary, folder), nl=not as_json)
+    click.echo(said, nl=not as_json)
     raise SystemExit(STATUS.get(report.summary.outcome, 1))
 
 

@@ -24,7 +24,7 @@ from vedette.fusion.gaussian import WAYS
 from vedette.missions.track.options import COORDINATIONS
 from vedette.missions.track.scenario import default_scenario, read_scenario
 from vedette.negotiation import SCHEMES
-from vedette.record.files import new_directory, output_directory
+from vedette.record.folder import OutputFolder
 from vedette.record.track.entropy import entropy_png
 from vedette.record.track.film import track_gif
 from vedette.record.track.live import track_display
@@ -115,14 +115,16 @@ def track(
     )
     # Everything that can be wrong with the input is found before the folder is made.
     prepared = TrackSimulation(scenario, setup)
-    folder = new_directory("runs", name) if out is None else output_directory(out, force)
-    running = _Running(name, folder, quiet=as_json)
-    with ending_on_ctrl_c(running.stop):
-        report = running.live(prepared)
-        if not no_compare:
-            report = compared(report, scenario, setup, running.beside)
-        _write(report, folder, animate)
-    click.echo(report.summary.to_json() if as_json else _closing(report.summary, folder), nl=not as_json)
+    inputs = [Path(file) for file in (scenario_path, faults) if file is not None]
+    with OutputFolder.make(out, force, name, inputs) as folder:
+        running = _Running(name, folder, quiet=as_json)
+        with ending_on_ctrl_c(running.stop):
+            report = running.live(prepared)
+            if not no_compare:
+                report = compared(report, scenario, setup, running.beside)
+            _write(report, folder, animate)
+        said = report.summary.to_json() if as_json else _closing(report.summary, folder.path)
+    click.echo(said, nl=not as_json)
     raise SystemExit(STATUS.get(report.summary.outcome, 1))
 
 
@@ -131,7 +133,7 @@ class _Running:
     """Runs missions one after another, whichever is on when Ctrl-C comes."""
 
     name: str
-    folder: Path
+    folder: OutputFolder
     quiet: bool
     stopped: bool = field(default=False, init=False)
     _now: TrackSimulation | None = field(default=None, init=False)
@@ -148,8 +150,8 @@ class _Running:
         scene: Scene = scene_of(simulation, self.name)
         with ExitStack() as sinks:
             live = sinks.enter_context(track_display(scene, self.quiet))
-            mcap = sinks.enter_context(TrackMcapWriter(self.folder / "run.mcap", scene))
-            return run_mission(simulation, self.name, (live, mcap))
+            mcap = sinks.enter_context(TrackMcapWriter(lambda: self.folder / "run.mcap", scene))
+            return run_mission(simulation, self.name, (live, mcap, self.folder))
 
     def beside(self, simulation: TrackSimulation, coordination: str) -> TrackReport:
         """Run a mission to compare with; say which, unless quiet."""
@@ -164,7 +166,7 @@ class _Running:
             simulation.stop()
 
 
-def _write(report: TrackReport, folder: Path, animate: bool) -> None:
+def _write(report: TrackReport, folder: OutputFolder, animate: bool) -> None:
     report.summary.write(folder / "summary.json")
     report.timing.write(folder / "timing.json")
     tracks_png(report.log, folder / "tracks.png")

@@ -44,13 +44,22 @@ def read_map(path: Path | str, resolution: float | None = None) -> tuple[GridFra
         resolution = checked_resolution(resolution, "--resolution")
     if path.is_dir():
         raise InputError(f"{path} is a folder; give a map's .yaml or an image")
-    if path.suffix.lower() not in (".yaml", ".yml"):
+    if not _is_pair(path):
         return _read_plain(path, resolution)
     meta = read_meta(path)
     resolution = resolution if resolution is not None else meta.resolution
     if resolution is None:
         raise InputError(f"{path}: no resolution; add 'resolution: 0.05' [m per pixel] or give --resolution")
     return upright(classes_of_pair(meta, read_levels(meta.image)), resolution, meta.origin)
+
+
+def map_files(path: Path) -> tuple[Path, ...]:
+    """Return the files that :func:`read_map` reads for a path: a ``.yaml`` has an image.
+
+    Raises:
+        InputError: as :func:`read_map`.
+    """
+    return (path, read_meta(path).image) if _is_pair(path) else (path,)
 
 
 def write_map(stem: Path | str, frame: GridFrame, classes: NDArray[np.uint8], mode: str = "trinary") -> None:
@@ -84,6 +93,10 @@ def write_map(stem: Path | str, frame: GridFrame, classes: NDArray[np.uint8], mo
             "free_thresh: 0.196\n",  # grey 205 is 0.19608 occupied: just not free
             encoding="utf-8",
         )
+
+
+def _is_pair(path: Path) -> bool:
+    return path.suffix.lower() in (".yaml", ".yml")
 
 
 def _read_plain(path: Path, resolution: float | None) -> tuple[GridFrame, NDArray[np.uint8]]:

@@ -111,7 +111,10 @@ class TeamProcesses:
         status = self.processes[robot].poll()
         if status is None or status <= 0:
             return None
-        lines = self.log_of(robot).read_text(encoding="utf-8", errors="replace").split("\n")
+        try:
+            lines = self.log_of(robot).read_text(encoding="utf-8", errors="replace").split("\n")
+        except OSError:  # the folder of the logs has vanished
+            lines = []
         said = [line.removeprefix("vedette: ") for line in lines if line.strip()]
         return said[-1] if said else f"it ended with status {status}"
 

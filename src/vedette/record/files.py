@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -13,16 +14,20 @@ from vedette.maps.atomic import atomic_path
 __all__ = ["atomic_path", "new_directory", "output_directory", "write_json", "write_text"]
 
 
-def output_directory(path: Path | str, force: bool = False) -> Path:
+def output_directory(path: Path | str, force: bool = False, inputs: Iterable[Path] = ()) -> Path:
     """Create the folder ``path``, parents included, and return it.
 
-    With ``force`` an existing folder is used as it is: files of the same name are replaced, others stay.
+    With ``force`` an existing folder is used as it is: files of the same name are replaced, others stay. None
+    of the ``inputs``, files that the same command reads, may lie in it.
 
     Raises:
-        InputError: it exists and ``force`` is not set, it is a file, or it cannot be created or written to.
+        InputError: it exists and ``force`` is not set, it holds an input, it is a file, or it cannot be
+            created or written to.
     """
     path = Path(path)
     try:
+        if found := next((file for file in inputs if path.is_dir() and _lies_in(file, path)), None):
+            raise InputError(f"{path} holds {found.name}, which this command reads; choose another folder")
         if path.exists() and not path.is_dir():
             raise InputError(f"{path} is a file; give the name of a folder")
         if path.exists() and not force:
@@ -33,6 +38,11 @@ def output_directory(path: Path | str, force: bool = False) -> Path:
     write_text(path / ".probe", "")  # a folder that takes no file must be known before a mission, not after
     (path / ".probe").unlink()
     return path
+
+
+def _lies_in(file: Path, folder: Path) -> bool:
+    """Tell whether a file, or the link that was given for it, is an entry of a folder."""
+    return file.exists() and any(place.parent.samefile(folder) for place in (file, file.resolve()))
 
 
 def new_directory(parent: Path | str, stem: str) -> Path:

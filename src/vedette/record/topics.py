@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+import shutil
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, TypeAlias
 
 from mcap.writer import CompressionType, Writer
 
+from vedette.errors import InputError
 from vedette.record.files import atomic_path
 from vedette.record.ros import FRAME_ID, RosMessages
+
+Place: TypeAlias = Path | str | Callable[[], Path]  # of a file; asked again when it is whole
 
 
 class Topics:
@@ -49,7 +53,33 @@ class Topics:
 
 
 @contextmanager
-def atomic_stream(path: Path | str) -> Iterator[IO[bytes]]:
-    """Open a file that appears under its name when it is closed."""
-    with atomic_path(path) as temporary, temporary.open("wb") as stream:
-        yield stream
+def atomic_stream(place: Place) -> Iterator[IO[bytes]]:
+    """Open a file that appears under its name when it is closed, where ``place`` says it belongs by then.
+
+    So what was written stays, though the folder that it was begun in has vanished.
+
+    Raises:
+        InputError: the file cannot be written there.
+    """
+    path = _at(place)
+    temporary = path.with_name(f".part-{path.name}")
+    try:
+        with temporary.open("w+b") as stream:
+            yield stream
+            stream.flush()
+            last = _at(place)
+            if last != path:
+                stream.seek(0)
+                with atomic_path(last) as again, again.open("wb") as copy:
+                    shutil.copyfileobj(stream, copy)
+        if last == path:
+            temporary.replace(path)
+    except OSError as error:
+        raise InputError(f"cannot write {path}: {error.strerror or error}; choose another folder") from error
+    finally:
+        with suppress(OSError):
+            temporary.unlink(missing_ok=True)
+
+
+def _at(place: Place) -> Path:
+    return place() if callable(place) else Path(place)

@@ -11,7 +11,9 @@ from vedette.study.pictures import curves_png, metrics_png, tradeoff_png
 from vedette.study.provenance import Provenance
 from vedette.study.report import Findings, report
 from vedette.study.rows import figure_rows, timing_rows, write_rows
+from vedette.study.spec import COPY
 from vedette.study.tables import difference_rows, mean_rows
+from vedette.yaml_file import yaml_text
 
 
 def write_outputs(
@@ -19,8 +21,8 @@ def write_outputs(
 ) -> None:
     """Write results, statistics, pictures and report of the runs that are done, each file atomically."""
     rows, timing = figure_rows(conducted.results), timing_rows(conducted.results)
-    text = spec.read_text(encoding="utf-8")
-    write_text(folder / "spec.yaml", text)
+    text = yaml_text(spec, "spec")
+    write_text(folder / COPY, text)
     write_rows(rows, folder / "results")
     write_rows(timing, folder / "timing")
     write_rows(mean_rows(rows), folder / "means")

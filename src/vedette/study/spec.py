@@ -11,6 +11,8 @@ from msgspec import Meta, Struct
 from vedette.errors import InputError, nearest_name
 from vedette.scenario import load_scenario
 
+COPY = "spec.yaml"  # in the folder of a study: what it was made from
+
 Seed = Annotated[int, Meta(ge=0, le=2**32 - 1)]
 Seeds = Annotated[tuple[Seed, ...], Meta(min_length=1)]
 Robots = Annotated[int, Meta(ge=1, le=64)]

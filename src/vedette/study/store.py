@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 import msgspec
@@ -20,8 +21,8 @@ class Store:
         self._folder, self._code = folder, code
 
     @classmethod
-    def open(cls, out: Path, code: str) -> Store:
-        """Return the store below ``out``, made if it is not there.
+    def open(cls, out: Path, code: str, inputs: Iterable[Path] = ()) -> Store:
+        """Return the store below ``out``, made if it is not there; none of the ``inputs`` may lie in it.
 
         Raises:
             InputError: ``out`` is a folder with something else in it, or cannot be written to.
@@ -29,7 +30,7 @@ class Store:
         runs = out / "runs"
         if out.is_dir() and any(out.iterdir()) and not runs.is_dir():
             raise InputError(f"{out} holds something else than a study; give --out another folder")
-        output_directory(out, force=True)
+        output_directory(out, force=True, inputs=inputs)
         return cls(output_directory(runs, force=True), code)
 
     def path(self, run: Run) -> Path:

@@ -10,7 +10,6 @@ import math
 from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import replace
-from pathlib import Path
 from types import TracebackType
 
 import numpy as np
@@ -19,7 +18,7 @@ from vedette.maps import GridFrame
 from vedette.record.explore.log import ExploreSnapshot, RobotSample
 from vedette.record.explore.markers import LinkMessages
 from vedette.record.ros import ros_names
-from vedette.record.topics import Topics, atomic_stream
+from vedette.record.topics import Place, Topics, atomic_stream
 
 
 class ExploreMcapWriter:
@@ -30,7 +29,7 @@ class ExploreMcapWriter:
 
     def __init__(
         self,
-        path: Path | str,
+        place: Place,
         world: str,
         frame: GridFrame,
         planning: GridFrame,
@@ -49,7 +48,7 @@ class ExploreMcapWriter:
         self._ros = LinkMessages()
         self._closed = False
         self._files = ExitStack()
-        stream = self._files.enter_context(atomic_stream(path))
+        stream = self._files.enter_context(atomic_stream(place))
         self._topics = Topics(stream, self._ros)
         self._topics.describe({"world": world} | {f"robot {name}": ros for name, ros in self._names.items()})
 

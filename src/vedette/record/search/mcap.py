@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
-from pathlib import Path
 from types import TracebackType
 
 import numpy as np
 
 from vedette.record.ros import RosMessages, ros_names
 from vedette.record.search.log import Scene, SearchSnapshot, VehicleSample
-from vedette.record.topics import Topics, atomic_stream
+from vedette.record.topics import Place, Topics, atomic_stream
 
 _GRID_PERIOD = 4.0  # of writing the pdf [s]
 
@@ -18,7 +17,7 @@ _GRID_PERIOD = 4.0  # of writing the pdf [s]
 class SearchMcapWriter:
     """Write each snapshot: a context manager, and a ``SearchSink``. ``docs/outputs.md`` lists the topics."""
 
-    def __init__(self, path: Path | str, scene: Scene) -> None:
+    def __init__(self, place: Place, scene: Scene) -> None:
         """Open the file."""
         self._frame = scene.frame
         self._names = ros_names(scene.vehicles)
@@ -29,7 +28,7 @@ class SearchMcapWriter:
         self._ros = RosMessages()
         self._closed = False
         self._files = ExitStack()
-        self._topics = Topics(self._files.enter_context(atomic_stream(path)), self._ros)
+        self._topics = Topics(self._files.enter_context(atomic_stream(place)), self._ros)
         pairs = zip(scene.vehicles, self._names, strict=True)
         self._topics.describe({"scenario": scene.name} | {f"vehicle {name}": ros for name, ros in pairs})
 

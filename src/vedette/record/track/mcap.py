@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
-from pathlib import Path
 from types import TracebackType
 from typing import Any
 
@@ -11,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.record.ros import RosMessages, ros_names
-from vedette.record.topics import Topics, atomic_stream
+from vedette.record.topics import Place, Topics, atomic_stream
 from vedette.record.track.log import Scene, TrackSnapshot, VehicleSample
 
 
@@ -40,7 +39,7 @@ class TrackMessages(RosMessages):
 class TrackMcapWriter:
     """Write each snapshot: a context manager, and a ``TrackSink``; ``docs/outputs.md`` lists the topics."""
 
-    def __init__(self, path: Path | str, scene: Scene) -> None:
+    def __init__(self, place: Place, scene: Scene) -> None:
         """Open the file."""
         self._vehicles = ros_names(scene.vehicles)
         self._targets = ros_names(scene.targets)
@@ -48,7 +47,7 @@ class TrackMcapWriter:
         self._ros = TrackMessages()
         self._closed = False
         self._files = ExitStack()
-        self._topics = Topics(self._files.enter_context(atomic_stream(path)), self._ros)
+        self._topics = Topics(self._files.enter_context(atomic_stream(place)), self._ros)
         pairs = [("vehicle", scene.vehicles, self._vehicles), ("target", scene.targets, self._targets)]
         named = {f"{k} {a}": b for k, names, ros in pairs for a, b in zip(names, ros, strict=True)}
         self._topics.describe({"scenario": scene.name} | named)

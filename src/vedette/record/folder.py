@@ -1,0 +1,82 @@
+"""The folder of a run: nobody else's while the run lasts, and another beside it should it vanish."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Iterable
+from contextlib import ExitStack
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from vedette.errors import InputWarning
+from vedette.record.files import new_directory, output_directory
+from vedette.record.lock import locked
+
+
+class OutputFolder:
+    """A folder for results, entered for as long as they are written: ``folder / name`` is a place in it.
+
+    A second run that enters the same folder is refused. A folder that is removed, moved away or replaced is
+    noticed when it is next looked at, which `update` does, so that it serves as a sink: another one beside it
+    takes its place, and an `InputWarning` says so.
+    """
+
+    def __init__(self, path: Path) -> None:
+        """Take a folder that is there."""
+        self._path = path
+        self._entered = ExitStack()
+        self._identity = path.stat()
+
+    @classmethod
+    def make(cls, out: Path | None, force: bool, stem: str, inputs: Iterable[Path] = ()) -> OutputFolder:
+        """Make the folder ``out``, or without one ``runs/STEM-001`` or whatever number is free.
+
+        Raises:
+            InputError: as `output_directory`.
+        """
+        return cls(new_directory("runs", stem) if out is None else output_directory(out, force, inputs))
+
+    def __enter__(self) -> Self:
+        """Keep the folder to this run.
+
+        Raises:
+            InputError: another run has it.
+        """
+        self._entered.enter_context(locked(self._path))
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Leave it to others."""
+        self._entered.close()
+
+    @property
+    def path(self) -> Path:
+        """Where the folder is now.
+
+        Raises:
+            InputError: it has vanished, and none can be made beside it.
+        """
+        if not self._is_there():
+            vanished, self._path = self._path, new_directory(self._path.parent, self._path.name)
+            self._identity = self._path.stat()
+            self._entered.enter_context(locked(self._path))
+            warnings.warn(f"{vanished} has vanished; results go to {self._path}", InputWarning, stacklevel=3)
+        return self._path
+
+    def __truediv__(self, name: str) -> Path:
+        """Return the place of a file."""
+        return self.path / name
+
+    def update(self, snapshot: object) -> None:
+        """Look whether the folder is still there."""
+        _ = self.path
+
+    def _is_there(self) -> bool:
+        try:
+            return os.path.samestat(self._identity, self._path.stat())
+        except OSError:
+            return False
