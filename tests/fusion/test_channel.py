@@ -20,7 +20,8 @@ from tests.support.fusion_network import (
     sparse_evidence,
 )
 from vedette.fusion import ChannelFilter
-from vedette.fusion.codec import Codec, Payload
+from vedette.fusion.codec import Codec
+from vedette.fusion.link import Payload
 from vedette.fusion.packing import WordPacking, join_word, split_word
 from vedette.fusion.snapshots import Delta
 from vedette.fusion.tiles import (

@@ -25,8 +25,9 @@ from vedette.fusion.gaussian import (
 )
 from vedette.fusion.gaussian.wire import TrackMessage
 from vedette.fusion.gaussian.wire import encode as encode_tracks
+from vedette.fusion.link import Payload
 from vedette.fusion.steps import Sparse
-from vedette.fusion.steps.wire import Payload, Section, pack
+from vedette.fusion.steps.wire import Entries, pack
 from vedette.fusion.steps.wire import encode as encode_steps
 
 Floats = NDArray[np.float64]
@@ -442,7 +443,7 @@ def evidence(*elements: Sparse, robot: int = 7, steps: int = 1) -> bytes:
     """What a robot tells that holds these elements, one after another, of the first steps."""
     encode = Likelihoods(Packing(2, 4), 1.0, 1e4).elements.encode
     entries = b"".join(pack(k % steps, encode(element)) for k, element in enumerate(elements))
-    return encode_steps(Payload(3, None, (), (Section(robot, 3, 0, len(elements), entries),)))
+    return encode_steps(Payload(3, sections=[((robot, 3), Entries(0, len(elements), entries))]))
 
 
 def of_first_entry(value: int) -> Sparse:

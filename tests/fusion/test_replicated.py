@@ -20,8 +20,8 @@ from tests.support.fusion_network import (
     sparse_evidence,
 )
 from vedette.fusion import FIRM, ReplicatedEvidence
-from vedette.fusion.codec import Codec, Payload
-from vedette.fusion.link import Greeting, Link
+from vedette.fusion.codec import Codec
+from vedette.fusion.link import Greeting, Link, Payload
 from vedette.fusion.packing import CodePacking
 from vedette.fusion.snapshots import Delta, Snapshot
 from vedette.fusion.tiles import CELLS, LEVELS, Tiling, codes_of
@@ -198,12 +198,12 @@ def test_a_payload_of_a_neighbours_earlier_start_come_late_does_not_hide_what_th
 
 
 def test_a_greeting_is_repeated_until_it_is_answered() -> None:
-    link = Link(nonce=5, resend_after=2.0)
+    link: Link[Delta[np.uint8]] = Link(0, 5, resend_after=2.0)
     assert link.greeting(0.0) == Greeting(-1, True)
     assert link.greeting(1.0) is None
-    link.hear(9, Greeting(-1, False), {}, 1.5)  # theirs, not an answer
+    link.hear(Payload(9, Greeting(-1, False)), 1.5)  # theirs, not an answer
     assert link.greeting(2.0) == Greeting(9, True)
-    link.hear(9, Greeting(5, True), {}, 2.5)
+    link.hear(Payload(9, Greeting(5, True)), 2.5)
     assert link.greeting(5.0) == Greeting(9, False)
     assert link.greeting(9.0) is None
 
@@ -302,7 +302,7 @@ def test_digests_are_equal_iff_maps_and_counts_are() -> None:
 
 
 @st.composite
-def payloads(draw: st.DrawFn) -> Payload:
+def payloads(draw: st.DrawFn) -> Payload[Delta[np.uint8]]:
     rng = np.random.default_rng(draw(st.integers(0, 10**6)))
     numbers = st.integers(0, 2**40)
     sections = []
@@ -320,7 +320,7 @@ def payloads(draw: st.DrawFn) -> Payload:
 
 @settings(deadline=None, max_examples=60)
 @given(payload=payloads())
-def test_decoding_undoes_encoding(payload: Payload) -> None:
+def test_decoding_undoes_encoding(payload: Payload[Delta[np.uint8]]) -> None:
     back = CODEC.decode(CODEC.encode(payload))
     assert (back.nonce, back.greeting, back.have) == (payload.nonce, payload.greeting, payload.have)
     assert [key for key, _ in back.sections] == [key for key, _ in payload.sections]
@@ -336,7 +336,7 @@ def test_decoding_undoes_encoding(payload: Payload) -> None:
 @settings(deadline=None, max_examples=150)
 @given(payload=payloads(), data=st.data())
 def test_damaged_payloads_raise_value_error_or_decode_to_something_valid(
-    payload: Payload, data: st.DataObject
+    payload: Payload[Delta[np.uint8]], data: st.DataObject
 ) -> None:
     good = CODEC.encode(payload)
     cut = data.draw(st.integers(0, len(good) - 1))
@@ -362,6 +362,13 @@ def test_claims_about_a_robots_own_evidence_are_refused() -> None:
     forged = Delta(0, 5, tiles, mask, np.full(CELLS, 2, dtype=np.uint8))
     with pytest.raises(ValueError, match="never published"):
         robot(0).receive(1, CODEC.encode(Payload(3, sections=[((0, 7), forged)])), 0.0)
+
+
+def test_two_sections_of_one_contributor_are_refused() -> None:
+    delta = Delta(0, 1, np.array([0]), np.zeros((1, CELLS), np.bool_), np.zeros(0, np.uint8))
+    twice = CODEC.encode(Payload(3, sections=[((2, 4), delta)] * 2))
+    with pytest.raises(ValueError, match="two sections of one stream"):
+        robot(0).receive(1, twice, 0.0)
 
 
 def test_more_tiles_than_a_payload_may_hold_are_refused() -> None:

@@ -20,10 +20,9 @@ from vedette.domains.search.impact import ImpactCodec as SearchCodec
 from vedette.domains.tracking.codec import ImpactCodec as TrackingCodec
 from vedette.domains.tracking.impact import impact_of
 from vedette.fusion.codec import Codec as FusionCodec
-from vedette.fusion.codec import Payload
 from vedette.fusion.gaussian import Information, Packing
 from vedette.fusion.gaussian import wire as track_wire
-from vedette.fusion.link import Greeting
+from vedette.fusion.link import Greeting, Payload
 from vedette.fusion.packing import CodePacking, WordPacking
 from vedette.fusion.snapshots import Delta
 from vedette.fusion.steps import SparseIntegers
@@ -140,15 +139,8 @@ def _map_codec(words: bool) -> FusionCodec:
 
 
 def _step_payloads() -> list[Any]:
-    return [
-        step_wire.Payload(5, Greeting(-1, True)),
-        step_wire.Payload(
-            5,
-            None,
-            (step_wire.Have(1, 5, 2),),
-            (step_wire.Section(1, 5, 0, 1, step_wire.pack(4, b"body" * 9)),),
-        ),
-    ]
+    entries = step_wire.Entries(0, 1, step_wire.pack(4, b"body" * 9))
+    return [Payload(5, Greeting(-1, True)), Payload(5, None, {(1, 5): 2}, [((1, 5), entries)])]
 
 
 def _entries() -> list[Any]:

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.fusion.codec import Codec, Payload
-from vedette.fusion.link import Boots, Key, Link, check_boot
+from vedette.fusion.codec import Codec
+from vedette.fusion.edges import Edges
+from vedette.fusion.link import RESEND_AFTER, Link
 from vedette.fusion.packing import WordPacking, join_word, split_word
-from vedette.fusion.snapshots import NONE, Snapshot, tiles_to_publish
+from vedette.fusion.snapshots import NONE, Delta, Snapshot, tiles_to_publish
 from vedette.fusion.tiles import (
     CELLS,
     CLASSES,
@@ -24,20 +25,27 @@ from vedette.fusion.tiles import (
     saturated,
 )
 
-RESEND_AFTER = 2.5  # [s]
-SESSION_BITS = 24
-
 
 @dataclass(eq=False)
 class Edge:
     """One end of a tree edge: the latest ``mu`` either way; their sum is the edge's common information."""
 
-    link: Link
-    inbox: Snapshot  # mu_{k->i}: sum over the robots behind the neighbour
-    outbox: Snapshot  # mu_{i->k}: sum over the robots on this side
+    link: Link[Delta[np.int32]]
+    inbox: Snapshot[np.int32]  # mu_{k->i}: sum over the robots behind the neighbour
+    outbox: Snapshot[np.int32]  # mu_{i->k}: sum over the robots on this side
+
+    @property
+    def heard(self) -> int:
+        """Version of the inbox."""
+        return self.inbox.version
+
+    @property
+    def told(self) -> int:
+        """Version of the outbox."""
+        return self.outbox.version
 
 
-class ChannelFilter:
+class ChannelFilter(TeamMap):
     """``mu_{i->j} = own_i + sum_{k != j} mu_{k->i}``; team = ``own_i + sum_k mu_{k->i}``, exact on a tree.
 
     What crosses an edge is state, not increments: absolute sums under a version number, so that loss,
@@ -60,34 +68,14 @@ class ChannelFilter:
         resend_after: float = RESEND_AFTER,
     ) -> None:
         """Start with nothing known; ``boot < 2**38`` must differ from those of the robot's earlier starts."""
-        check_boot(boot)
-        self._robot, self._boot, self._session = robot, boot, 0
-        self._tiling = Tiling(*shape)
+        super().__init__(Tiling(*shape), counts_size)
         self._size = counts_size + 1  # the last count is 1 for every robot that has published
         self._codec = Codec(self._tiling, self._size, WordPacking())
-        self._team = TeamMap(self._tiling, counts_size)
         self._own = Snapshot(self._tiling.count, self._size, np.uint8)
         self._inherited: NDArray[np.uint8] = np.zeros((self._tiling.count, CELLS), dtype=np.uint8)
         self._touched: NDArray[np.bool_] = np.zeros(self._tiling.count, dtype=np.bool_)
         self._robots = 0
-        self._edges: dict[int, Edge] = {}
-        self._boots = Boots()
-        self._resend_after = resend_after
-
-    @property
-    def classes(self) -> NDArray[np.uint8]:
-        """``(rows, cols)`` team map: UNKNOWN, FREE or OCCUPIED; the same array, kept up to date."""
-        return self._team.classes
-
-    @property
-    def counts(self) -> NDArray[np.int64]:
-        """``(counts_size,)`` sum of the counts of all robots on the tree."""
-        return self._team.counts
-
-    @property
-    def digest(self) -> int:
-        """64 bits that agree iff team map and counts do."""
-        return self._team.digest
+        self._edges: Edges[Edge, Delta[np.int32]] = Edges(robot, boot, resend_after)
 
     def contributors(self) -> int:
         """Return how many robots on the tree have published evidence."""
@@ -107,31 +95,15 @@ class ChannelFilter:
 
     def set_neighbours(self, neighbours: Sequence[int]) -> None:
         """Take these as the neighbours on the tree; evidence from lost ones is kept as inherited."""
-        lost = [self._edges.pop(n) for n in self._edges.keys() - set(neighbours)]
-        for edge in lost:
-            self._inherit(edge.inbox)
-        for neighbour in neighbours:
-            if neighbour not in self._edges:
-                self._edges[neighbour] = self._new_edge()
+        self._edges.set_neighbours(
+            neighbours, self._inherit, lambda link: Edge(link, self._box(), self._box())
+        )
         self._update(np.flatnonzero(self._touched))
 
     def outgoing(self, neighbour: int, now: float) -> bytes | None:
         """Return what the neighbour lacks, and what it waits to see acknowledged; None if nothing."""
-        edge = self._edges[neighbour]
-        link = edge.link
-        greeting = link.greeting(now)
-        inbound: Key = (neighbour, link.peer)
-        have = {inbound: edge.inbox.version} if link.owed or (greeting and link.peer >= 0) else {}
-        link.owed.clear()
-        payload = Payload(link.nonce, greeting, have)
-        key: Key = (self._robot, link.nonce)
-        base = link.base(key, now)
-        if link.met and base < edge.outbox.version:
-            link.sending(key, base, edge.outbox.version, now)
-            payload.sections.append((key, edge.outbox.since(base)))
-        if greeting is None and not have and not payload.sections:
-            return None
-        return self._codec.encode(payload)
+        payload = self._edges.tell(neighbour, self._edges[neighbour].outbox.since, now)
+        return None if payload is None else self._codec.encode(payload)
 
     def receive(self, neighbour: int, payload: bytes, now: float) -> NDArray[np.int64]:
         """Take over a neighbour's sums; returns the tiles in which the team map changed.
@@ -140,50 +112,30 @@ class ChannelFilter:
         changes nothing, if the payload is malformed.
         """
         message = self._codec.decode(payload)
-        edge = self._edges.get(neighbour)
-        self._check(message, neighbour, edge)
-        if edge is None or self._is_past(neighbour, edge, message.nonce):
+        heard = self._edges.hear(neighbour, message, now)
+        if heard is None:
             return NONE
-        changed = [NONE]
-        if edge.link.peer not in (-1, message.nonce):
-            changed.append(self._blank(edge))
-        edge.link.hear(message.nonce, message.greeting, message.have, now)
-        for key, delta in message.sections:
-            edge.link.owed.add(key)
+        edge, anew = heard
+        changed = [self._blank(edge)] if anew else [NONE]
+        for _, delta in message.sections:
             change = edge.inbox.apply(delta)
             if change is not None:
                 changed.append(self._update(change.tiles))
         return np.unique(np.concatenate(changed))
 
-    def _new_edge(self) -> Edge:
-        self._session += 1
-        nonce = (self._boot << SESSION_BITS) + self._session
-        boxes = [Snapshot(self._tiling.count, self._size, np.int32) for _ in range(2)]
-        return Edge(Link(nonce, self._resend_after), *boxes)
-
-    def _is_past(self, neighbour: int, edge: Edge, nonce: int) -> bool:
-        boot, peer = nonce >> SESSION_BITS, edge.link.peer
-        return self._boots.is_stale(neighbour, boot) or (boot == peer >> SESSION_BITS and nonce < peer)
-
-    def _check(self, message: Payload, neighbour: int, edge: Edge | None) -> None:
-        if any(key != (neighbour, message.nonce) for key, _ in message.sections):
-            raise ValueError("fusion payload: a section is not the neighbour's own sum")
-        if edge is None:
-            return
-        claimed = message.have.get((self._robot, edge.link.nonce), 0)
-        if claimed > edge.outbox.version:
-            raise ValueError("fusion payload: claims evidence of this robot that it never sent")
+    def _box(self) -> Snapshot[np.int32]:
+        return Snapshot(self._tiling.count, self._size, np.int32)
 
     def _blank(self, edge: Edge) -> NDArray[np.int64]:
         """The neighbour has started anew: inherit what came from it, and expect its sums from the start."""
-        self._inherit(edge.inbox)
+        self._inherit(edge)
         tiles = edge.inbox.known_tiles
-        edge.inbox = Snapshot(self._tiling.count, self._size, np.int32)
+        edge.inbox = self._box()
         return self._update(tiles)
 
-    def _inherit(self, inbox: Snapshot) -> None:
-        tiles = inbox.known_tiles
-        code, live = split_word(inbox.values[tiles])
+    def _inherit(self, edge: Edge) -> None:
+        tiles = edge.inbox.known_tiles
+        code, live = split_word(edge.inbox.values[tiles])
         self._inherited[tiles] = np.maximum(self._inherited[tiles], np.maximum(code, code_of_sums(live)))
 
     def _update(self, tiles: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -203,7 +155,7 @@ class ChannelFilter:
             news = np.where(inherited > code[neighbour], inherited, told)
             sums = join_word(news, saturated(total - live[neighbour]))
             edge.outbox.write(tiles, sums, counts - edge.inbox.counts)
-        self._team.counts[:] = counts[:-1]
+        self.counts[:] = counts[:-1]
         self._robots = int(counts[-1])
         shown = np.where(total == 0, CLASSES[inherited], classes_of(total))
-        return self._team.show(tiles, shown)
+        return self.show(tiles, shown)

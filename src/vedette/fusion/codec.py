@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Iterable
-from dataclasses import dataclass, field
-from typing import NamedTuple
+from dataclasses import dataclass
+from typing import Generic, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.fusion.link import Greeting, Key
-from vedette.fusion.packing import Body, Packing, from_planes, planes
-from vedette.fusion.snapshots import Delta
+from vedette import wire
+from vedette.fusion.link import MOST_SECTIONS, Greeting, Key, Payload
+from vedette.fusion.packing import Body, Packing
+from vedette.fusion.planes import from_planes, planes
+from vedette.fusion.snapshots import Delta, ValueT
 from vedette.fusion.tiles import Tiling
 
 MOST_TILES = 2048  # in a payload; one section may exceed it, up to the whole map
-MOST_SECTIONS = 1024
 NUMBER_BITS = 63
 MOST_COUNT = 1 << 53
 
@@ -25,24 +26,14 @@ _GREETING, _WANTS, _BODY = 16, 32, 64
 
 
 @dataclass(frozen=True)
-class Payload:
-    """What one robot tells one neighbour."""
-
-    nonce: int  # the sender's side of the link
-    greeting: Greeting | None = None
-    have: dict[Key, int] = field(default_factory=dict)  # versions that the sender holds
-    sections: list[tuple[Key, Delta]] = field(default_factory=list)
-
-
-@dataclass(frozen=True)
-class Codec:
+class Codec(Generic[ValueT]):
     """Encodes and decodes the payloads of one team: same map shape, counts size and packing."""
 
     tiling: Tiling
     counts_size: int
-    packing: Packing
+    packing: Packing[ValueT]
 
-    def encode(self, payload: Payload) -> bytes:
+    def encode(self, payload: Payload[Delta[ValueT]]) -> bytes:
         """Return the payload's bytes."""
         head, body = bytearray(), bytearray()
         flags = _BODY if payload.sections else 0
@@ -64,11 +55,11 @@ class Codec:
             _put(head, np.diff(delta.tiles, prepend=0).tolist())
             body += self.packing.pack(delta)
             if delta.counts is not None:
-                body += planes(delta.counts.astype("<i8"))
+                body += planes(delta.counts, 8)
         deflate = zlib.compressobj(6, zlib.DEFLATED, -15, 9)
         return bytes(head) + deflate.compress(bytes(body)) + deflate.flush()
 
-    def decode(self, data: bytes) -> Payload:
+    def decode(self, data: bytes) -> Payload[Delta[ValueT]]:
         """Return the payload; ValueError if anything in it is malformed or out of range."""
         head = _Head(data)
         flags = head.byte()
@@ -83,7 +74,7 @@ class Codec:
             return Payload(own, greeting, have)
         outlines = self._outlines(head, own)
         most = sum(self.packing.most_bytes * len(o.tiles) + 8 * self.counts_size * o.counts for o in outlines)
-        body = Body(_inflate(head.rest(), most))
+        body = Body(wire.inflate(head.rest(), most, "fusion payload"))
         sections = [(outline.key, self._delta(outline, body)) for outline in outlines]
         body.finish()
         return Payload(own, greeting, have, sections)
@@ -106,17 +97,15 @@ class Codec:
             if tiles and (ids[-1] >= self.tiling.count or (np.diff(ids) <= 0).any()):
                 raise ValueError("fusion payload: tile ids must increase and lie in the map")
             outlines.append(_Outline(key, base, base + ahead, ids, bool(counts)))
-        if len({outline.key for outline in outlines}) < number:
-            raise ValueError("fusion payload: two sections of one stream")
         return outlines
 
-    def _delta(self, outline: _Outline, body: Body) -> Delta:
+    def _delta(self, outline: _Outline, body: Body) -> Delta[ValueT]:
         mask, values = self.packing.unpack(body, len(outline.tiles))
         if (mask & ~self.tiling.inside(outline.tiles)).any():
             raise ValueError("fusion payload: a cell lies outside the map")
         counts = None
         if outline.counts:
-            counts = from_planes(body, self.counts_size, "<i8").astype(np.int64)
+            counts = from_planes(body.take(8 * self.counts_size), self.counts_size, 8)
             if (counts > MOST_COUNT).any() or (counts < -MOST_COUNT).any():
                 raise ValueError("fusion payload: a count is out of range")
         return Delta(outline.base, outline.version, outline.tiles, mask, values, counts)
@@ -170,15 +159,3 @@ def _put(head: bytearray, numbers: Iterable[int]) -> None:
             head.append(number & 127 | 128)
             number >>= 7
         head.append(number)
-
-
-def _inflate(data: bytes, most: int) -> bytes:
-    """Inflate at most ``most`` bytes, so that a crafted payload cannot exhaust the memory."""
-    stream = zlib.decompressobj(-15)
-    try:
-        body = stream.decompress(data, most + 1)
-    except zlib.error as error:
-        raise ValueError(f"fusion payload: {error}") from None
-    if len(body) > most or not stream.eof or stream.unused_data:
-        raise ValueError("fusion payload: the body does not end where it should")
-    return body

@@ -1,13 +1,34 @@
-"""What one neighbour is known to hold: acknowledgements, resending, and the greeting of a new link."""
+"""What one neighbour is told, and known to hold: versions, acknowledgements, resending, greetings."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Generic, NamedTuple, Protocol, TypeVar
 
 Key = tuple[int, int]  # a stream of versions: (robot, nonce)
 
+RESEND_AFTER = 2.5  # [s]: more than two of the agents' 1 s rounds, one to send and one to acknowledge
 MOST_STREAMS = 4096  # that one neighbour is taken to hold
+MOST_SECTIONS = 1024  # in a payload
+MOST_BYTES = 1 << 20  # of evidence in a payload, from which no further section is begun
 BOOT_BITS = 38
+
+
+class News(Protocol):
+    """What turns a version of a stream into a later one."""
+
+    @property
+    def version(self) -> int:
+        """The later version."""
+
+    @property
+    def size(self) -> int:
+        """Bytes, about."""
+
+
+NewsT = TypeVar("NewsT", bound=News)
+Stream = tuple[Key, int, Callable[[int], NewsT]]  # its latest version, and what is new since an earlier one
 
 
 class Greeting(NamedTuple):
@@ -17,7 +38,23 @@ class Greeting(NamedTuple):
     wants: bool  # the receiver's greeting is wanted in turn
 
 
-class Link:
+@dataclass(frozen=True)
+class Payload(Generic[NewsT]):
+    """What one robot tells one neighbour."""
+
+    nonce: int  # the sender's side of the link
+    greeting: Greeting | None = None
+    have: dict[Key, int] = field(default_factory=dict)  # versions that the sender holds
+    sections: list[tuple[Key, NewsT]] = field(default_factory=list)
+
+    def check(self, key: Key, version: int) -> None:
+        """Raise ValueError if it tells more of the receiver's own stream than there is."""
+        told = [*self.have.items(), *((stream, news.version) for stream, news in self.sections)]
+        if any(stream == key and more > version for stream, more in told):
+            raise ValueError("fusion payload: claims evidence of this robot that it never published")
+
+
+class Link(Generic[NewsT]):
     """One robot's book-keeping of one neighbour; versions only, no evidence.
 
     Optimistic: what was sent counts as held until ``resend_after`` seconds pass without the neighbour's
@@ -25,11 +62,11 @@ class Link:
     sent once on a good link and arrives in the end on a lossy one.
     """
 
-    def __init__(self, nonce: int, resend_after: float) -> None:
-        self.nonce = nonce  # our side of the link, told in every payload
+    def __init__(self, robot: int, nonce: int, resend_after: float) -> None:
+        self.key = (robot, nonce)  # our side of the link; the nonce is told in every payload
         self.peer = -1  # the neighbour's side; -1: never heard
-        self.met = False  # they have told everything that they hold
-        self.owed: set[Key] = set()  # streams to acknowledge
+        self._met = False  # they have told everything that they hold
+        self._owed: set[Key] = set()  # streams to acknowledge
         self._resend_after = resend_after
         self._owes_greeting = False  # they asked what we hold
         self._answered = False  # they have answered our greeting
@@ -38,22 +75,33 @@ class Link:
         self._sent: dict[Key, int] = {}
         self._waiting_since: dict[Key, float] = {}
 
-    def holds(self, key: Key, version: int, now: float) -> None:
-        """Note that the neighbour holds this version."""
-        if version > self._have.get(key, 0) and (key in self._have or len(self._have) < MOST_STREAMS):
-            self._have[key] = version
-            self._waiting_since[key] = now
+    def hear(self, payload: Payload[NewsT], now: float) -> None:
+        """Note what a payload says of its sender's side of the link, and owe an acknowledgement."""
+        if payload.nonce != self.peer:
+            self._restart(payload.nonce)
+        if payload.greeting is not None:
+            self._met = True
+            self._answered |= payload.greeting.echo == self.key[1]
+            self._owes_greeting |= payload.greeting.wants
+        for key, version in payload.have.items():
+            self._holds(key, version, now)
+        for key, news in payload.sections:
+            if key != self.key:
+                self._owed.add(key)
+                self._holds(key, news.version, now)
 
-    def hear(self, nonce: int, greeting: Greeting | None, have: dict[Key, int], now: float) -> None:
-        """Note what a payload says of its sender's side of the link."""
-        if nonce != self.peer:
-            self._restart(nonce)
-        if greeting is not None:
-            self.met = True
-            self._answered |= greeting.echo == self.nonce
-            self._owes_greeting |= greeting.wants
-        for key, version in have.items():
-            self.holds(key, version, now)
+    def tell(
+        self, held: Mapping[Key, int], streams: Iterable[Stream[NewsT]], now: float
+    ) -> Payload[NewsT] | None:
+        """Return what the neighbour lacks of some streams, and what it waits to see; None if nothing.
+
+        ``held`` are the versions of all streams that come over this link.
+        """
+        greeting = self.greeting(now)
+        have = dict(held) if greeting else {key: held.get(key, 0) for key in sorted(self._owed)}
+        self._owed.clear()
+        sections = self._sections(streams, now) if self._met else []
+        return Payload(self.key[1], greeting, have, sections) if greeting or have or sections else None
 
     def greeting(self, now: float) -> Greeting | None:
         """Return the greeting due in the next payload: to answer theirs, and until ours is answered."""
@@ -65,23 +113,40 @@ class Link:
             self._asked_at = now
         return Greeting(self.peer, wants)
 
-    def base(self, key: Key, now: float) -> int:
+    def _sections(self, streams: Iterable[Stream[NewsT]], now: float) -> list[tuple[Key, NewsT]]:
+        sections: list[tuple[Key, NewsT]] = []
+        size = 0
+        for key, version, since in streams:
+            base = self._base(key, now)
+            if base >= version:
+                continue
+            if size > MOST_BYTES or len(sections) == MOST_SECTIONS:
+                break  # the rest goes with the next call
+            news = since(base)
+            if base == self._have.get(key, 0):
+                self._waiting_since[key] = now
+            self._sent[key] = news.version
+            sections.append((key, news))
+            size += news.size
+        return sections
+
+    def _holds(self, key: Key, version: int, now: float) -> None:
+        """Note that the neighbour holds this version."""
+        if version > self._have.get(key, 0) and (key in self._have or len(self._have) < MOST_STREAMS):
+            self._have[key] = version
+            self._waiting_since[key] = now
+
+    def _base(self, key: Key, now: float) -> int:
         """Return the version from which to send: what the neighbour holds, or soon will."""
         have = self._have.get(key, 0)
         sent = self._sent.get(key, 0)
         overdue = now - self._waiting_since.get(key, now) >= self._resend_after
         return have if sent < have or overdue else sent
 
-    def sending(self, key: Key, base: int, version: int, now: float) -> None:
-        """Note that ``(base, version]`` is on its way."""
-        if base == self._have.get(key, 0):
-            self._waiting_since[key] = now
-        self._sent[key] = version
-
     def _restart(self, peer: int) -> None:
         self.peer = peer
-        self.met = self._answered = False
-        self.owed.clear()
+        self._met = self._answered = False
+        self._owed.clear()
         self._have.clear()
         self._sent.clear()
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.fusion.snapshots import Delta
+from vedette.fusion.planes import from_planes, planes
+from vedette.fusion.snapshots import Delta, ValueT
 from vedette.fusion.tiles import CELLS, LEVELS, MOST_ROBOTS, contributors_of, sums_of
 
 
@@ -29,16 +30,16 @@ class Body:
             raise ValueError("fusion payload: the body is too long")
 
 
-class Packing(Protocol):
+class Packing(Protocol[ValueT]):
     """How the cells of a section stand in the body."""
 
     most_bytes: int  # a tile
 
-    def pack(self, delta: Delta) -> bytes:
+    def pack(self, delta: Delta[ValueT]) -> bytes:
         """Return the section's masks and values."""
         ...
 
-    def unpack(self, body: Body, tiles: int) -> tuple[NDArray[np.bool_], NDArray[Any]]:
+    def unpack(self, body: Body, tiles: int) -> tuple[NDArray[np.bool_], NDArray[ValueT]]:
         """Return ``(tiles, 1024)`` mask and the masked cells' values, all in range; else ValueError."""
         ...
 
@@ -48,7 +49,7 @@ class CodePacking:
 
     most_bytes = CELLS // 2
 
-    def pack(self, delta: Delta) -> bytes:
+    def pack(self, delta: Delta[np.uint8]) -> bytes:
         """Return 512 bytes a tile."""
         symbols = np.zeros(delta.mask.shape, dtype=np.uint8)
         symbols[delta.mask] = delta.values + 1
@@ -69,15 +70,16 @@ class WordPacking:
 
     most_bytes = CELLS // 8 + 4 * CELLS
 
-    def pack(self, delta: Delta) -> bytes:
+    def pack(self, delta: Delta[np.int32]) -> bytes:
         """Return 128 bytes a tile and 4 bytes a given cell."""
-        return np.packbits(delta.mask, axis=1).tobytes() + planes(delta.values.astype("<i4"))
+        return np.packbits(delta.mask, axis=1).tobytes() + planes(delta.values, 4)
 
     def unpack(self, body: Body, tiles: int) -> tuple[NDArray[np.bool_], NDArray[np.int32]]:
         """Return mask and words."""
         bits = body.take(tiles * CELLS // 8).reshape(tiles, CELLS // 8)
         mask = np.unpackbits(bits, axis=1).astype(np.bool_)
-        words = from_planes(body, int(mask.sum()), "<i4").astype(np.int32)
+        given = int(mask.sum())
+        words = from_planes(body.take(4 * given), given, 4).astype(np.int32)
         code, live = split_word(words)
         robots = contributors_of(live)
         if (code >= len(LEVELS)).any() or (robots > MOST_ROBOTS).any():
@@ -95,15 +97,3 @@ def join_word(code: NDArray[np.uint8], live: NDArray[np.int32]) -> NDArray[np.in
 def split_word(words: NDArray[np.int32]) -> tuple[NDArray[np.uint8], NDArray[np.int32]]:
     """Return ``(code, packed sum)`` of joined words."""
     return (words >> 28).astype(np.uint8), words & ((1 << 28) - 1)
-
-
-def planes(values: NDArray[Any]) -> bytes:
-    """All lowest bytes, then all second bytes, ...: small numbers leave long runs to deflate."""
-    return np.ascontiguousarray(values.view(np.uint8).reshape(len(values), values.itemsize).T).tobytes()
-
-
-def from_planes(body: Body, size: int, dtype: str) -> NDArray[Any]:
-    """Undo ``planes`` for ``size`` numbers of a little-endian type."""
-    width = np.dtype(dtype).itemsize
-    rows = body.take(size * width).reshape(width, size)
-    return np.ascontiguousarray(rows.T).view(dtype).reshape(size)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.fusion.digest import Digest, fingerprint
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 
 SIDE = 32  # cells along a tile's side
@@ -123,8 +123,7 @@ class TeamMap:
         self.counts: NDArray[np.int64] = np.zeros(counts_size, dtype=np.int64)
         self._tiling = tiling
         self._shown: NDArray[np.uint8] = np.zeros((tiling.count, CELLS), dtype=np.uint8)
-        self._prints: dict[int, int] = {}  # tile -> fingerprint of its classes
-        self._digest = 0  # exclusive or of the fingerprints
+        self._digest = Digest()  # of the tiles
 
     def show(self, tiles: NDArray[np.int64], classes: NDArray[np.uint8]) -> NDArray[np.int64]:
         """Put ``(len(tiles), 1024)`` classes on the map; return the tiles that changed."""
@@ -133,20 +132,12 @@ class TeamMap:
             tile, block = int(tiles[index]), classes[index]
             self._shown[tile] = block
             self._tiling.paint(self.classes, tile, block)
-            print_ = fingerprint(block.tobytes(), tile) if block.any() else 0
-            self._digest ^= self._prints.get(tile, 0) ^ print_
-            self._prints[tile] = print_
+            self._digest.put(tile, block.tobytes() if block.any() else b"")
         return tiles[changed]
 
     @property
     def digest(self) -> int:
         """64 bits, equal (up to 2^-64) for two robots iff their classes and counts are equal."""
         if not self.counts.any():
-            return self._digest
-        return self._digest ^ fingerprint(self.counts.astype("<i8").tobytes(), self._tiling.count)
-
-
-def fingerprint(data: bytes, tile: int) -> int:
-    """Return a 64-bit hash of some bytes and the number of the tile they stand in."""
-    salt = tile.to_bytes(8, "little")
-    return int.from_bytes(hashlib.blake2b(data, digest_size=8, salt=salt).digest(), "little")
+            return self._digest.value
+        return self._digest.value ^ fingerprint(self.counts.astype("<i8").tobytes(), self._tiling.count)

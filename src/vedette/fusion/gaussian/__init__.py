@@ -11,6 +11,7 @@ from vedette.fusion.gaussian.information import Information, Motion
 from vedette.fusion.gaussian.intersection import IntersectionFusion, intersect
 from vedette.fusion.gaussian.packing import Likelihoods, Packing
 from vedette.fusion.gaussian.refiltered import RefilteredTracks
+from vedette.fusion.link import RESEND_AFTER
 from vedette.fusion.steps import ReplicatedSteps, StepSums
 
 __all__ = [
@@ -28,7 +29,6 @@ __all__ = [
 ]
 
 WAYS = ("replicated", "sums", "channel", "intersection")
-RESEND_AFTER = 2.5  # [s]
 WINDOW = 30  # [steps]
 
 

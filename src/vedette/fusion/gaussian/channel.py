@@ -5,18 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from vedette.fusion.gaussian.edge import Edge
+from vedette.fusion.gaussian.exchange import TrackExchange
 from vedette.fusion.gaussian.information import Information, Motion
 from vedette.fusion.gaussian.intersection import intersect
-from vedette.fusion.gaussian.node import Node
 from vedette.fusion.gaussian.wire import TrackMessage, decode, encode
-from vedette.fusion.link import Boots, check_boot
+from vedette.fusion.link import RESEND_AFTER
 
-RESEND_AFTER = 2.5  # [s]
 GENERATION_BITS = 24
 _CYCLE = (1 << GENERATION_BITS) - 1  # generations 1.._CYCLE, then from 1 again
 
 
-class GaussianChannel:
+class GaussianChannel(TrackExchange[Edge]):
     """``Y_i <- Y_i + (Y_j - Y_ij)``, ``Y_ij <- Y_j`` on hearing j: what j says beyond what both know is new.
 
     Node and channels are predicted with the same F and Q at the same steps. What crosses an edge are whole
@@ -49,20 +48,11 @@ class GaussianChannel:
 
         ``boot < 2**38`` must differ from those of the robot's earlier starts.
         """
-        check_boot(boot)
-        self._robot, self._boot, self.generation = robot, boot, 0
-        self._node = Node(prior, motion, start)
+        super().__init__(robot, boot, prior, motion, start, resend_after=resend_after)
+        self.generation = 0
         self._origin: Information | None = prior  # the prior, predicted; None once there is a new generation
         self._settled = True  # the merging at the generation's start has come to this robot
         self._untouched = True  # has neither told nor taken in any tracks
-        self._edges: dict[int, Edge] = {}
-        self._boots = Boots()
-        self._resend_after = resend_after
-
-    @property
-    def digest(self) -> int:
-        """64 bits that agree if step and tracks do, up to rounding."""
-        return self._node.digest
 
     @property
     def _next(self) -> int:
@@ -71,32 +61,6 @@ class GaussianChannel:
     @property
     def _nonce(self) -> int:
         return (self._boot << GENERATION_BITS) + self.generation
-
-    def observe(self, step: int, likelihood: Information) -> None:
-        """Take in this robot's likelihood of the present step (or a later one: advance to it).
-
-        Raises InputError for an earlier step, and for a likelihood of the wrong shape.
-        """
-        self.advance(step)
-        self._node.observe(step, likelihood)
-        self._spread(None)
-
-    def advance(self, step: int) -> None:
-        """Predict node and channels up to a step; earlier ones change nothing."""
-        while self._node.step < step:
-            self._node.predict()
-            if self._origin is not None:
-                self._origin = self._node.forward(self._origin)
-            for edge in self._edges.values():
-                edge.common = {n: self._node.forward(track) for n, track in edge.common.items()}
-            for neighbour, edge in self._edges.items():
-                if edge.early is not None and edge.early.step <= self._node.step:
-                    message, edge.early = edge.early, None
-                    self._take(neighbour, edge, message, self._node.decoded(message))
-
-    def estimate(self) -> tuple[int, Information]:
-        """Return the step and the tracks, its evidence included."""
-        return self._node.step, self._node.track
 
     def set_neighbours(self, neighbours: Sequence[int]) -> None:
         """Take these as the neighbours on the tree; begin a new generation if tracks have been exchanged."""
@@ -108,7 +72,7 @@ class GaussianChannel:
     def outgoing(self, neighbour: int, now: float) -> bytes | None:
         """Return tracks that are news to the neighbour or got lost, or a bare acknowledgement; else None."""
         edge = self._edges[neighbour]
-        overdue = edge.outstanding and now - edge.sent_at >= self._resend_after
+        overdue = edge.is_overdue(now, self._resend_after)
         greets = edge.peer < 0 and now - edge.greeted_at >= self._resend_after
         tells = edge.news and edge.has_room and self._may_tell(edge)
         if not (tells or overdue or greets or edge.owed):
@@ -148,20 +112,23 @@ class GaussianChannel:
         edge.peer = message.nonce
         is_answer = message.echo == self._nonce
         if is_answer:
-            edge.acknowledged = max(edge.acknowledged, min(message.heard, edge.sent))
+            edge.acknowledge(message.heard)
         if theirs is not None and (is_answer or message.echo < 0):
             edge.owed = True
             self._take(neighbour, edge, message, theirs)
         if is_answer:
             edge.release(message)
 
-    def _take(self, neighbour: int, edge: Edge, message: TrackMessage, theirs: Information) -> None:
+    def _predict(self) -> None:
+        """Predict node and channels."""
+        super()._predict()
+        if self._origin is not None:
+            self._origin = self._node.forward(self._origin)
+        for edge in self._edges.values():
+            edge.common = {n: self._node.forward(track) for n, track in edge.common.items()}
+
+    def _merge(self, neighbour: int, edge: Edge, message: TrackMessage, theirs: Information) -> None:
         """Take in a neighbour's tracks: their news if we know what is common, all of an offer if we may."""
-        if message.sent <= edge.heard:
-            return
-        if message.step > self._node.step:
-            edge.early = message
-            return
         included = message.included if message.echo >= 0 else 0
         if included in edge.common:
             merged = self._node.track + theirs - edge.common[included]
@@ -185,10 +152,6 @@ class GaussianChannel:
         self._untouched = False
         self._spread(edge)
 
-    def _spread(self, source: Edge | None) -> None:
-        for edge in self._edges.values():
-            edge.news |= edge is not source
-
     # -- a generation's start: offers go inwards, the merged tracks outwards ------------------------------
 
     def _renew(self, generation: int) -> None:
@@ -198,7 +161,7 @@ class GaussianChannel:
         self.generation = generation
         self._settled = generation == 0 or not self._edges
         common = {} if self._origin is None else {0: self._origin}
-        self._edges = {neighbour: Edge(dict(common)) for neighbour in self._edges}
+        self._edges = {neighbour: Edge(common=dict(common)) for neighbour in self._edges}
 
     def _may_tell(self, edge: Edge) -> bool:
         """Once settled; before that, an offer, when all other neighbours' offers are merged."""

@@ -1,4 +1,4 @@
-"""One end of a channel: what both sides know, for every message that the other may have taken in."""
+"""What a robot knows of a neighbour: which tracks went and came, and on a channel what both sides know."""
 
 from __future__ import annotations
 
@@ -24,30 +24,39 @@ _NOTHING = Told()
 
 
 @dataclass(eq=False)
-class Edge:
-    """Numbers and common information of one neighbour, at the node's step.
+class Contact:
+    """Numbers of the tracks that go to one neighbour and come from it."""
+
+    peer: int = -1  # the neighbour's side of the edge; -1: never heard
+    sent: int = 0
+    acknowledged: int = 0
+    heard: int = 0
+    sent_at: float = -float("inf")
+    news: bool = True  # we hold something that we have not told
+    owed: bool = False  # an acknowledgement
+    early: TrackMessage | None = None  # of a step that we have not reached
+
+    def acknowledge(self, heard: int) -> None:
+        """Note that the neighbour has merged our tracks up to a number."""
+        self.acknowledged = max(self.acknowledged, min(heard, self.sent))
+
+    def is_overdue(self, now: float, resend_after: float) -> bool:
+        """Tell whether the latest tracks seem to have got lost."""
+        return self.acknowledged < self.sent and now - self.sent_at >= resend_after
+
+
+@dataclass(eq=False)
+class Edge(Contact):
+    """One end of a channel, at the node's step.
 
     ``common[n]`` is what both sides know if the neighbour has taken in the tracks that we sent as number n,
     and none later; 0 stands for none at all. Numbers that it cannot come back to are dropped.
     """
 
     common: dict[int, Information] = field(default_factory=dict)
-    peer: int = -1  # the neighbour's side of the edge; -1: never heard
-    sent: int = 0
-    acknowledged: int = 0
-    heard: int = 0
     latest: Told = _NOTHING
-    sent_at: float = -float("inf")
     greeted_at: float = -float("inf")
-    news: bool = True  # we hold something that we have not told
-    owed: bool = False  # an acknowledgement
     taken: bool = False  # the neighbour's offer is merged into our tracks
-    early: TrackMessage | None = None  # of a step that we have not reached
-
-    @property
-    def outstanding(self) -> bool:
-        """Whether the latest tracks may have got lost."""
-        return self.acknowledged < self.sent
 
     @property
     def has_room(self) -> bool:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vedette.errors import InputError
+from vedette.fusion.digest import fingerprint
 
 Floats = NDArray[np.float64]
 
@@ -90,8 +90,7 @@ class Information:
         shares = self.matrix / (scale[:, :, None] * scale[:, None, :])
         rounded = [shares * 2.0**20, np.log2(scale) * 2.0**20, self.vector / scale * 2.0**10]
         data = b"".join((np.rint(part) + 0.0).tobytes() for part in rounded)
-        salt = step.to_bytes(8, "little")
-        return int.from_bytes(hashlib.blake2b(data, digest_size=8, salt=salt).digest(), "little")
+        return fingerprint(data, step)
 
 
 @dataclass(frozen=True, eq=False)

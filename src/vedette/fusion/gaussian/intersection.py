@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vedette.fusion.gaussian.information import Floats, Information, Motion, log_det
-from vedette.fusion.gaussian.node import Node
+from vedette.fusion.gaussian.edge import Contact
+from vedette.fusion.gaussian.exchange import TrackExchange
+from vedette.fusion.gaussian.information import Floats, Information, log_det
 from vedette.fusion.gaussian.wire import TrackMessage, decode, encode
-from vedette.fusion.link import Boots, check_boot
 
-RESEND_AFTER = 2.5  # [s]
 NEWS = 1e-6  # [nats] gained by a merge, from which it is passed on
 _GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 _CUTS = 40  # golden sections: the weight to 1e-8
@@ -39,7 +35,7 @@ def best_weight(a: Floats, b: Floats) -> Floats:
     taken exactly where the slope there points outwards; of equals, a.
     """
     factor = np.linalg.inv(np.linalg.cholesky(a))
-    relative: NDArray[Any] = np.linalg.eigvalsh(factor @ b @ factor.swapaxes(1, 2))  # (T, d)
+    relative = np.linalg.eigvalsh(factor @ b @ factor.swapaxes(1, 2)).astype(np.float64)  # (T, d)
     low, high = np.zeros(len(a)), np.ones(len(a))
     for _ in range(_CUTS):
         left = high - _GOLDEN * (high - low)
@@ -52,26 +48,12 @@ def best_weight(a: Floats, b: Floats) -> Floats:
     return result
 
 
-def _gain(relative: NDArray[Any], weight: NDArray[Any]) -> Floats:
+def _gain(relative: Floats, weight: Floats) -> Floats:
     result: Floats = np.log(weight[:, None] + (1.0 - weight[:, None]) * relative).sum(axis=1)
     return result
 
 
-@dataclass(eq=False)
-class _Neighbour:
-    """What one neighbour is known to have heard."""
-
-    peer: int = -1  # the neighbour's boot; -1: never heard
-    news: bool = True
-    owed: bool = False
-    sent: int = 0
-    acknowledged: int = 0
-    heard: int = 0
-    sent_at: float = -np.inf
-    early: TrackMessage | None = None  # of a step that we have not reached
-
-
-class IntersectionFusion:
+class IntersectionFusion(TrackExchange[Contact]):
     """Every robot tells its tracks, and merges what it hears by covariance intersection.
 
     Consistent on any graph, cycles and changes included, without any book-keeping of who knows what: loss,
@@ -79,60 +61,14 @@ class IntersectionFusion:
     knows far less than the exact ways; and robots agree only nearly, so that rounds are approximate.
     """
 
-    def __init__(
-        self,
-        robot: int,
-        boot: int,
-        prior: Information,
-        motion: Motion,
-        start: int,
-        *,
-        resend_after: float = RESEND_AFTER,
-    ) -> None:
-        """``prior`` are the tracks at step ``start``, ahead of its evidence.
-
-        ``boot < 2**38`` must differ from those of the robot's earlier starts.
-        """
-        check_boot(boot)
-        self._robot, self._boot = robot, boot
-        self._node = Node(prior, motion, start)
-        self._neighbours: dict[int, _Neighbour] = {}
-        self._boots = Boots()
-        self._resend_after = resend_after
-
-    @property
-    def digest(self) -> int:
-        """64 bits that agree if the tracks do, up to rounding."""
-        return self._node.digest
-
-    def observe(self, step: int, likelihood: Information) -> None:
-        """Take in this robot's likelihood of the present step (or a later one: advance to it)."""
-        self.advance(step)
-        self._node.observe(step, likelihood)
-        for edge in self._neighbours.values():
-            edge.news = True
-
-    def advance(self, step: int) -> None:
-        """Predict up to a step; earlier ones change nothing."""
-        while self._node.step < step:
-            self._node.predict()
-            for name, edge in self._neighbours.items():
-                if edge.early is not None and edge.early.step <= self._node.step:
-                    message, edge.early = edge.early, None
-                    self._merge(name, edge, message, self._node.decoded(message))
-
-    def estimate(self) -> tuple[int, Information]:
-        """Return the step and the tracks, its evidence included."""
-        return self._node.step, self._node.track
-
     def set_neighbours(self, neighbours: Sequence[int]) -> None:
         """Exchange with exactly these robots from now on; the graph may have cycles."""
-        self._neighbours = {n: self._neighbours.get(n) or _Neighbour() for n in neighbours}
+        self._edges = {n: self._edges.get(n) or Contact() for n in neighbours}
 
     def outgoing(self, neighbour: int, now: float) -> bytes | None:
         """Return the tracks if they are news to the neighbour or got lost; None if there is nothing."""
-        edge = self._neighbours[neighbour]
-        overdue = edge.acknowledged < edge.sent and now - edge.sent_at >= self._resend_after
+        edge = self._edges[neighbour]
+        overdue = edge.is_overdue(now, self._resend_after)
         if not (edge.news or overdue or edge.owed):
             return None
         data = b""
@@ -150,30 +86,24 @@ class IntersectionFusion:
         """
         message = decode(payload)
         theirs = self._node.decoded(message) if message.data else None
-        edge = self._neighbours.get(neighbour)
+        edge = self._edges.get(neighbour)
         if edge is None or self._boots.is_stale(neighbour, message.nonce):
             return
         if edge.peer != message.nonce:
             edge.peer, edge.heard, edge.news, edge.early = message.nonce, 0, True, None
         if message.echo == self._boot:
-            edge.acknowledged = max(edge.acknowledged, min(message.heard, edge.sent))
+            edge.acknowledge(message.heard)
         if theirs is not None:
             edge.owed = True
-            self._merge(neighbour, edge, message, theirs)
+            self._take(neighbour, edge, message, theirs)
 
-    def _merge(self, neighbour: int, edge: _Neighbour, message: TrackMessage, theirs: Information) -> None:
-        if message.sent <= edge.heard:
-            return
-        if message.step > self._node.step:
-            edge.early = message
-            return
+    def _merge(self, neighbour: int, edge: Contact, message: TrackMessage, theirs: Information) -> None:
         edge.heard = message.sent
         before = self._node.track
         merged = intersect(before, theirs)
         gains = (log_det(merged.matrix) - log_det(before.matrix) > NEWS).any()
         if gains and self._node.can_keep(merged):
             self._node.track = merged
-            for name, other in self._neighbours.items():
-                other.news |= name != neighbour
+            self._spread(edge)
         if (log_det(self._node.track.matrix) - log_det(theirs.matrix) > NEWS).any():
             edge.news = True

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from vedette.errors import InputError
+from vedette.fusion.planes import from_planes, planes
 
 E = TypeVar("E")
 
@@ -118,7 +119,7 @@ class SparseIntegers:
         zigzag = (element.value << 1) ^ (element.value >> 63)
         widths = bytes([_width(gaps), _width(zigzag)])
         head = len(gaps).to_bytes(4, "little") + widths
-        return head + _planes(gaps, widths[0]) + _planes(zigzag, widths[1])
+        return head + planes(gaps, widths[0]) + planes(zigzag, widths[1])
 
     def decode(self, data: bytes) -> Sparse:
         """Return the element; ValueError if it is not the encoding of one."""
@@ -130,8 +131,8 @@ class SparseIntegers:
             raise ValueError("step evidence: an element has the wrong length")
         if number > self.size:
             raise ValueError(f"step evidence: {number} entries; the vector has {self.size}")
-        index = np.cumsum(_from_planes(data[_HEAD:split], number, gap_width) + 1) - 1
-        zigzag = _from_planes(data[split:], number, value_width)
+        index = np.cumsum(from_planes(data[_HEAD:split], number, gap_width) + 1) - 1
+        zigzag = from_planes(data[split:], number, value_width)
         value = (zigzag >> 1) ^ -(zigzag & 1)
         if number and index[-1] >= self.size:
             raise ValueError(f"step evidence: index {int(index[-1])} lies outside the vector")
@@ -174,13 +175,3 @@ class FixedPoint:
 def _width(numbers: NDArray[np.int64]) -> int:
     """Return the bytes that the largest of non-negative numbers needs."""
     return -(-int(numbers.max()).bit_length() // 8) if len(numbers) else 0
-
-
-def _planes(numbers: NDArray[np.int64], width: int) -> bytes:
-    return numbers.astype("<i8").view(np.uint8).reshape(-1, 8)[:, :width].T.tobytes()
-
-
-def _from_planes(data: bytes, number: int, width: int) -> NDArray[np.int64]:
-    wide = np.zeros((number, 8), dtype=np.uint8)
-    wide[:, :width] = np.frombuffer(data, dtype=np.uint8).reshape(width, number).T
-    return wide.view("<i8").reshape(number).astype(np.int64)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
 from typing import Generic, TypeVar
 
+from vedette.fusion.digest import Digest
 from vedette.fusion.steps.elements import Elements
 
 E = TypeVar("E")
@@ -16,12 +16,12 @@ class Totals(Generic[E]):
     def __init__(self, elements: Elements[E]) -> None:
         self._elements = elements
         self._sums: dict[int, E] = {}
-        self._prints: dict[int, int] = {}  # step -> fingerprint of its total
+        self._digest = Digest()  # of the totals
         self._unprinted: set[int] = set()
-        self._digest = 0  # exclusive or of the fingerprints
         self._changed: int | None = None
 
-    def __getitem__(self, step: int) -> E:
+    def total(self, step: int) -> E:
+        """Return the team's evidence of a step, as this robot knows it."""
         return self._sums.get(step, self._elements.zero())
 
     def steps(self) -> list[int]:
@@ -30,7 +30,7 @@ class Totals(Generic[E]):
 
     def add(self, step: int, element: E) -> None:
         """Add to a step's total."""
-        self._sums[step] = self._elements.add(self[step], element)
+        self._sums[step] = self._elements.add(self.total(step), element)
         if not self._elements.is_zero(element):
             self._unprinted.add(step)
             self._changed = step if self._changed is None else min(step, self._changed)
@@ -42,8 +42,7 @@ class Totals(Generic[E]):
 
     def seal(self, before: int) -> None:
         """Leave earlier steps out of the digest."""
-        for step in [step for step in self._prints if step < before]:
-            self._digest ^= self._prints.pop(step)
+        self._digest.drop(before)
         self._unprinted = {step for step in self._unprinted if step >= before}
 
     def take_changed(self) -> int | None:
@@ -56,15 +55,6 @@ class Totals(Generic[E]):
         """64 bits that agree (up to 2^-64) iff the totals do."""
         for step in self._unprinted:
             total = self._sums[step]
-            silent = self._elements.is_zero(total)
-            fresh = 0 if silent else fingerprint(self._elements.encode(total), step)
-            self._digest ^= self._prints.get(step, 0) ^ fresh
-            self._prints[step] = fresh
+            self._digest.put(step, b"" if self._elements.is_zero(total) else self._elements.encode(total))
         self._unprinted.clear()
-        return self._digest
-
-
-def fingerprint(data: bytes, step: int) -> int:
-    """Return a 64-bit hash of some bytes and the step they belong to."""
-    salt = step.to_bytes(8, "little")
-    return int.from_bytes(hashlib.blake2b(data, digest_size=8, salt=salt).digest(), "little")
+        return self._digest.value

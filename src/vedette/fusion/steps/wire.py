@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import struct
 import zlib
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import msgspec
 from msgspec import Meta
 
 from vedette import wire
-from vedette.fusion.link import Greeting, Key
+from vedette.fusion.link import MOST_SECTIONS, MOST_STREAMS, Greeting, Payload
 
 Number = Annotated[int, Meta(ge=0, le=2**62)]
 Step = int  # counted from the mission's start; 0..2^32 - 1
@@ -19,46 +19,43 @@ MOST_STEP = (1 << 32) - 1
 _ENTRY = struct.Struct("<II")  # step; twice the length, plus 1 if deflated
 
 
-class Have(msgspec.Struct, frozen=True, array_like=True):
-    """The version of one stream that the sender holds."""
-
-    robot: Number
-    nonce: Number
-    version: Number
-
-
-class Section(msgspec.Struct, frozen=True, array_like=True):
+class Entries(NamedTuple):
     """What turns any version of a stream in ``[base, version)`` into ``version``."""
 
-    robot: Number
-    nonce: Number
-    base: Number
-    version: Number
-    entries: bytes
-    robots: Number = 0  # that contributed to a sum
-
-
-class Payload(msgspec.Struct, frozen=True, array_like=True):
-    """What one robot tells one neighbour."""
-
-    nonce: Number  # the sender's side of the link
-    greeting: Greeting | None = None
-    have: Annotated[tuple[Have, ...], Meta(max_length=4096)] = ()
-    sections: Annotated[tuple[Section, ...], Meta(max_length=1024)] = ()
+    base: int
+    version: int
+    data: bytes
+    robots: int = 0  # that contributed to a sum
 
     @property
-    def versions(self) -> dict[Key, int]:
-        """What the sender holds."""
-        return {(have.robot, have.nonce): have.version for have in self.have}
+    def size(self) -> int:
+        """Bytes."""
+        return len(self.data)
 
 
-_DECODER = msgspec.msgpack.Decoder(Payload)
-encode = msgspec.msgpack.Encoder().encode
+_Have = tuple[Number, Number, Number]  # robot, nonce, version
+_Section = tuple[Number, Number, Number, Number, bytes, Number]  # robot, nonce, entries
+_Message = tuple[
+    Number,  # nonce
+    Greeting | None,
+    Annotated[tuple[_Have, ...], Meta(max_length=MOST_STREAMS)],
+    Annotated[tuple[_Section, ...], Meta(max_length=MOST_SECTIONS)],
+]
+_DECODER: msgspec.msgpack.Decoder[_Message] = msgspec.msgpack.Decoder(_Message)
 
 
-def decode(data: bytes) -> Payload:
+def encode(payload: Payload[Entries]) -> bytes:
+    """Return the payload's bytes."""
+    have = [(*key, version) for key, version in payload.have.items()]
+    sections = [(*key, *entries) for key, entries in payload.sections]
+    return msgspec.msgpack.encode((payload.nonce, payload.greeting, have, sections))
+
+
+def decode(data: bytes) -> Payload[Entries]:
     """Return the payload; ValueError if malformed."""
-    return wire.decode(_DECODER, data, "step evidence")
+    nonce, greeting, have, sections = wire.decode(_DECODER, data, "step evidence")
+    versions = {(robot, stream): version for robot, stream, version in have}
+    return Payload(nonce, greeting, versions, [(s[:2], Entries(*s[2:])) for s in sections])
 
 
 def check_step(step: Step) -> None:
@@ -86,18 +83,7 @@ def unpack(entries: bytes, most_bytes: int) -> list[tuple[Step, bytes, bytes]]:
         if len(body) < size // 2:
             raise ValueError("step evidence: an entry is truncated")
         end = at + _ENTRY.size + len(body)
-        found.append((step, _inflate(body, most_bytes) if size & 1 else body, entries[at:end]))
+        element = wire.inflate(body, most_bytes, "step evidence: an entry") if size & 1 else body
+        found.append((step, element, entries[at:end]))
         at = end
     return found
-
-
-def _inflate(data: bytes, most: int) -> bytes:
-    """Inflate at most ``most`` bytes, so that a crafted payload cannot exhaust the memory."""
-    stream = zlib.decompressobj(-15)
-    try:
-        body = stream.decompress(data, most + 1)
-    except zlib.error as error:
-        raise ValueError(f"step evidence: {error}") from None
-    if len(body) > most or not stream.eof or stream.unused_data:
-        raise ValueError("step evidence: an entry does not end where it should")
-    return body

@@ -1,0 +1,81 @@
+"""Everybody's evidence kept apart by contributor, and exchanged on any graph: for maps and steps alike."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, Generic, Protocol, TypeVar
+
+from vedette.fusion.link import Boots, Key, Link, NewsT, Payload, check_boot
+
+MOST_CONTRIBUTORS = 1024
+
+News_co = TypeVar("News_co", covariant=True)
+
+
+class Copy(Protocol[News_co]):
+    """A contributor's evidence as of one version; 0 is blank."""
+
+    @property
+    def version(self) -> int:
+        """The version."""
+
+    def since(self, base: int) -> News_co:
+        """Return what is new since an earlier version, in one piece or its beginning."""
+
+
+CopyT = TypeVar("CopyT", bound=Copy[Any])
+
+
+class Contributors(Generic[CopyT, NewsT]):
+    """A state-based replicated data type: copies of a contributor's evidence merge by "the later one wins".
+
+    A contributor is one start of one robot, ``(robot, boot)``; only it adds to its evidence. So loss,
+    repetition, reordering, cycles, partition, re-joining and restarts neither lose evidence that any holder
+    lives to tell, nor count any twice; a dead robot's evidence survives.
+    """
+
+    def __init__(self, robot: int, boot: int, blank: Callable[[], CopyT], resend_after: float) -> None:
+        """Start with nothing known; ``blank`` makes the copy of a contributor of whom nothing is known."""
+        check_boot(boot)
+        self.own = blank()
+        self.copies: dict[Key, CopyT] = {(robot, boot): self.own}
+        self._key: Key = (robot, boot)
+        self._blank = blank
+        self._links: dict[int, Link[NewsT]] = {}
+        self._boots = Boots()
+        self._resend_after = resend_after
+
+    def known(self) -> dict[Key, int]:
+        """Return the versions of all copies that are not blank."""
+        return {key: copy.version for key, copy in self.copies.items() if copy.version}
+
+    def set_neighbours(self, neighbours: Sequence[int]) -> None:
+        """Exchange with exactly these robots from now on; the graph may have cycles."""
+        after = self._resend_after
+        self._links = {n: self._links.get(n) or Link(*self._key, after) for n in neighbours}
+
+    def tell(self, neighbour: int, now: float) -> Payload[NewsT] | None:
+        """Return what the neighbour lacks, and what it waits to see acknowledged; None if nothing."""
+        streams = ((key, copy.version, copy.since) for key, copy in self.copies.items())
+        return self._links[neighbour].tell(self.known(), streams, now)
+
+    def hear(self, neighbour: int, payload: Payload[NewsT], now: float) -> list[tuple[Key, NewsT]]:
+        """Note what a neighbour says of its side of the link; return the news to merge into the copies.
+
+        Raises ValueError, and changes nothing, if the payload claims what cannot be.
+        """
+        keys = {key for key, _ in payload.sections}
+        payload.check(self._key, self.own.version)
+        if len(keys) < len(payload.sections):
+            raise ValueError("fusion payload: two sections of one stream")
+        if len(self.copies) + len(keys - self.copies.keys()) > MOST_CONTRIBUTORS:
+            raise ValueError(f"fusion payload: more than {MOST_CONTRIBUTORS} contributors")
+        link = self._links.get(neighbour)
+        # evidence is evidence, but what an earlier start of the neighbour held is lost
+        if link is not None and not self._boots.is_stale(neighbour, payload.nonce):
+            link.hear(payload, now)
+        news = [(key, more) for key, more in payload.sections if key != self._key]
+        for key, _ in news:
+            if key not in self.copies:
+                self.copies[key] = self._blank()
+        return news
