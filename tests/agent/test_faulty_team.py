@@ -106,12 +106,12 @@ def test_evidence_that_is_forgotten_or_counted_twice_is_noticed() -> None:
     mission.publish(0.0)
     assert law.check(mission)
     assert not law.check(mission)
-    fusion._team.counts += 1
-    fusion._own.version += 1
+    fusion.counts += 1
+    fusion._contributors.own.version += 1
     law.published((0, 1), 2, mission.own, mission.counts)
     with pytest.raises(LawBroken, match="counted twice"):
         law.check(mission)
-    fusion._own.version -= 2
+    fusion._contributors.own.version -= 2
     with pytest.raises(LawBroken, match="lost"):
         law.check(mission)
 

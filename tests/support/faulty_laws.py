@@ -28,7 +28,7 @@ def mission_of(agent: Agent) -> SiteMission:
 
 def versions_of(mission: SiteMission) -> Versions:
     """Return which version of whose evidence a robot holds."""
-    return {key: held.version for key, held in mission.fusion._snapshots.items() if held.version}
+    return mission.fusion._contributors.known()
 
 
 @dataclass(eq=False)
