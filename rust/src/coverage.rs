@@ -6,13 +6,15 @@
 pub mod footprint;
 pub mod impact;
 pub mod tours;
+pub mod viewpoints;
 
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
-use footprint::{footprints, viewpoints, Sensor};
+use footprint::{footprints, Sensor};
 use impact::{combine, marginal, miss_table};
 use tours::{best_tour, most_any_tour_adds, Stops};
+use viewpoints::viewpoints;
 
 pub const LAYERS: usize = 32;
 const STEPS_PER_NAT: f64 = 16.0;

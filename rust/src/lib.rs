@@ -7,7 +7,9 @@ pub mod distance;
 pub mod frontier;
 pub mod lidar;
 pub mod motion;
+pub mod planes;
 pub mod search;
+pub mod shadow;
 pub mod tracking;
 pub mod visibility;
 

@@ -7,6 +7,9 @@ use numpy::{
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use crate::planes::Planes;
+use crate::shadow::{Corners, Shadows};
+
 /// Tell whether all cells are clear that the segment between two cell centres touches, its end cells excepted.
 ///
 /// A segment through a corner touches both cells beside it.
@@ -77,129 +80,51 @@ fn near_poses(solid: &[u8], poses: &[u8], cols: usize, levels: usize) -> Vec<u8>
     near
 }
 
-/// Solid and pose cells of a grid, and how far a pose sees.
-struct Scene<'a> {
-    solid: &'a [u8],
-    poses: &'a [u8],
-    rows: i64,
-    cols: i64,
-    range_squared: f64,
-}
-
-/// One octant seen from a cell: `(outward, sideways)` steps of `(row, col)`.
-type Octant = [(i64, i64); 2];
-
-const OCTANTS: [Octant; 8] = [
-    [(1, 0), (0, 1)],
-    [(1, 0), (0, -1)],
-    [(-1, 0), (0, 1)],
-    [(-1, 0), (0, -1)],
-    [(0, 1), (1, 0)],
-    [(0, 1), (-1, 0)],
-    [(0, -1), (1, 0)],
-    [(0, -1), (-1, 0)],
-];
-
-impl Scene<'_> {
-    /// Flat index of the cell `out` steps outward and `side` steps sideways, or `None` if it blocks the view.
-    #[inline]
-    fn clear_cell(&self, row: i64, col: i64, octant: &Octant, out: i64, side: i64) -> Option<usize> {
-        let row = row + out * octant[0].0 + side * octant[1].0;
-        let col = col + out * octant[0].1 + side * octant[1].1;
-        if row < 0 || row >= self.rows || col < 0 || col >= self.cols {
-            return None;
-        }
-        let cell = (row * self.cols + col) as usize;
-        (self.solid[cell] == 0).then_some(cell)
-    }
-
-    /// Scan one line of an octant through its open slopes: tell whether it shows a pose, else keep what stays open.
-    ///
-    /// The square at `(out, side)` stops exactly the slopes from `(side - 1/2) / (out + 1/2)` to
-    /// `(side + 1/2) / (out - 1/2)`, ends included. Quotients of small integers compare exactly in f64.
-    fn line_shows_pose(
-        &self,
-        (row, col): (i64, i64),
-        octant: &Octant,
-        out: i64,
-        open: &[(f64, f64)],
-        still_open: &mut Vec<(f64, f64)>,
-    ) -> bool {
-        let distance = out as f64;
-        for &(mut low, high) in open {
-            let first = (low * (distance - 0.5) - 0.5).floor().max(0.0) as i64;
-            let last = ((high * (distance + 0.5) + 0.5).ceil() as i64).min(out + 1);
-            for side in first..=last {
-                if let Some(cell) = self.clear_cell(row, col, octant, out, side) {
-                    let slope = side as f64 / distance;
-                    let in_view = side <= out && low < slope && slope < high;
-                    if in_view
-                        && self.poses[cell] != 0
-                        && ((out * out + side * side) as f64) <= self.range_squared
-                    {
-                        return true;
-                    }
-                } else {
-                    let stops_from = (side as f64 - 0.5) / (distance + 0.5);
-                    if stops_from > low {
-                        still_open.push((low, stops_from.min(high)));
-                    }
-                    low = low.max((side as f64 + 0.5) / (distance - 0.5));
-                    if low >= high {
-                        break;
-                    }
-                }
-            }
-            if low < high {
-                still_open.push((low, high));
-            }
-        }
-        false
-    }
-
-    /// Tell whether some pose sees the cell, by casting shadows ring by ring so that a near pose ends the search.
-    fn sees_pose(&self, cell: usize, open: &mut [Vec<(f64, f64)>; 8], spare: &mut Vec<(f64, f64)>) -> bool {
-        let at = (cell as i64 / self.cols, cell as i64 % self.cols);
-        for (octant, slopes) in OCTANTS.iter().zip(open.iter_mut()) {
-            // The neighbour beside the cell stops the diagonal alone, at the corner they share.
-            let beside = self.clear_cell(at.0, at.1, octant, 0, 1);
-            slopes.clear();
-            slopes.push((-1.0, if beside.is_some() { 2.0 } else { 1.0 }));
-        }
-        for out in 1..=self.range_squared.sqrt() as i64 {
-            let mut any_open = false;
-            for (octant, slopes) in OCTANTS.iter().zip(open.iter_mut()) {
-                if slopes.is_empty() {
-                    continue;
-                }
-                spare.clear();
-                if self.line_shows_pose(at, octant, out, slopes, spare) {
-                    return true;
-                }
-                std::mem::swap(slopes, spare);
-                any_open |= !slopes.is_empty();
-            }
-            if !any_open {
-                return false;
-            }
-        }
-        false
-    }
-}
-
 /// Mark the cells, not solid, that some pose cell sees within the range.
+///
+/// A cell is mostly seen by a pose that sees a cell beside it; else it looks for one ring by ring.
 pub fn visible_cells(solid: &[u8], poses: &[u8], rows: usize, cols: usize, range_cells: f64) -> Vec<u8> {
     let range = range_cells.min((rows + cols) as f64); // no segment in the grid is longer
-    let scene = Scene { solid, poses, rows: rows as i64, cols: cols as i64, range_squared: range * range };
+    let range_squared = (range * range) as i64;
     let mut seen = near_poses(solid, poses, cols, (range * std::f64::consts::SQRT_2).ceil() as usize);
-    let mut open: [Vec<(f64, f64)>; 8] = Default::default();
-    let mut spare = Vec::new();
+    let walls = Planes::of(solid, rows, cols, |s| s != 0);
+    let in_free: Vec<bool> = solid.iter().zip(poses).map(|(&s, &p)| s == 0 && p != 0).collect();
+    let goals = Planes::of(&in_free, rows, cols, |pose| pose);
+    let mut shadows = Shadows::new(&walls, &goals, range as i64, Corners::Both);
+    let sees = |pose: usize, cell: usize| {
+        let down = (pose / cols).abs_diff(cell / cols) as i64;
+        let across = (pose % cols).abs_diff(cell % cols) as i64;
+        down * down + across * across <= range_squared && segment_clear(cols, cell, pose, |c| solid[c] == 0)
+    };
+    let mut seen_from = vec![usize::MAX; seen.len()]; // a pose that sees the cell
+    for cell in (0..seen.len()).filter(|&cell| in_free[cell]) {
+        seen_from[cell] = cell;
+    }
     for cell in 0..seen.len() {
-        if seen[cell] != 0 && poses[cell] == 0 {
-            seen[cell] = u8::from(scene.sees_pose(cell, &mut open, &mut spare));
+        if seen[cell] != 0 && !in_free[cell] {
+            let beside = [1, cols, cols + 1, cols - 1].into_iter().filter_map(|back| cell.checked_sub(back));
+            let mut known = beside.map(|other| seen_from[other]).filter(|&pose| pose < usize::MAX);
+            let pose = known.find(|&pose| sees(pose, cell));
+            let pose = pose.or_else(|| first_pose(&mut shadows, cell, cols, range_squared));
+            seen[cell] = u8::from(pose.is_some());
+            seen_from[cell] = pose.unwrap_or(usize::MAX);
         }
     }
     seen
+}
+
+/// A pose that a cell sees, among the nearest.
+fn first_pose(shadows: &mut Shadows, cell: usize, cols: usize, range_squared: i64) -> Option<usize> {
+    shadows.begin(cell / cols, cell % cols);
+    let mut found = None;
+    for ring in 1..=range_squared.isqrt() {
+        let widest = (range_squared - ring * ring).isqrt();
+        let any_open = shadows.advance(ring, widest, |_, pose| found = Some(pose));
+        if found.is_some() || !any_open {
+            break;
+        }
+    }
+    found
 }
 
 /// A flat cell index, checked against the grid's size.

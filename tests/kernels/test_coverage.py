@@ -36,6 +36,19 @@ def random_map(rng: np.random.Generator) -> NDArray[np.uint8]:
     return classes
 
 
+def porous_map(rng: np.random.Generator) -> NDArray[np.uint8]:
+    """Free and unknown space behind walls with many holes, and speckle anywhere."""
+    rows, cols = rng.integers(20, 45, 2)
+    classes = np.full((rows, cols), FREE, np.uint8)
+    classes[:, : rng.integers(1, cols)] = rng.choice([FREE, UNKNOWN])
+    for _ in range(rng.integers(1, 5)):
+        classes[rng.integers(rows)] = OCCUPIED
+        classes[:, rng.integers(cols)] = OCCUPIED
+    classes[rng.random(classes.shape) < rng.choice([0.05, 0.2])] = FREE
+    classes[rng.random(classes.shape) < rng.choice([0.0, 0.05])] = rng.choice([UNKNOWN, OCCUPIED])
+    return classes
+
+
 def random_impact(rng: np.random.Generator) -> Sparse:
     keys = np.flatnonzero(rng.random(CELLS * LAYERS) < rng.choice([0.0, 0.02, 0.3]))
     misses = rng.choice([1, 2, 9, 64, 200, 255], len(keys))
@@ -103,11 +116,13 @@ def random_tour(problem: Problem, rng: np.random.Generator, max_stops: int) -> l
 @given(seeds)
 def test_viewpoints_equal_trying_every_reachable_cell(seed: int) -> None:
     rng = np.random.default_rng(seed)
-    classes = random_map(rng)
-    reachable = (classes == 1) & (rng.random(classes.shape) < rng.choice([0.1, 0.5, 1.0]))
-    field = np.where(reachable, 1.0, np.inf).astype(np.float32)
+    porous = rng.random() < 0.3
+    classes = porous_map(rng) if porous else random_map(rng)
+    share = rng.choice([0.001, 0.01] if porous else [0.1, 0.5, 1.0])
+    field = np.where((classes == FREE) & (rng.random(classes.shape) < share), 1.0, np.inf).astype(np.float32)
+    field.flat[rng.integers(field.size)] = 0.0  # the robot's own place may not be free
     cells, starts = find_frontiers(classes, 1, int(rng.integers(2, 12)))
-    reach = int(rng.integers(0, 9))
+    reach = int(rng.integers(0, 40 if porous else 9))
     found = coverage.viewpoints(field, classes, cells, starts, reach)
     for kernel, twin in zip(found, reference.viewpoints(field, classes, cells, starts, reach), strict=True):
         np.testing.assert_array_equal(kernel, twin)

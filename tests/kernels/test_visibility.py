@@ -19,6 +19,7 @@ def test_visible_cells_equal_testing_every_cell_against_every_pose(seed: int) ->
     rng = np.random.default_rng(seed)
     shape = tuple(rng.integers(1, 18, 2))
     solid = rng.random(shape) < rng.uniform(0, 0.6)
+    solid[rng.integers(shape[0])] = rng.random(shape[1]) >= rng.uniform(0, 0.5)  # a wall with holes
     poses = rng.random(shape) < rng.choice([0.0, 0.01, 0.05, 0.3])
     range_cells = float(rng.choice([0.0, 1.0, 2.5, 5.0, 9.3, 40.0, np.inf]))
     expected = reference_visibility.visible_cells(solid, poses, range_cells)
