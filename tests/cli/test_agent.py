@@ -14,9 +14,9 @@ import pytest
 from click.testing import CliRunner
 from msgspec import yaml
 
-from tests.cli.test_explore import TWO_ROOMS, Command
+from tests.support.commands import Command
 from tests.support.net_team import issue, real_time, wait_until
-from tests.support.small_missions import drawn
+from tests.support.small_missions import TWO_ROOMS, drawn
 from vedette.cli.status import status as status_command
 from vedette.net.endpoints import free_port
 

@@ -3,60 +3,20 @@
 from __future__ import annotations
 
 import json
-import os
 import signal
 import subprocess
 import sys
 import time
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
-from mcap.reader import make_reader
 from PIL import Image
 
+from tests.support.commands import FILES, Command, check_files, refused, start
 from tests.support.places import ROOT
-from tests.support.small_missions import drawn
-from vedette.cli import main
+from tests.support.small_missions import TWO_ROOMS, drawn
 from vedette.maps import FREE, UNKNOWN, read_map
-
-FILES = {"summary.json", "timing.json", "map.yaml", "map.pgm", "progress.png", "curves.png", "run.mcap"}
-TWO_ROOMS = """
-################
-#       #      #
-#       #      #
-#              #
-#              #
-#       #      #
-################
-"""
-
-
-@dataclass(frozen=True)
-class Ran:
-    """What a command did."""
-
-    status: int
-    out: str
-    err: str
-
-
-class Command:
-    """Runs ``vedette`` in this process, in a folder of its own."""
-
-    def __init__(self, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-        self._monkeypatch = monkeypatch
-        self._capsys = capsys
-
-    def __call__(self, *arguments: object) -> Ran:
-        """Run it with these arguments."""
-        self._monkeypatch.setattr(sys, "argv", ["vedette", *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        captured = self._capsys.readouterr()
-        code = ended.value.code
-        return Ran(code if isinstance(code, int) else 0, captured.out, captured.err)
 
 
 @pytest.fixture
@@ -74,33 +34,7 @@ def world(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def refused(ran: Ran, *words: str) -> None:
-    """One line on stderr with these words, status 2, nothing else said, nothing written."""
-    assert ran.status == 2, ran
-    assert ran.out == ""
-    assert len(ran.err.splitlines()) == 1, ran.err
-    assert ran.err.startswith("vedette: ")
-    for word in words:
-        assert word in ran.err, ran.err
-    assert not Path("out").exists()
-    assert not Path("runs").exists()
-
-
 # -- what a run leaves --------------------------------------------------------------------------------
-
-
-def check_files(folder: Path) -> None:
-    """Everything is there and loads."""
-    assert {path.name for path in folder.iterdir()} >= FILES
-    for name in ("progress.png", "curves.png"):
-        with Image.open(folder / name) as image:
-            image.load()
-            assert min(image.size) > 100
-    with (folder / "run.mcap").open("rb") as file:
-        assert sum(1 for _ in make_reader(file).iter_messages()) > 0
-    read_map(folder / "map.yaml")
-    json.loads((folder / "summary.json").read_text())
-    json.loads((folder / "timing.json").read_text())
 
 
 def test_a_run_leaves_every_file_and_says_where_the_pictures_are(vedette: Command, world: Path) -> None:
@@ -109,8 +43,8 @@ def test_a_run_leaves_every_file_and_says_where_the_pictures_are(vedette: Comman
     assert ran.err == ""
     assert "complete" in ran.out
     assert str(Path("out") / "progress.png") in ran.out
-    check_files(Path("out"))
-    assert {path.name for path in Path("out").iterdir()} == FILES
+    check_files(Path("out"), "explore")
+    assert {path.name for path in Path("out").iterdir()} == FILES["explore"]
     frame, classes = read_map(Path("out") / "map.yaml")
     true_frame, true_classes = read_map(world / "map.yaml")
     assert frame == true_frame
@@ -176,7 +110,7 @@ def test_a_mission_that_runs_out_of_time_has_status_1_and_all_files(vedette: Com
     ran = vedette("explore", world / "map.yaml", "--out", "out", "--max-time", 3, "--json")
     assert ran.status == 1
     assert json.loads(ran.out)["outcome"] == "time_limit"
-    check_files(Path("out"))
+    check_files(Path("out"), "explore")
 
 
 def test_a_team_that_dies_has_status_1_and_all_files(vedette: Command, world: Path) -> None:
@@ -185,7 +119,7 @@ def test_a_team_that_dies_has_status_1_and_all_files(vedette: Command, world: Pa
     )
     assert ran.status == 1
     assert "team_lost" in ran.out
-    check_files(Path("out"))
+    check_files(Path("out"), "explore")
 
 
 def test_without_out_each_run_gets_a_new_folder_under_runs(vedette: Command, world: Path) -> None:
@@ -193,7 +127,7 @@ def test_without_out_each_run_gets_a_new_folder_under_runs(vedette: Command, wor
         assert vedette("explore", world / "map.yaml", "--max-time", 1).status == 1
     assert sorted(path.name for path in Path("runs").iterdir()) == [f"{world.name}-001", f"{world.name}-002"]
     for folder in Path("runs").iterdir():
-        check_files(folder)
+        check_files(folder, "explore")
 
 
 def test_a_team_file_starts_and_options_reach_the_mission(vedette: Command, world: Path) -> None:
@@ -221,7 +155,7 @@ def test_force_writes_into_an_existing_folder(vedette: Command, world: Path) -> 
     (Path("out") / "mine.txt").write_text("keep")
     assert vedette("explore", world / "map.yaml", "--max-time", 1, "--out", "out", "--force").status == 1
     assert (Path("out") / "mine.txt").read_text() == "keep"
-    check_files(Path("out"))
+    check_files(Path("out"), "explore")
 
 
 def test_animate_adds_a_gif(vedette: Command, world: Path) -> None:
@@ -395,17 +329,6 @@ def test_an_unknown_command_is_refused(vedette: Command) -> None:
 # -- interruption and determinism, in processes of their own --------------------------------------------
 
 
-def start(arguments: list[str], folder: Path, **environment: str) -> subprocess.Popen[bytes]:
-    """Start the command."""
-    return subprocess.Popen(
-        [sys.executable, "-c", "from vedette.cli import main; main()", *arguments],
-        cwd=folder,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        env=os.environ | environment,
-    )
-
-
 def test_ctrl_c_leaves_every_file_valid_and_has_status_130(tmp_path: Path) -> None:
     process = start(["explore", "--out", "out"], tmp_path)
     assert process.stdout is not None
@@ -417,9 +340,9 @@ def test_ctrl_c_leaves_every_file_valid_and_has_status_130(tmp_path: Path) -> No
     assert process.returncode == 130, err
     assert b"Traceback" not in err
     assert b"interrupted" in out
-    check_files(tmp_path / "out")
+    check_files(tmp_path / "out", "explore")
     assert json.loads((tmp_path / "out" / "summary.json").read_text())["outcome"] == "interrupted"
-    assert not [path for path in (tmp_path / "out").iterdir() if path.name not in FILES]
+    assert not [path for path in (tmp_path / "out").iterdir() if path.name not in FILES["explore"]]
 
 
 def test_ctrl_c_before_the_mission_writes_nothing_and_shows_no_traceback(tmp_path: Path) -> None:
@@ -488,5 +411,5 @@ def test_a_map_of_4000_by_4000_cells_works(tmp_path: Path) -> None:
     out, err = process.communicate(timeout=900)
     assert process.returncode == 1, err
     assert json.loads(out)["outcome"] == "time_limit"
-    check_files(tmp_path / "out")
+    check_files(tmp_path / "out", "explore")
     assert time.monotonic() - began < 600

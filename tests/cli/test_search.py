@@ -13,12 +13,11 @@ import yaml
 from mcap.reader import make_reader
 from PIL import Image
 
-from tests.cli.test_explore import Command, refused, start
+from tests.support.commands import FILES, Command, check_files, refused, start
 from tests.support.places import ROOT
 from tests.support.search_missions import SMALL
 from vedette.record.summary import Traffic
 
-FILES = {"summary.json", "timing.json", "pdf.png", "detection.png", "run.mcap"}
 FIELDS = [
     "schema_version", "completed", "outcome", "seed", "scenario", "coordination", "scheme", "fusion", "worth",
     "radio", "faults", "vehicles", "time_s", "found_s", "found_by", "declared_m", "target_m", "error_m",
@@ -43,16 +42,9 @@ def scenario(**changes: Any) -> str:
     return "small.yaml"
 
 
-def check_files(folder: Path) -> None:
-    """Everything is there and loads."""
-    assert {path.name for path in folder.iterdir()} >= FILES
-    for name in ("pdf.png", "detection.png"):
-        with Image.open(folder / name) as image:
-            image.load()
-            assert min(image.size) > 100
-    with (folder / "run.mcap").open("rb") as file:
-        assert sum(1 for _ in make_reader(file).iter_messages()) > 0
-    json.loads((folder / "timing.json").read_text())
+def check_run(folder: Path) -> None:
+    """Everything is there and loads, and the summary has all its fields."""
+    check_files(folder, "search")
     assert list(json.loads((folder / "summary.json").read_text())) == FIELDS
 
 
@@ -65,8 +57,8 @@ def test_a_search_that_finds_leaves_every_file_and_says_where_the_pictures_are(v
     assert ran.err == ""
     assert "found after" in ran.out
     assert str(Path("out") / "detection.png") in ran.out
-    check_files(Path("out"))
-    assert {path.name for path in Path("out").iterdir()} == FILES
+    check_run(Path("out"))
+    assert {path.name for path in Path("out").iterdir()} == FILES["search"]
     summary = json.loads((Path("out") / "summary.json").read_text())
     assert summary["completed"] is True
     assert summary["found_s"] == summary["time_s"]
@@ -94,14 +86,14 @@ def test_json_prints_the_summary_alone(vedette: Command) -> None:
     assert summary["found_s"] is None
     assert summary["duration_s"] == 6.0
     assert list(summary["comparison"]) == ["negotiated"]
-    check_files(Path("out"))
+    check_run(Path("out"))
 
 
 def test_a_search_shorter_than_a_step_leaves_every_file(vedette: Command) -> None:
     ran = vedette("search", scenario(), "--max-time", 1, "--out", "out", *QUICK)
     assert ran.status == 1, ran
     assert json.loads((Path("out") / "summary.json").read_text())["mean_time_s"] == 0.0
-    check_files(Path("out"))
+    check_run(Path("out"))
 
 
 def test_options_reach_the_search(vedette: Command) -> None:
@@ -125,7 +117,7 @@ def test_faults_are_survived_and_all_files_are_there(vedette: Command) -> None:
     first, *others = summary["path_m"].values()
     assert first == pytest.approx(180.0, abs=4.0)
     assert min(others) > first
-    check_files(Path("out"))
+    check_run(Path("out"))
 
 
 def test_a_team_that_dies_has_status_1_and_all_files(vedette: Command) -> None:
@@ -133,7 +125,7 @@ def test_a_team_that_dies_has_status_1_and_all_files(vedette: Command) -> None:
     ran = vedette("search", scenario(), *kills, "--out", "out", *QUICK)
     assert ran.status == 1
     assert "team lost" in ran.out
-    check_files(Path("out"))
+    check_run(Path("out"))
 
 
 def test_with_false_alarms_each_trial_is_a_search_of_its_own(vedette: Command) -> None:
@@ -141,7 +133,7 @@ def test_with_false_alarms_each_trial_is_a_search_of_its_own(vedette: Command) -
     ran = vedette("search", scenario(detector=ALARMS, duration=24), *arguments)
     summary = json.loads(ran.out)
     assert (summary["counted"]["trials"], summary["counted"]["of"]) == (3, "runs")
-    check_files(Path("out"))
+    check_run(Path("out"))
 
 
 def test_a_declared_place_that_is_wrong_is_a_mistake_with_status_1(vedette: Command) -> None:
@@ -160,7 +152,7 @@ def test_a_declared_place_that_is_wrong_is_a_mistake_with_status_1(vedette: Comm
 def test_animate_adds_a_gif_and_without_out_a_new_folder_is_made(vedette: Command) -> None:
     assert vedette("search", scenario(), "--max-time", 4, "--animate", *QUICK).status == 1
     folder = Path("runs") / "small-001"
-    check_files(folder)
+    check_run(folder)
     with Image.open(folder / "mission.gif") as image:
         assert image.format == "GIF"
         assert getattr(image, "n_frames", 0) >= 2
@@ -191,7 +183,7 @@ def test_priors_of_every_kind_can_be_searched(vedette: Command, prior: list[dict
     Image.fromarray(shade).save("heat.png")
     ran = vedette("search", scenario(prior=prior), "--max-time", 4, "--out", "out", *QUICK)
     assert ran.status in (0, 1), ran.err
-    check_files(Path("out"))
+    check_run(Path("out"))
 
 
 def test_the_example_is_the_search_without_a_file(vedette: Command) -> None:
@@ -316,9 +308,9 @@ def test_ctrl_c_leaves_every_file_valid_and_has_status_130(tmp_path: Path) -> No
     assert process.returncode == 130, err
     assert b"Traceback" not in err
     assert b"interrupted" in out
-    check_files(tmp_path / "out")
+    check_run(tmp_path / "out")
     assert json.loads((tmp_path / "out" / "summary.json").read_text())["outcome"] == "interrupted"
-    assert {path.name for path in (tmp_path / "out").iterdir()} == FILES
+    assert {path.name for path in (tmp_path / "out").iterdir()} == FILES["search"]
 
 
 def test_summary_and_record_are_the_same_bytes_whatever_the_threads_and_the_hash_seed(tmp_path: Path) -> None:

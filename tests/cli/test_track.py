@@ -3,48 +3,14 @@
 from __future__ import annotations
 
 import json
-import os
 import signal
-import subprocess
-import sys
-from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 import yaml
-from mcap.reader import make_reader
-from PIL import Image
 
+from tests.support.commands import FILES, Command, check_files, refused, start
 from tests.support.track_scenes import content
-from vedette.cli import main
-
-FILES = {"summary.json", "timing.json", "tracks.png", "entropy.png", "run.mcap"}
-
-
-@dataclass(frozen=True)
-class Ran:
-    """What a command did."""
-
-    status: int
-    out: str
-    err: str
-
-
-class Command:
-    """Runs ``vedette track`` in this process, in a folder of its own."""
-
-    def __init__(self, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-        self._monkeypatch = monkeypatch
-        self._capsys = capsys
-
-    def __call__(self, *arguments: object) -> Ran:
-        """Run it with these arguments."""
-        self._monkeypatch.setattr(sys, "argv", ["vedette", "track", *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        captured = self._capsys.readouterr()
-        code = ended.value.code
-        return Ran(code if isinstance(code, int) else 0, captured.out, captured.err)
 
 
 @pytest.fixture
@@ -52,32 +18,7 @@ def track(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], t
     """The command, run in a folder with a short scenario."""
     monkeypatch.chdir(tmp_path)
     Path("short.yaml").write_text(yaml.safe_dump(content(duration=6)))
-    return Command(monkeypatch, capsys)
-
-
-def refused(ran: Ran, *words: str) -> None:
-    """One line on stderr with these words, status 2, nothing else said, nothing written."""
-    assert ran.status == 2, ran
-    assert ran.out == ""
-    assert len(ran.err.splitlines()) == 1, ran.err
-    assert ran.err.startswith("vedette: ")
-    for word in words:
-        assert word in ran.err, ran.err
-    assert not Path("out").exists()
-    assert not Path("runs").exists()
-
-
-def check_files(folder: Path) -> None:
-    """Everything is there and loads."""
-    assert {path.name for path in folder.iterdir()} >= FILES
-    for name in ("tracks.png", "entropy.png"):
-        with Image.open(folder / name) as image:
-            image.load()
-            assert min(image.size) > 100
-    with (folder / "run.mcap").open("rb") as file:
-        assert sum(1 for _ in make_reader(file).iter_messages()) > 0
-    json.loads((folder / "summary.json").read_text())
-    json.loads((folder / "timing.json").read_text())
+    return Command(monkeypatch, capsys, "track")
 
 
 # -- what a run leaves --------------------------------------------------------------------------------
@@ -90,8 +31,8 @@ def test_a_run_leaves_every_file_and_is_compared_with_all_other_ways(track: Comm
     assert "complete" in ran.out
     assert "to compare: optimum" in ran.out
     assert str(Path("out") / "tracks.png") in ran.out
-    check_files(Path("out"))
-    assert {path.name for path in Path("out").iterdir()} == FILES
+    check_files(Path("out"), "track")
+    assert {path.name for path in Path("out").iterdir()} == FILES["track"]
     summary = json.loads((Path("out") / "summary.json").read_text())
     assert summary["completed"] is True
     assert summary["scenario"] == "short"
@@ -111,7 +52,7 @@ def test_a_mission_cut_short_has_status_1_and_all_files(track: Command) -> None:
     ran = track("short.yaml", "--out", "out", "--max-time", 2.5, "--json", "--no-compare")
     assert ran.status == 1
     assert json.loads(ran.out)["outcome"] == "time_limit"
-    check_files(Path("out"))
+    check_files(Path("out"), "track")
 
 
 def test_a_team_that_dies_has_status_1_and_all_files(track: Command) -> None:
@@ -119,7 +60,7 @@ def test_a_team_that_dies_has_status_1_and_all_files(track: Command) -> None:
     ran = track("short.yaml", *kills, "--out", "out", "--no-compare")
     assert ran.status == 1
     assert "team_lost" in ran.out
-    check_files(Path("out"))
+    check_files(Path("out"), "track")
 
 
 def test_options_reach_the_mission_and_force_writes_into_an_existing_folder(track: Command) -> None:
@@ -144,7 +85,7 @@ def test_where_the_optimum_cannot_be_had_it_is_left_out_and_asking_for_it_is_ref
     ran = track("rich.yaml", "--json")
     assert ran.status == 0
     assert list(json.loads(ran.out)["comparison"]) == ["none", "shared", "negotiated"]
-    check_files(Path("runs") / "rich-001")
+    check_files(Path("runs") / "rich-001", "track")
 
 
 # -- bad input ----------------------------------------------------------------------------------------
@@ -194,24 +135,13 @@ def test_an_existing_folder_is_refused_without_force(track: Command) -> None:
 # -- interruption and determinism, in processes of their own --------------------------------------------
 
 
-def start(arguments: list[str], folder: Path, **environment: str) -> subprocess.Popen[bytes]:
-    """Start the command."""
-    return subprocess.Popen(
-        [sys.executable, "-c", "from vedette.cli import main; main()", "track", *arguments],
-        cwd=folder,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        env=os.environ | environment,
-    )
-
-
 @pytest.mark.parametrize(("word", "compared"), [(b"10.0 s", 0), (b"to compare: shared", 2)])
 def test_ctrl_c_leaves_every_file_valid_and_has_status_130(
     tmp_path: Path, word: bytes, compared: int
 ) -> None:
     scenario = content() if not compared else content(duration=12)
     (tmp_path / "scene.yaml").write_text(yaml.safe_dump(scenario))
-    process = start(["scene.yaml", "--out", "out"], tmp_path)
+    process = start(["track", "scene.yaml", "--out", "out"], tmp_path)
     assert process.stdout is not None
     for line in process.stdout:
         if word in line:
@@ -221,12 +151,12 @@ def test_ctrl_c_leaves_every_file_valid_and_has_status_130(
     assert process.returncode == 130, err
     assert b"Traceback" not in err
     assert b"interrupted" in out
-    check_files(tmp_path / "out")
+    check_files(tmp_path / "out", "track")
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
     assert summary["outcome"] == "interrupted"
     assert summary["completed"] is False
     assert len(summary["comparison"]) in (compared, max(1, compared))
-    assert not [path for path in (tmp_path / "out").iterdir() if path.name not in FILES]
+    assert not [path for path in (tmp_path / "out").iterdir() if path.name not in FILES["track"]]
 
 
 def test_summary_and_record_are_the_same_bytes_whatever_the_threads_and_the_hash_seed(tmp_path: Path) -> None:
@@ -235,7 +165,7 @@ def test_summary_and_record_are_the_same_bytes_whatever_the_threads_and_the_hash
     for number, threads, hashes in ((1, "1", "0"), (2, "2", "random")):
         out = f"out-{number}"
         variables = {f"{name}_NUM_THREADS": threads for name in ("OMP", "OPENBLAS", "RAYON", "MKL")}
-        arguments = ["scene.yaml", "--link-loss", "0.05", "--out", out]
+        arguments = ["track", "scene.yaml", "--link-loss", "0.05", "--out", out]
         runs.append((out, start(arguments, tmp_path, PYTHONHASHSEED=hashes, **variables)))
     for _, process in runs:
         assert process.wait(timeout=120) == 0

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from tests.missions.explore.test_exploration import HERE, explorer, mate_at, scan_from
+from tests.support.explorers import HERE, explorer, mate_at, scan_from
 from tests.support.mapping_scenes import BEAMS, FRAME, building, explored, frozen
 from tests.support.small_missions import robots, run, small_maze
 from vedette.agent.events import Pose, Scan

@@ -18,7 +18,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from bench.network import network
-from tests.cli.test_explore import TWO_ROOMS, check_files
+from tests.support.commands import check_files
 from tests.support.net_processes import (
     Diary,
     Fault,
@@ -35,7 +35,7 @@ from tests.support.net_processes import (
     terminate,
 )
 from tests.support.net_team import issue, real_time, wait_until
-from tests.support.small_missions import drawn, robots, small_maze
+from tests.support.small_missions import TWO_ROOMS, drawn, robots, small_maze
 from vedette.agent.body import TICK
 from vedette.agent.effects import Drive, Route
 from vedette.cli.status import status as status_command
@@ -106,7 +106,7 @@ def test_a_team_of_processes_completes_and_leaves_every_file(rooms: Path, tmp_pa
         out, err = team.communicate(timeout=120.0)
     assert team.returncode == 0, err
     assert "complete: " in out
-    check_files(tmp_path / "out")
+    check_files(tmp_path / "out", "explore")
     assert {path.name for path in (tmp_path / "out" / "agents").iterdir()} == {"robot-1.log", "robot-2.log"}
     for log in (tmp_path / "out" / "agents").iterdir():
         assert log.read_text().endswith(": stopped\n")
@@ -129,7 +129,7 @@ def test_a_signal_ends_a_team_in_good_order(rooms: Path, tmp_path: Path, number:
         out, err = team.communicate(timeout=60.0)
     assert team.returncode == 130, err
     assert "interrupted: " in out
-    check_files(tmp_path / "out")
+    check_files(tmp_path / "out", "explore")
     assert agents_of(team.pid) == []
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from tests.support.places import ROOT
 
 TESTS = ROOT / "tests"
@@ -24,3 +26,5 @@ def test_what_tests_share_lies_in_support() -> None:
     shared = {path.relative_to(TESTS) for path in TESTS.rglob("*.py") if not path.name.startswith("test_")}
     assert {path.parts[0] for path in shared} == {"conftest.py", "fuzz", "support"}
     assert not list((TESTS / "support").rglob("test_*.py"))
+    for path in TESTS.rglob("*.py"):
+        assert not re.search(r"^from tests\..*\btest_", path.read_text(encoding="utf-8"), re.MULTILINE), path

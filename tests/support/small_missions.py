@@ -16,6 +16,16 @@ from vedette.sim.explore.simulation import ExploreSetup, ExploreSimulation
 from vedette.sim.worlds import maze, office
 from vedette.team import PlatformSpec
 
+TWO_ROOMS = """
+################
+#       #      #
+#       #      #
+#              #
+#              #
+#       #      #
+################
+"""
+
 
 @cache
 def small_maze(seed: int = 1) -> World:
