@@ -3,7 +3,8 @@
 ``sh`` and ``console`` blocks are commands (in ``console`` those after ``$``; the rest is output), ``python``
 blocks are programs; other languages are left alone. Lines that call make, or git to clone, are left out. The
 blocks of one document share a directory, so they run in one process: with pytest-xdist, ``--dist loadfile``.
-A block under the line ``<!-- slow -->`` runs with the slow tests.
+A block under the line ``<!-- slow -->`` runs with the slow tests. A ``text`` block that comes next after one
+of them, with nothing in between, is its output to the letter.
 """
 
 from __future__ import annotations
@@ -30,7 +31,8 @@ FENCE = re.compile(
     r"^(?P<slow><!-- slow -->[ ]*\n)?"
     r"(?P<indent>[ ]*)(?P<ticks>```+)(?P<language>\w*)[^\n]*\n"
     r"(?P<body>.*?)"
-    r"^(?P=indent)(?P=ticks)[ ]*$",
+    r"^(?P=indent)(?P=ticks)[ ]*$"
+    r"(?:(?=\n\n```text\n(?P<output>.*?)^```$)|)",
     re.MULTILINE | re.DOTALL,
 )
 
@@ -44,6 +46,7 @@ class Block:
     language: str
     body: str
     slow: bool
+    output: str | None = None  # what it has to write to standard output, where the document shows that
 
 
 def blocks(document: str, text: str) -> list[Block]:
@@ -53,7 +56,8 @@ def blocks(document: str, text: str) -> list[Block]:
         if match["language"] in (SHELL, CONSOLE, PYTHON):
             body = re.sub(rf"^{match['indent']}", "", match["body"], flags=re.MULTILINE)
             line = text.count("\n", 0, match.start("body")) + 1
-            found.append(Block(document, line, match["language"], body, match["slow"] is not None))
+            slow = match["slow"] is not None
+            found.append(Block(document, line, match["language"], body, slow, match["output"]))
     return found
 
 
@@ -109,13 +113,15 @@ def test_a_documented_block_runs(block: Block, directory: Path) -> None:
         cwd=directory,
         env=os.environ | {"PATH": f"{binaries}{os.pathsep}{os.environ['PATH']}"},
         stdin=subprocess.DEVNULL,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
+        capture_output=True,
         text=True,
         timeout=TIMEOUT_S,
         check=False,
     )
-    assert result.returncode == 0, f"{block.document}:{block.line} failed\n{result.stdout[-4000:]}"
+    said = f"{result.stdout[-2000:]}\n{result.stderr[-2000:]}"
+    assert result.returncode == 0, f"{block.document}:{block.line} failed\n{said}"
+    if block.output is not None:
+        assert result.stdout == block.output, f"{block.document}:{block.line} writes something else"
 
 
 EXAMPLE = """\
@@ -134,6 +140,11 @@ $ echo two
   ```python
   print("indented")
   ```
+
+```text
+indented
+```
+
 ```text
 not run
 ```
@@ -143,9 +154,15 @@ not run either
 """
 
 
-def test_blocks_are_found_with_their_place_language_and_speed() -> None:
-    found = [(block.line, block.language, block.slow) for block in blocks("example.md", EXAMPLE)]
-    assert found == [(3, SHELL, False), (9, CONSOLE, True), (14, PYTHON, False)]
+def test_blocks_are_found_with_their_place_language_speed_and_output() -> None:
+    found = [
+        (block.line, block.language, block.slow, block.output) for block in blocks("example.md", EXAMPLE)
+    ]
+    assert found == [
+        (3, SHELL, False, None),
+        (9, CONSOLE, True, None),
+        (14, PYTHON, False, "indented\n"),
+    ]
 
 
 def test_commands_are_what_a_reader_would_type_but_for_make_and_clone() -> None:
