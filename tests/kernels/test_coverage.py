@@ -210,17 +210,20 @@ def test_best_tour_comes_close_to_the_best_of_all_tours() -> None:
         _, optimum = reference.best_tour(problem, 4)
         assert gain <= optimum * (1 + 1e-4) + 1e-4
         ratios.append(gain / optimum if optimum > 1e-3 else 1.0)
-    assert np.mean(ratios) >= 0.99
-    assert min(ratios) >= 0.9
+    assert np.mean(ratios) >= 0.999
+    assert min(ratios) >= 0.97
 
 
-def test_best_tour_is_on_average_within_a_percent_of_greedy_insertion_at_exact_prices() -> None:
-    ahead = []
-    for seed in range(60):
+def test_greedy_insertion_at_exact_prices_seldom_beats_best_tour_and_on_average_they_are_level() -> None:
+    ratios = []
+    for seed in range(300):
         problem = random_problem(np.random.default_rng(seed), 6)
-        _, greedy = reference.greedy_tour(problem, 4)
-        ahead.append(reply(problem, [], 4)[1] / greedy - 1.0 if greedy > 1e-3 else 0.0)
-    assert np.mean(ahead) >= -0.01
+        _, greedy = reference.greedy_tour(problem, 6)
+        gain = reply(problem, [], 6)[1]
+        ratios.append(greedy / gain if gain > 1e-3 else 1.0)
+    assert np.mean(ratios) == pytest.approx(1.0, abs=1e-3)
+    assert max(ratios) <= 1.21
+    assert sum(ratio > 1.001 for ratio in ratios) <= 4
 
 
 def test_stops_that_cannot_be_reached_are_never_in_a_tour() -> None:
