@@ -19,7 +19,7 @@ INSTALLED := $(VENV)/.installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help explore test test-all check lint types contracts rust-lint bench fuzz missions api build ready ready-dev clean
+.PHONY: help explore test test-all check lint types contracts rust-lint bench fuzz missions figures api build ready ready-dev clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -59,6 +59,9 @@ fuzz: ready-dev ## Fuzz every decoder and loader, guided by coverage
 
 missions: ready-dev ## Run the table of missions beside the yardsticks (long)
 	@$(PY) -m bench.missions $(if $(wildcard $(MAPS)),--maps $(MAPS)) $(ARGS)
+
+figures: ready-dev ## Run the missions that the documents quote; record their figures and pictures
+	@$(PY) -m bench.figures $(if $(wildcard $(MAPS)),--maps $(MAPS)) $(ARGS)
 
 api: ready-dev ## Write the API reference from the docstrings into build/api
 	@$(PY) tools/api_reference.py build/api

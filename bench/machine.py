@@ -29,6 +29,17 @@ def commit() -> str:
     return commit_of(HERE)
 
 
+def differs(*paths: str) -> bool:
+    """Tell whether files at these places, from the project's folder, differ from the commit."""
+    return bool(git(HERE.parent, "status", "--porcelain", "--", *paths))
+
+
+def last_change(*paths: str) -> dict[str, str]:
+    """Return the commit that last changed files at these places, and its date."""
+    commit, _, date = git(HERE.parent, "log", "-1", "--format=%h %cI", "--", *paths).partition(" ")
+    return {"commit": commit or UNKNOWN, "commit_date": date or UNKNOWN}
+
+
 def stay_on_one_core() -> None:
     """Keep this process on one core, where the system can, so that one core is what is measured."""
     if hasattr(os, "sched_setaffinity"):
