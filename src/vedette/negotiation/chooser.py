@@ -7,14 +7,14 @@ from typing import Generic
 
 import numpy as np
 
-from vedette.problem.bound import slack
+from vedette.problem.bound import attains, slack
 from vedette.problem.checked import value_of, values_of
 from vedette.problem.objective import BeliefT, ImpactT, Objective
 from vedette.problem.reach import Clippable, Reach
 
 
 class Chooser(Generic[BeliefT, ImpactT]):
-    """``v_i = argmax_k psi(own_k * a_{-i})``, kept unless another is better by more than epsilon.
+    """``v_i = argmax_k psi(own_k * a_{-i})``, kept unless another is better by more than the share epsilon.
 
     A strategy is an index; without one the impact is nothing, and the first reply takes the best candidate
     even at no gain. Equal candidates: the lowest index. Source: docs/theory.md (V9).
@@ -29,7 +29,7 @@ class Chooser(Generic[BeliefT, ImpactT]):
         start: int | None = None,
         epsilon: float = 1e-9,
     ) -> None:
-        """Sit down with at least one candidate; epsilon is relative to the value where that exceeds 1."""
+        """Sit down with at least one candidate; epsilon is a share of the team's present value."""
         self.index = start
         self._objective = objective
         self._belief = belief
@@ -55,10 +55,8 @@ class Chooser(Generic[BeliefT, ImpactT]):
         """Take up the best candidate against the rest of the team if it is strictly better; tell if so."""
         values = values_of(self._objective, self._belief, others, self._candidates)
         best = int(np.argmax(values))
-        if self.index is not None:
-            present = values[self.index]
-            if values[best] - present <= self._epsilon * max(1.0, abs(present)):
-                return False
+        if self.index is not None and attains(values[self.index], values[best], self._epsilon):
+            return False
         self.index = best
         return True
 

@@ -9,7 +9,7 @@ from typing import Generic
 from vedette.errors import InputError
 from vedette.negotiation.messages import Down, Message, Outcome, Stop, Up
 from vedette.negotiation.node import Claims, Links, Participant, Send
-from vedette.problem.bound import tightest
+from vedette.problem.bound import attains, tightest
 from vedette.problem.objective import ImpactT
 
 
@@ -40,7 +40,7 @@ class JacobiNode(Generic[ImpactT]):
             neighbours: on the tree.
             parent: the neighbour towards the root, ``None`` at the root.
             own: the platform.
-            epsilon: values closer than this are equal, relative to the value where that exceeds 1.
+            epsilon: values closer than this share of them are equal.
             max_sweeps: the root ends the round after so many replies.
             remove: ``total * own^-1``. With it the team's total goes down the tree and everybody removes
                 its own impact (paper, Fig. 1); without it each gets the rest of the team, and no inverse
@@ -157,12 +157,11 @@ class JacobiNode(Generic[ImpactT]):
         if now > 0:
             self._slacks.append(summary.slack)
         before = max((m for m in summary.same if m < now), default=None)
-        margin = self._epsilon * max(1.0, abs(self.values[now]))
-        optimal = complete and self.values[now] >= summary.ceiling - margin
+        optimal = complete and attains(self.values[now], summary.ceiling, self._epsilon)
         if before is None and not optimal and now < self._max_sweeps:
             return self._next_iterate(Down(total))
         best = max(range(min(self._first, now), now + 1), key=self.values.__getitem__)  # first among equals
-        settled = before == now - 1 and self.values[now] >= self.values[best] - margin
+        settled = before == now - 1 and attains(self.values[now], self.values[best], self._epsilon)
         if settled:
             best = now - 1  # the same strategies, and their slack is known
         value = self.values[best]
@@ -171,7 +170,7 @@ class JacobiNode(Generic[ImpactT]):
             value=value,
             bound=tightest(value, summary.ceiling, *above),
             sweeps=now,
-            converged=settled or value >= summary.ceiling - margin,
+            converged=settled or attains(value, summary.ceiling, self._epsilon),
             cycle=0 if before in (None, now - 1) else now - before,
         )
         return self._end(Stop(outcome, best))

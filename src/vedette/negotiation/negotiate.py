@@ -74,7 +74,7 @@ def negotiate(
             Table 1), ends at its best iterate.
         start: everybody's first candidate index; without it nobody observes until its first reply, so
             that the first token sweep is the sequential greedy choice.
-        epsilon: a platform changes only for more than this, relative to the value where that exceeds 1.
+        epsilon: a platform changes only for more than this share of the present value.
         max_sweeps: the round ends after so many.
         inverse: with ``jacobi`` on a chain, send the team's total down it and let everybody remove its
             own impact by ``objective.remove`` (paper, Fig. 1).

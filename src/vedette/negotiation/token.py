@@ -12,7 +12,7 @@ from vedette.errors import InputError
 from vedette.negotiation.messages import Gather, Message, Outcome, Stop, Tally, Token
 from vedette.negotiation.node import Claims, Links, Participant, Send
 from vedette.negotiation.part import Part
-from vedette.problem.bound import tightest
+from vedette.problem.bound import attains, tightest
 from vedette.problem.objective import ImpactT
 from vedette.problem.reach import Reach
 
@@ -45,7 +45,7 @@ class TokenNode(Generic[ImpactT]):
             neighbours: on the tree, in the order in which the token visits them.
             parent: the neighbour towards the root, ``None`` at the root.
             own: the platform.
-            epsilon: how near the ceiling is near enough, relative to the value where that exceeds 1.
+            epsilon: how near the ceiling is near enough, as a share of the value.
             max_sweeps: the round ends after so many.
             reaches: where the platforms behind each neighbour make a difference; without it messages hold
                 everything.
@@ -225,8 +225,8 @@ class TokenNode(Generic[ImpactT]):
     def _outcome(self, tally: Tally) -> Outcome | None:
         """Return how the round ends: all are content, or the value is optimal, or it took too long."""
         content = tally.quiet >= tally.size
-        near = tally.value >= tally.ceiling - self._epsilon * max(1.0, abs(tally.value))
-        optimal = near and tally.turns >= tally.size  # everybody has chosen
+        everybody = tally.turns >= tally.size  # has chosen
+        optimal = everybody and attains(tally.value, tally.ceiling, self._epsilon)
         if not (content or optimal or tally.turns >= self._max_sweeps * tally.size):
             return None
         above = tally.value + tally.slack if content else math.inf

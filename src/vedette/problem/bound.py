@@ -54,6 +54,11 @@ def bound(
     return tightest(value, ceiling, above)
 
 
+def attains(value: float, most: float, epsilon: float) -> bool:
+    """``value >= most - epsilon |value|``: all but a share is reached, in whatever unit values are."""
+    return value >= most - epsilon * abs(value)
+
+
 def tightest(value: float, *bounds: float) -> float | None:
     """Return the smallest finite bound, not below ``value`` by rounding; ``None`` if there is none."""
     least = min(bounds)
