@@ -14,8 +14,9 @@ from vedette.domains.mapping.impact import ImpactCodec
 from vedette.fusion.gaussian import wire as tracks
 from vedette.fusion.steps import wire as steps
 from vedette.negotiation import messages as negotiation
-from vedette.net import body, report
+from vedette.net import report
 from vedette.overlay import hello, packet
+from vedette.sim import shown
 
 DECODERS: dict[str, Callable[[bytes], object]] = {
     "agent message": agent.decode,
@@ -23,7 +24,7 @@ DECODERS: dict[str, Callable[[bytes], object]] = {
     "negotiation message": lambda data: negotiation.decode(data, ImpactCodec(9)),
     "step evidence": steps.decode,
     "track payload": tracks.decode,
-    "body report": body.decode,
+    "shown body": shown.decode,
     "report": report.read_report,
 }
 
