@@ -24,7 +24,7 @@ DECODERS: dict[str, Callable[[bytes], object]] = {
     "negotiation message": lambda data: negotiation.decode(data, ImpactCodec(9)),
     "step evidence": steps.decode,
     "track payload": tracks.decode,
-    "shown body": shown.decode,
+    "body report": shown.decode,
     "report": report.read_report,
 }
 
