@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -90,7 +91,12 @@ def _row(rows: Sequence[Row], name: str) -> tuple[str, ...]:
 
 
 def _ratio(interval: Interval) -> str:
-    return f"{interval.value:.2f} ({interval.low:.2f}-{interval.high:.2f})"
+    """Show a ratio; its interval if there were draws enough for one, ``-`` if there was none to compare."""
+    if math.isnan(interval.value):
+        return "-"
+    return f"{interval.value:.2f}" + (
+        "" if math.isnan(interval.low) else f" ({interval.low:.2f}-{interval.high:.2f})"
+    )
 
 
 @click.command()

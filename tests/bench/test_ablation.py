@@ -50,3 +50,9 @@ def test_the_table_shows_the_planners_means_and_the_ratios_of_the_others() -> No
     cells = [cell.strip() for cell in slower.strip("|").split("|")]
     assert cells[0] == "slower"
     assert [float(cell.split()[0]) for cell in cells[1:]] == pytest.approx([2.0] * 4)
+
+
+def test_a_ratio_of_one_draw_has_no_interval_and_what_nobody_reached_has_no_ratio() -> None:
+    rows = [row(WHOLE, 0, 1.0), row("slower", 0, 2.0) | {"t99_s": None}]
+    slower = table(rows).splitlines()[-1]
+    assert [cell.strip() for cell in slower.strip("|").split("|")] == ["slower", "2.00", "2.00", "-", "2.00"]
