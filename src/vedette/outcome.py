@@ -1,17 +1,43 @@
-"""How a mission ends."""
+"""How a mission ends: one word for files, an exit status for programs, a sentence for people."""
 
 from __future__ import annotations
 
 from enum import StrEnum
+from typing import Self
 
 NO_PROGRESS = 300.0  # a team without a new route for so long has come to its end [s]
 
 
 class Outcome(StrEnum):
-    """Why a mission ended."""
+    """Why a mission ended; ``docs/outputs.md`` lists the words."""
 
-    COMPLETE = "complete"  # all agents agree that nothing reachable is worth seeing
-    TIME_LIMIT = "time_limit"  # --max-time passed
-    INTERRUPTED = "interrupted"  # Ctrl-C
-    TEAM_LOST = "team_lost"  # no robot is alive
-    NO_PROGRESS = "no_progress"  # living robots, work left, and no new route for anybody for too long
+    status: int  # that the command exits with
+    meaning: str
+
+    def __new__(cls, word: str, status: int, meaning: str) -> Self:
+        """Make a member of its word, with all that goes with it."""
+        member = str.__new__(cls, word)
+        member._value_, member.status, member.meaning = word, status, meaning
+        return member
+
+    COMPLETE = "complete", 0, "all that the team could do is done"
+    FOUND = "found", 0, "a vehicle declared the target, and it is there"
+    MISTAKEN = "mistaken", 1, "a vehicle declared the target, and it is elsewhere"
+    UNREACHED = "unreached", 1, "work is left that was given up, since nobody could reach it"
+    ENCLOSED = "enclosed", 1, "work is left, but nobody who lives can move"
+    NO_PROGRESS = "no_progress", 1, f"work is left, but for {NO_PROGRESS:.0f} s nobody got a new route"
+    TIME_LIMIT = "time_limit", 1, "the time allowed is over"
+    TEAM_LOST = "team_lost", 1, "nobody is alive"
+    MAPS_DIFFER = "maps_differ", 1, "all are done, but they hold different maps"
+    ORDERED = "ordered", 0, "the operator ordered the end"
+    INTERRUPTED = "interrupted", 130, "the run was interrupted"
+
+    @property
+    def completed(self) -> bool:
+        """Whether the team did what it was to do."""
+        return self in (Outcome.COMPLETE, Outcome.FOUND)
+
+    @property
+    def said(self) -> str:
+        """The word as people write it."""
+        return self.value.replace("_", " ")

@@ -103,7 +103,7 @@ def test_json_prints_the_summary_alone(vedette: Command, world: Path) -> None:
     ran = vedette("explore", world / "map.yaml", "--robots", 1, "--out", "out", "--json")
     assert (ran.status, ran.err) == (0, "")
     assert ran.out == (Path("out") / "summary.json").read_text()
-    assert json.loads(ran.out)["schema_version"] == 2
+    assert json.loads(ran.out)["schema_version"] == 3
 
 
 def test_a_mission_that_runs_out_of_time_has_status_1_and_all_files(vedette: Command, world: Path) -> None:
@@ -118,7 +118,7 @@ def test_a_team_that_dies_has_status_1_and_all_files(vedette: Command, world: Pa
         "explore", world / "map.yaml", "--robots", 2, "--kill", "1@0", "--kill", "2@2.5", "--out", "out"
     )
     assert ran.status == 1
-    assert "team_lost" in ran.out
+    assert "team lost" in ran.out
     check_files(Path("out"), "explore")
 
 

@@ -59,7 +59,7 @@ def test_a_team_that_dies_has_status_1_and_all_files(track: Command) -> None:
     kills = [word for k in (1, 2, 3) for word in ("--kill", f"{k}@2")]
     ran = track("short.yaml", *kills, "--out", "out", "--no-compare")
     assert ran.status == 1
-    assert "team_lost" in ran.out
+    assert "team lost" in ran.out
     check_files(Path("out"), "track")
 
 

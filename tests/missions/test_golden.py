@@ -14,7 +14,7 @@ from tests.support.small_missions import check_complete, robots, run, small_offi
 from vedette.record.explore.observer import ExploreReport
 
 GOLDEN: dict[str, Any] = {
-    "schema_version": 2,
+    "schema_version": 3,
     "completed": True,
     "outcome": "complete",
     "seed": 7,
@@ -50,6 +50,11 @@ GOLDEN: dict[str, Any] = {
         "robot-1": {"negotiation": 21748, "fusion": 7246, "beacons": 7935, "overlay": 0},
         "robot-2": {"negotiation": 28554, "fusion": 7643, "beacons": 8369, "overlay": 0},
     },
+    "left_out": [
+        {"x": 1.55, "y": 9.65, "unknown_cells": 33, "why": "unseeable", "by": "robot-1"},
+        {"x": 0.65, "y": 1.15, "unknown_cells": 76, "why": "unseeable", "by": "robot-1"},
+        {"x": 9.65, "y": 1.35, "unknown_cells": 69, "why": "unseeable", "by": "robot-2"},
+    ],
 }
 
 APPROXIMATE = 1e-3  # relative: other machines may round the last bits otherwise

@@ -12,7 +12,7 @@ from vedette.errors import InputError, InputWarning
 from vedette.record.files import write_text
 from vedette.record.folder import OutputFolder
 from vedette.record.lock import locked
-from vedette.record.topics import atomic_stream
+from vedette.record.mcap import atomic_stream
 
 
 def _remove(path: Path) -> None:

@@ -12,7 +12,7 @@ import pytest
 
 from tests.support.places import ROOT
 from vedette.outcome import Outcome
-from vedette.record.explore.summary import ExploreSummary
+from vedette.record.explore.summary import ExploreSummary, LeftOut
 from vedette.record.summary import Spread, Timing, Traffic
 
 DOCS = ROOT / "docs" / "outputs.md"
@@ -29,8 +29,14 @@ def _summary(**changes: object) -> ExploreSummary:
         "min_clearance_m": 0.06, "rounds": 12, "sweeps": 30, "bound_ratio": None, "apart_s": 1.5,
         "messages": {"robot-1": Traffic(10, 5, 2, 1), "robot-2": Traffic(9, 5, 2)},
         "bytes": {"robot-1": Traffic(1000, 500, 20), "robot-2": Traffic(900, 500, 20)},
+        "left_out": (LeftOut(3.0, -0.25, 12, "unseeable", "robot-1"),),
     }  # fmt: skip
     return ExploreSummary(**(figures | changes))  # type: ignore[arg-type]
+
+
+def _timing() -> Timing:
+    spread = Spread(1.0, 2.0, 3.0)
+    return Timing(planning_ms=spread, answer_ms=None, round_ms=None, real_time_factor=31.5, wall_s=6.0)
 
 
 def _documented(heading: str) -> list[str]:
@@ -45,11 +51,10 @@ def test_the_documentation_lists_exactly_the_fields_in_order() -> None:
     assert _documented("timing.json") == [field.name for field in fields(Timing)]
 
 
-def test_the_documentation_names_every_outcome() -> None:
-    line = next(
-        line for line in DOCS.read_text(encoding="utf-8").splitlines() if line.startswith("| `outcome`")
-    )
-    assert set(re.findall(r"`(\w+)`", line)) == {"outcome", *Outcome}
+def test_the_documentation_lists_every_outcome_with_its_exit_status() -> None:
+    section = DOCS.read_text(encoding="utf-8").split("## How a mission ends\n")[1].split("\n## ")[0]
+    listed = re.findall(r"^\| `(\w+)` \| (\d+) \|", section, flags=re.MULTILINE)
+    assert listed == [(outcome.value, str(outcome.status)) for outcome in Outcome]
 
 
 def test_the_text_is_deterministic_json_of_plain_values() -> None:
@@ -57,7 +62,7 @@ def test_the_text_is_deterministic_json_of_plain_values() -> None:
     assert text == _summary(time_s=np.float64(0.3), seed=np.int64(3), completed=np.True_).to_json()
     assert text.endswith("}\n")
     figures = json.loads(text)
-    assert figures["schema_version"] == 2
+    assert figures["schema_version"] == 3
     assert figures["outcome"] == "complete"
     assert figures["time_s"] == 0.3
     assert figures["auc_s"] == 12.345679
@@ -81,10 +86,11 @@ def test_a_spread_holds_the_percentiles_of_its_samples() -> None:
 
 def test_files_hold_the_text(tmp_path: Path) -> None:
     _summary().write(tmp_path / "summary.json")
-    Timing(Spread(1.0, 2.0, 3.0), None, None, 31.5, 6.0).write(tmp_path / "timing.json")
+    _timing().write(tmp_path / "timing.json")
     assert (tmp_path / "summary.json").read_text(encoding="utf-8") == _summary().to_json()
     timing = json.loads((tmp_path / "timing.json").read_text(encoding="utf-8"))
     assert timing == {
+        "schema_version": 3,
         "planning_ms": {"p50": 1.0, "p95": 2.0, "max": 3.0},
         "answer_ms": None,
         "round_ms": None,

@@ -26,7 +26,6 @@ from vedette.net.team import TeamWatch
 from vedette.net.transport import Operator, Published
 from vedette.record.explore.log import ExploreSnapshot
 from vedette.record.explore.observer import ExploreReport
-from vedette.record.explore.views import Setting
 from vedette.sim.starts import choose_starts
 
 SPEED = 5.0  # times real time
@@ -206,8 +205,7 @@ def run(
         diary = Diary(plan, processes)
         operator.subscribe(Topic.REPORT, diary.take)
         fate = _Fate(diary, sorted(faults, key=lambda fault: fault.coverage))
-        setting = Setting(0, plan.options.planner, plan.options.scheme, plan.options.fusion)
-        watch = TeamWatch(plan, processes, operator, setting, max_time, sinks=(fate,))
+        watch = TeamWatch(plan, processes, operator, max_time, sinks=(fate,))
         report = watch.run()
         ended = time.monotonic()
         living = [i for i in range(len(plan.specs)) if processes.runs(i)]

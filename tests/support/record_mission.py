@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
-from vedette.record.explore.log import ExploreLog, ExploreSnapshot, RobotSample, Sink
+from vedette.record.explore.log import ExploreLog, ExploreScene, ExploreSnapshot, RobotSample
 from vedette.record.links import Link
+from vedette.record.log import Sink
 from vedette.team import PlatformSpec
 
 Point = tuple[float, float]
@@ -86,12 +87,12 @@ def mission(
         impact = _impact(frame, planning, [] if over else [p[-1] for p in plans if p], classes)
         robots = tuple(
             RobotSample(
-                spec.name,
                 *at[i],
                 state="dead" if i in dead else "driving" if plans[i] else "done",
-                goal=plans[i][-1] if plans[i] and i not in dead else None,
-                path=np.array([at[i][:2], *plans[i]]) if plans[i] and i not in dead else np.empty((0, 2)),
                 alive=i not in dead,
+                path=np.array([at[i][:2], *plans[i]]) if plans[i] and i not in dead else np.empty((0, 2)),
+                name=spec.name,
+                goal=plans[i][-1] if plans[i] and i not in dead else None,
             )
             for i, spec in enumerate(specs)
         )
@@ -106,12 +107,17 @@ def mission(
                 at[i] = _drive(at[i], plans[i], spec.speed * period)
 
 
+def scene(name: str, frame: GridFrame, planning: GridFrame, robots: Sequence[str]) -> ExploreScene:
+    """Return what stays the same all through a mission."""
+    return ExploreScene(name=name, vehicles=tuple(robots), frame=frame, planning=planning)
+
+
 def recorded(
     solid: NDArray[np.bool_],
     robots: int,
     seed: int,
     start: Point,
-    sinks: Sequence[Sink] = (),
+    sinks: Sequence[Sink[ExploreSnapshot]] = (),
     resolution: float = 0.1,
     origin: Point = (0.0, 0.0),
     kill: tuple[int, float] | None = None,
@@ -122,7 +128,7 @@ def recorded(
 ) -> ExploreLog:
     """Return the log of a pretended mission."""
     specs = [PlatformSpec(name=f"robot-{i + 1}", range=reach) for i in range(robots)]
-    log = ExploreLog("rooms", *frames(solid, resolution, origin), specs, sinks)
+    log = ExploreLog(scene("rooms", *frames(solid, resolution, origin), [spec.name for spec in specs]), sinks)
     rng = np.random.default_rng(seed)
     for snapshot in mission(solid, specs, rng, start, resolution, origin, period, limit, kill, radio):
         log.add(snapshot)

@@ -11,8 +11,9 @@ from vedette.domains.search.belief import TargetPdf
 from vedette.domains.search.evidence import evidence_of_looks
 from vedette.missions.search.case import SearchCase, made
 from vedette.missions.search.scenario import SearchScenario
+from vedette.record.log import Floats
+from vedette.record.search.curves import predicted
 from vedette.scenario import as_scenario
-from vedette.sim.search.curves import Floats, predicted
 from vedette.sim.search.simulation import SearchSetup, SearchSimulation
 
 EYE = {"type": "exponential", "detection": 0.7, "range": 100, "sigma": 60}

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from vedette.missions.track.scenario import TrackScenario, checked
+from vedette.record.track.observer import TrackReport
 from vedette.scenario import as_scenario
-from vedette.sim.track.run import TrackReport, track
+from vedette.sim.track.run import track
 from vedette.sim.track.simulation import TrackSetup, TrackSimulation
 
 POSITION = {"type": "position", "range": 120, "view": 200, "noise": 6, "detection": 0.9}

@@ -94,7 +94,7 @@ def _curve(mission: Mission) -> Table:
         (float(t), float(share), float(entropy), *map(float, way))
         for t, share, entropy, way in zip(log.times, log.coverage, log.entropy, log.path_length, strict=True)
     ]
-    columns = ("time [s]", "coverage", "entropy [nat]", *(f"{spec.name} [m]" for spec in log.specs))
+    columns = ("time [s]", "coverage", "entropy [nat]", *(f"{name} [m]" for name in log.scene.vehicles))
     return table(f"figure_6_{mission.case.planner}", "The mission by the second", columns, rows, shown=False)
 
 
@@ -133,7 +133,7 @@ def _panel(
     axes: Axes, mission: Mission, stage: ExploreSnapshot, window: Window, pixels: tuple[int, int]
 ) -> None:
     log = mission.report.log
-    colours = paint(stage, log.planning, window, pixels[::-1])
+    colours = paint(stage, log.scene.planning, window, pixels[::-1])
     extent = window.frame.extent
     axes.imshow(np.asarray(enlarge(colours, pixels)), extent=extent, origin="lower", aspect="auto", zorder=0)
     axes.set(xticks=(), yticks=(), xlim=extent[:2], ylim=extent[2:])
@@ -148,7 +148,7 @@ def _panel(
 
 def _legend(figure: Figure, mission: Mission, width: float) -> None:
     """Explain robots, ways and colours in one line under the panels."""
-    names = [spec.name for spec in mission.report.log.specs]
+    names = list(mission.report.log.scene.vehicles)
     signs = [
         *map_signs(),
         Patch(

@@ -13,8 +13,9 @@ from typing import Any
 import click
 
 from vedette.errors import InputError, InputWarning
+from vedette.outcome import Outcome
 
-BAD_INPUT, INTERRUPTED = 2, 130
+BAD_INPUT = 2
 
 
 COMMANDS = ("agent", "explore", "keys", "reproduce", "search", "status", "study", "team", "track", "world")
@@ -50,7 +51,7 @@ def main() -> None:
         with _remarks():
             sys.exit(commands.main(standalone_mode=False))
     except (click.Abort, KeyboardInterrupt):
-        sys.exit(INTERRUPTED)
+        sys.exit(Outcome.INTERRUPTED.status)
     except (click.ClickException, InputError) as error:
         text = error.format_message() if isinstance(error, click.ClickException) else str(error)
         _say(text)

@@ -9,17 +9,17 @@ import click
 
 from vedette.cli.exploring import closing, exploring_options, inputs_of, team_of, world_of, write_outputs
 from vedette.cli.options import (
-    STATUS,
+    end,
     ending_on_ctrl_c,
     fault_options,
     output_options,
     parse_faults,
     parse_kills,
 )
-from vedette.record.explore.live import LiveView
+from vedette.record.explore.live import ExploreDisplay
+from vedette.record.explore.log import ExploreScene
 from vedette.record.explore.mcap import ExploreMcapWriter
 from vedette.record.explore.observer import ExploreReport
-from vedette.record.explore.views import planning_frame
 from vedette.record.folder import OutputFolder
 from vedette.sim.explore.run import explore as run_mission
 from vedette.sim.explore.run import prepare
@@ -80,18 +80,14 @@ def explore(
     with made as folder, ending_on_ctrl_c(prepared.stop):
         report = _run(prepared, folder, quiet=as_json)
         write_outputs(report, world, folder, animate)
-        said = report.summary.to_json() if as_json else closing(report.summary, folder.path)
-    click.echo(said, nl=not as_json)
-    raise SystemExit(STATUS.get(report.summary.outcome, 1))
+        closed = closing(report.summary, folder.path)
+    end(report.summary, closed, as_json)
 
 
 def _run(prepared: ExploreSimulation, folder: OutputFolder, quiet: bool) -> ExploreReport:
     """Run the mission, shown live unless ``quiet`` and recorded in the folder."""
-    world, planning = prepared.world, planning_frame(prepared.world)
+    scene = ExploreScene.of(prepared.world, [spec.name for spec in prepared.specs])
     with ExitStack() as sinks:
-        live = sinks.enter_context(LiveView(world.name, world.frame, planning, quiet=quiet))
-        names = [spec.name for spec in prepared.specs]
-        mcap = sinks.enter_context(
-            ExploreMcapWriter(lambda: folder / "run.mcap", world.name, world.frame, planning, names)
-        )
+        live = sinks.enter_context(ExploreDisplay(scene, quiet))
+        mcap = sinks.enter_context(ExploreMcapWriter(lambda: folder / "run.mcap", scene))
         return run_mission(prepared, (live, mcap, folder))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import Any, TypeVar
 import click
 import numpy as np
 
-from vedette.cli.options import OneOf, Positive, seed_option, with_options
+from vedette.cli.options import OneOf, Positive, seed_option, with_options, write_figures
 from vedette.domains.mapping.planners import DEFAULT, PLANNERS
 from vedette.errors import InputError
 from vedette.maps import map_files, write_map
@@ -18,7 +19,7 @@ from vedette.maps.world import World
 from vedette.missions.explore.assemble import FUSIONS
 from vedette.negotiation import SCHEMES
 from vedette.record.explore.curves import curves_png
-from vedette.record.explore.film import animate_gif
+from vedette.record.explore.film import explore_gif
 from vedette.record.explore.observer import ExploreReport
 from vedette.record.explore.progress import progress_png
 from vedette.record.explore.summary import ExploreSummary
@@ -127,22 +128,26 @@ def inputs_of(map_path: Path | None, team: Path | None, faults: str | None = Non
 
 def write_outputs(report: ExploreReport, world: World, folder: OutputFolder, animate: bool) -> None:
     """Write all files of a mission but the run record, which grows while it lasts."""
-    report.summary.write(folder / "summary.json")
-    report.timing.write(folder / "timing.json")
+    write_figures(report.summary, report.timing, folder)
     write_map(folder / "map", world.frame, report.classes)
     progress_png(report.log, folder / "progress.png")
     curves_png(report.log, report.summary, folder / "curves.png")
     if animate:
-        animate_gif(report.log, folder / "mission.gif")
+        explore_gif(report.log, folder / "mission.gif")
 
 
-def closing(summary: ExploreSummary, folder: Path) -> str:
-    """Say in a few lines how it went and where the pictures are."""
+def closing(summary: ExploreSummary, folder: Path) -> list[str]:
+    """Say in a few lines how it went, what was left out, and where the pictures are."""
     t90 = "-" if summary.t90_s is None else f"{summary.t90_s:.0f} s"
     longest = max(summary.path_m.values())
-    return (
-        f"{summary.outcome.value}: {100 * summary.coverage:.1f} % of {summary.world} known after "
+    lines = [
+        f"{summary.outcome.said}: {100 * summary.coverage:.1f} % of {summary.world} known after "
         f"{summary.time_s:.0f} s (90 % after {t90}), longest way {longest:.0f} m, "
-        f"{summary.collisions} collisions\n"
-        f"pictures: {folder / 'progress.png'}, {folder / 'curves.png'}; all else beside them"
-    )
+        f"{summary.collisions} collisions",
+        f"pictures: {folder / 'progress.png'}, {folder / 'curves.png'}; all else beside them",
+    ]
+    if summary.left_out:
+        count = Counter(spot.why for spot in summary.left_out)
+        said = ", ".join(f"{number} {why}" for why, number in count.items())
+        lines.insert(1, f"frontiers left out: {said}; summary.json lists them")
+    return lines

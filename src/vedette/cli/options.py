@@ -9,19 +9,19 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, NoReturn, TypeVar
 
 import click
 
 from vedette.errors import InputError, nearest_name
-from vedette.outcome import Outcome
+from vedette.record.folder import OutputFolder
+from vedette.record.summary import MissionSummary, Timing
 from vedette.sim.faults import Schedule, load_faults
 from vedette.sim.faults.kinds import Skew
 from vedette.sim.radio import Radio, parse_radio
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 
-STATUS = {Outcome.COMPLETE: 0, Outcome.INTERRUPTED: 130}  # any other end: 1
 _KILL = re.compile(r"(\d+)@(\d+(?:\.\d*)?)")
 
 
@@ -177,6 +177,23 @@ def ending_on_ctrl_c(stop: Callable[[], None]) -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGINT, before)
+
+
+def write_figures(summary: MissionSummary, timing: Timing, folder: OutputFolder) -> None:
+    """Write ``summary.json`` and ``timing.json``."""
+    summary.write(folder / "summary.json")
+    timing.write(folder / "timing.json")
+
+
+def end(summary: MissionSummary, lines: Sequence[str], as_json: bool) -> NoReturn:
+    """Print the summary alone, or lines for people, and leave with the outcome's status."""
+    outcome = summary.outcome
+    if as_json:
+        click.echo(summary.to_json(), nl=False)
+    else:
+        why = [] if outcome.completed else [f"why it ended: {outcome.meaning}"]
+        click.echo("\n".join([*lines, *why]))
+    raise SystemExit(outcome.status)
 
 
 def with_options(command: CommandT, *options: Callable[[CommandT], CommandT]) -> CommandT:

@@ -17,13 +17,12 @@ from rich.text import Text
 
 from vedette.cli.options import seed_option
 from vedette.errors import InputError
+from vedette.outcome import Outcome
 from vedette.record.folder import OutputFolder
 from vedette.study.provenance import provenance
 
 if TYPE_CHECKING:
     from vedette_reproduction.reproduce import Result
-
-COMPLETE, INTERRUPTED = 0, 130
 
 
 @click.command()
@@ -53,7 +52,7 @@ def reproduce(out: Path | None, quick: bool, seed: int, force: bool) -> None:
     ):
         result = run_all(folder.path, QUICK if quick else FULL, seed, source, progress)
     click.echo(_closing(result))
-    raise SystemExit(COMPLETE if result.complete else INTERRUPTED)
+    raise SystemExit((Outcome.COMPLETE if result.complete else Outcome.INTERRUPTED).status)
 
 
 def _require() -> None:

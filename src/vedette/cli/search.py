@@ -10,12 +10,14 @@ import click
 from vedette.cli.options import (
     OneOf,
     Positive,
+    end,
     ending_on_ctrl_c,
     fault_options,
     output_options,
     parse_faults,
     parse_kills,
     seed_option,
+    write_figures,
 )
 from vedette.missions.search.case import SearchCase, default_case, read_case
 from vedette.missions.search.options import COORDINATIONS, FUSIONS
@@ -23,18 +25,18 @@ from vedette.missions.search.scenario import Heat
 from vedette.negotiation import SCHEMES
 from vedette.record.folder import OutputFolder
 from vedette.record.search.detection import detection_png
-from vedette.record.search.film import search_gif
 from vedette.record.search.live import search_display
+from vedette.record.search.log import SearchScene
 from vedette.record.search.mcap import SearchMcapWriter
+from vedette.record.search.observer import SearchReport
+from vedette.record.search.panel import search_gif
 from vedette.record.search.stages import pdf_png
-from vedette.record.search.summary import SearchOutcome, SearchSummary
+from vedette.record.search.summary import SearchSummary
 from vedette.sim.radio import Radio
-from vedette.sim.search.run import SearchReport, scene_of
 from vedette.sim.search.run import search as run_search
 from vedette.sim.search.simulation import SearchSetup, SearchSimulation
 from vedette.sim.search.trials import Running, assessed
 
-STATUS = {SearchOutcome.FOUND: 0, SearchOutcome.INTERRUPTED: 130}  # any other end: 1
 MOST_TRIALS = 1_000_000
 
 
@@ -116,9 +118,8 @@ def search(
     with made as folder, ending_on_ctrl_c(running.stop):
         report = _run(simulation, folder, running, trials, not no_compare, quiet=as_json)
         _write(report, folder, animate)
-        said = report.summary.to_json() if as_json else _closing(report.summary, folder.path)
-    click.echo(said, nl=not as_json)
-    raise SystemExit(STATUS.get(report.summary.outcome, 1))
+        closed = _closing(report.summary, folder.path)
+    end(report.summary, closed, as_json)
 
 
 def _inputs(case: SearchCase, scenario_path: Path | None, faults: str | None) -> list[Path]:
@@ -139,7 +140,7 @@ def _run(
     quiet: bool,
 ) -> SearchReport:
     """Run the search, shown live unless ``quiet`` and recorded in the folder; then what goes beside it."""
-    scene = scene_of(simulation)
+    scene = SearchScene.of(simulation.case, simulation.setup.max_time)
     running.current = simulation
     with ExitStack() as sinks:
         live = sinks.enter_context(search_display(scene, quiet))
@@ -150,23 +151,24 @@ def _run(
 
 
 def _write(report: SearchReport, folder: OutputFolder, animate: bool) -> None:
-    report.summary.write(folder / "summary.json")
-    report.timing.write(folder / "timing.json")
+    write_figures(report.summary, report.timing, folder)
     pdf_png(report.log, report.summary, folder / "pdf.png")
     detection_png(report.curves, report.summary, folder / "detection.png")
     if animate:
         search_gif(report.log, folder / "mission.gif")
 
 
-def _closing(summary: SearchSummary, folder: Path) -> str:
+def _closing(summary: SearchSummary, folder: Path) -> list[str]:
     """Say in a few lines how it went and where the pictures are."""
     if summary.found_s is None:
-        how = f"{summary.outcome.value.replace('_', ' ')} after {summary.time_s:.0f} s"
+        how = f"{summary.outcome.said} after {summary.time_s:.0f} s"
     else:
         how = f"found after {summary.found_s:.0f} s by {summary.found_by}, {summary.error_m:.0f} m off"
-    means = ", ".join(f"{name} {quality.mean_time_s:.0f} s" for name, quality in summary.comparison.items())
-    expected = f"mean time to detection, cut at {summary.duration_s:.0f} s: {means}\n" if means else ""
-    return (
-        f"{how}; probability of detection by then {100 * summary.detection_then:.0f} %\n{expected}"
-        f"pictures: {folder / 'pdf.png'}, {folder / 'detection.png'}; all else beside them"
-    )
+    lines = [
+        f"{how}; probability of detection by then {100 * summary.detection_then:.0f} %",
+        f"pictures: {folder / 'pdf.png'}, {folder / 'detection.png'}; all else beside them",
+    ]
+    if summary.comparison:
+        means = (f"{name} {quality.mean_time_s:.0f} s" for name, quality in summary.comparison.items())
+        lines.insert(1, f"mean time to detection, cut at {summary.duration_s:.0f} s: {', '.join(means)}")
+    return lines

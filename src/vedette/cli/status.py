@@ -15,6 +15,7 @@ from vedette.net.config import ADMITTED, load_config
 from vedette.net.credentials import credentials
 from vedette.net.status import ask, status_json, status_table
 from vedette.net.transport import Operator
+from vedette.outcome import Outcome
 
 
 @click.command()
@@ -51,4 +52,6 @@ def status(config_paths: tuple[Path, ...], keys: Path | None, wait: float, as_js
         Console().print(status_table(told))
     answered = [condition for condition in told.values() if condition is not None]
     agreed = len({condition.digest for condition in answered}) <= 1
-    raise SystemExit(0 if agreed and len(answered) == len(told) else 1)
+    raise SystemExit(
+        (Outcome.COMPLETE if agreed and len(answered) == len(told) else Outcome.MAPS_DIFFER).status
+    )

@@ -14,6 +14,7 @@ from rich.console import Console
 
 from vedette.cli.options import OneOf
 from vedette.maps import map_files
+from vedette.outcome import Outcome
 from vedette.record.lock import locked
 from vedette.study.backends import BACKENDS, Backend, require
 from vedette.study.combinations import runs_of
@@ -23,7 +24,7 @@ from vedette.study.spec import COPY, Spec, find_spec, load_spec
 if TYPE_CHECKING:
     from vedette.study.conduct import Conducted
 
-BROKE, INTERRUPTED = 1, 130
+BROKE = 1
 
 
 @click.command()
@@ -51,7 +52,7 @@ def study(spec_name: str, out: Path | None, jobs: int | None, backend: str) -> N
     if conducted.results:
         click.echo(_closing(conducted, folder))
     if conducted.missing:
-        raise SystemExit(INTERRUPTED)
+        raise SystemExit(Outcome.INTERRUPTED.status)
     raise SystemExit(BROKE if conducted.broken else 0)
 
 

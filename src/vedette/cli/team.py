@@ -14,15 +14,15 @@ import click
 import numpy as np
 
 from vedette.cli.exploring import closing, exploring_options, inputs_of, team_of, world_of, write_outputs
-from vedette.cli.options import STATUS, Positive, ending_on_ctrl_c, output_options
+from vedette.cli.options import Positive, end, ending_on_ctrl_c, output_options
 from vedette.missions.explore.options import ExploreOptions
 from vedette.net.launch import TeamPlan, TeamProcesses
 from vedette.net.names import robot_name
 from vedette.net.team import TeamWatch
 from vedette.net.transport import Operator
-from vedette.record.explore.live import LiveView
+from vedette.record.explore.live import ExploreDisplay
+from vedette.record.explore.log import ExploreScene
 from vedette.record.explore.mcap import ExploreMcapWriter
-from vedette.record.explore.views import Setting, planning_frame
 from vedette.record.folder import OutputFolder
 from vedette.sim.starts import choose_starts
 
@@ -82,28 +82,23 @@ def explore(
     places = choose_starts(world, specs, np.random.default_rng([seed, 1]))
     options = ExploreOptions(planner, scheme, fusion, return_home)
     plan = TeamPlan(world, specs, places, options, seed, speed, lease)
-    planning = planning_frame(world)
+    scene = ExploreScene.of(world, [spec.name for spec in specs])
     with OutputFolder.make(out, force, world.name, inputs_of(map_path, team)) as folder:
         with ExitStack() as stack:
             stack.enter_context(_ending_on_any_signal())
             secrets = stack.enter_context(TemporaryDirectory(prefix="vedette-team-"))
             processes = stack.enter_context(TeamProcesses(plan, Path(secrets), folder / "agents"))
             operator = stack.enter_context(Operator(processes.operator))
-            live = stack.enter_context(LiveView(world.name, world.frame, planning, quiet=as_json))
-            names = [spec.name for spec in specs]
-            mcap = stack.enter_context(
-                ExploreMcapWriter(lambda: folder / "run.mcap", world.name, world.frame, planning, names)
-            )
-            setting = Setting(seed, planner, options.negotiates_by, fusion)
-            watch = TeamWatch(plan, processes, operator, setting, max_time, (live, mcap, folder))
+            live = stack.enter_context(ExploreDisplay(scene, as_json))
+            mcap = stack.enter_context(ExploreMcapWriter(lambda: folder / "run.mcap", scene))
+            watch = TeamWatch(plan, processes, operator, max_time, (live, mcap, folder))
             stack.enter_context(ending_on_ctrl_c(watch.stop))
             report = watch.run()
         write_outputs(report, world, folder, animate)
-        said = report.summary.to_json() if as_json else closing(report.summary, folder.path)
+        closed = closing(report.summary, folder.path)
     for line in _remarks(watch, report.timing.real_time_factor, speed):
         click.echo(f"vedette: {line}", err=True)
-    click.echo(said, nl=not as_json)
-    raise SystemExit(STATUS.get(report.summary.outcome, 1))
+    end(report.summary, closed, as_json)
 
 
 def _remarks(watch: TeamWatch, pace: float, speed: float) -> Iterator[str]:

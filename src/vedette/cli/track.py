@@ -9,15 +9,16 @@ from pathlib import Path
 import click
 
 from vedette.cli.options import (
-    STATUS,
     OneOf,
     Positive,
+    end,
     ending_on_ctrl_c,
     fault_options,
     output_options,
     parse_faults,
     parse_kills,
     seed_option,
+    write_figures,
 )
 from vedette.domains.tracking.objective import OBJECTIVES
 from vedette.fusion.gaussian import WAYS
@@ -26,14 +27,15 @@ from vedette.missions.track.scenario import default_scenario, read_scenario
 from vedette.negotiation import SCHEMES
 from vedette.record.folder import OutputFolder
 from vedette.record.track.entropy import entropy_png
-from vedette.record.track.film import track_gif
 from vedette.record.track.live import track_display
-from vedette.record.track.log import Scene
+from vedette.record.track.log import TrackScene
 from vedette.record.track.mcap import TrackMcapWriter
+from vedette.record.track.observer import TrackReport
+from vedette.record.track.panel import track_gif
 from vedette.record.track.summary import TrackSummary
 from vedette.record.track.tracks import tracks_png
 from vedette.sim.radio import Radio
-from vedette.sim.track.run import TrackReport, compared, scene_of
+from vedette.sim.track.run import compared
 from vedette.sim.track.run import track as run_mission
 from vedette.sim.track.simulation import TrackSetup, TrackSimulation
 
@@ -123,9 +125,8 @@ def track(
             if not no_compare:
                 report = compared(report, scenario, setup, running.beside)
             _write(report, folder, animate)
-        said = report.summary.to_json() if as_json else _closing(report.summary, folder.path)
-    click.echo(said, nl=not as_json)
-    raise SystemExit(STATUS.get(report.summary.outcome, 1))
+        closed = _closing(report.summary, folder.path)
+    end(report.summary, closed, as_json)
 
 
 @dataclass
@@ -147,7 +148,7 @@ class _Running:
     def live(self, simulation: TrackSimulation) -> TrackReport:
         """Run a mission, shown live unless quiet and recorded in the folder."""
         self._begin(simulation)
-        scene: Scene = scene_of(simulation, self.name)
+        scene = TrackScene.of(simulation.scenario, self.name)
         with ExitStack() as sinks:
             live = sinks.enter_context(track_display(scene, self.quiet))
             mcap = sinks.enter_context(TrackMcapWriter(lambda: self.folder / "run.mcap", scene))
@@ -167,8 +168,7 @@ class _Running:
 
 
 def _write(report: TrackReport, folder: OutputFolder, animate: bool) -> None:
-    report.summary.write(folder / "summary.json")
-    report.timing.write(folder / "timing.json")
+    write_figures(report.summary, report.timing, folder)
     tracks_png(report.log, folder / "tracks.png")
     logs = {report.summary.coordination: report.log, **report.others}
     entropy_png(logs, report.left_out, folder / "entropy.png")
@@ -176,16 +176,15 @@ def _write(report: TrackReport, folder: OutputFolder, animate: bool) -> None:
         track_gif(report.log, folder / "mission.gif")
 
 
-def _closing(summary: TrackSummary, folder: Path) -> str:
+def _closing(summary: TrackSummary, folder: Path) -> list[str]:
     """Say in a few lines how it went and where the pictures are."""
-    own = summary.quality
     lines = [
-        f"{summary.outcome.value}: {summary.vehicles} vehicles followed {summary.targets} targets for "
-        f"{summary.time_s:.0f} s; entropy {own.entropy_mean_nat:.1f} nat on average, "
-        f"position error {own.position_rmse_m:.1f} m (rms), NEES {own.nees:.2f}"
+        f"{summary.outcome.said}: {summary.vehicles} vehicles followed {summary.targets} targets for "
+        f"{summary.time_s:.0f} s; entropy {summary.entropy_mean_nat:.1f} nat on average, "
+        f"position error {summary.position_rmse_m:.1f} m (rms), NEES {summary.nees:.2f}",
+        f"pictures: {folder / 'tracks.png'}, {folder / 'entropy.png'}; all else beside them",
     ]
     if summary.comparison:
         each = (f"{name} {quality.entropy_mean_nat:.1f}" for name, quality in summary.comparison.items())
-        lines.append(f"mean entropy [nat]: {', '.join(each)}")
-    lines.append(f"pictures: {folder / 'tracks.png'}, {folder / 'entropy.png'}; all else beside them")
-    return "\n".join(lines)
+        lines.insert(1, f"mean entropy [nat]: {', '.join(each)}")
+    return lines

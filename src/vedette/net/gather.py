@@ -7,11 +7,12 @@ from collections.abc import Mapping
 import numpy as np
 
 from vedette.domains.mapping.impact import ImpactCodec
+from vedette.domains.mapping.platform import GivenUp
 from vedette.maps import GridFrame
 from vedette.net.report import Condition, Report, classes_of, read_report, seen_of
 from vedette.overlay import LinkStatus, Place, Status
 from vedette.record.explore.log import RobotSample
-from vedette.record.explore.views import RobotFigures, RobotView
+from vedette.record.explore.views import GroundFigures, RobotView, left_out
 from vedette.record.figures import RoundFigures
 from vedette.record.summary import Traffic
 
@@ -34,6 +35,7 @@ def view_of(payload: bytes, frame: GridFrame, codec: ImpactCodec) -> tuple[Condi
         seen=seen_of(report),
         impact=None if report.impact is None else codec.decode(report.impact),
         figures=_figures(report),
+        left_out=left_out([GivenUp(*spot) for spot in condition.given_up], condition.name),
     )
 
 
@@ -51,12 +53,12 @@ def _sample(condition: Condition) -> RobotSample:
     path = np.array(condition.path[: len(condition.path) // 2 * 2], np.float64).reshape(-1, 2)
     goal = (float(path[-1, 0]), float(path[-1, 1])) if len(path) else None
     at = condition.x, condition.y, condition.heading
-    return RobotSample(condition.name, *at, condition.state, goal, path, alive=True)
+    return RobotSample(*at, condition.state, True, path, condition.name, goal)
 
 
-def _figures(report: Report) -> RobotFigures:
+def _figures(report: Report) -> GroundFigures:
     told = report.condition
-    return RobotFigures(
+    return GroundFigures(
         travelled_m=told.travelled,
         collisions=told.collisions,
         min_clearance_m=told.min_clearance,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import zlib
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import msgspec
 import numpy as np
@@ -40,6 +40,15 @@ class LinkReport(msgspec.Struct, frozen=True, array_like=True):
     round_trip: Real | None
     offset: Real | None
     silent: Real | None
+
+
+class Spot(NamedTuple):
+    """A frontier that the robot has given up, as ``vedette.domains.mapping.platform.GivenUp``."""
+
+    x: Real  # [m], team frame
+    y: Real
+    unknown: Count  # cells near it
+    visited: bool
 
 
 class Condition(msgspec.Struct, frozen=True, array_like=True, tag=1):
@@ -81,6 +90,7 @@ class Condition(msgspec.Struct, frozen=True, array_like=True, tag=1):
     answer_ms: Spread | None  # a negotiation message
     round_ms: Spread | None  # rounds that this robot began, as the root, from end to end
     decided: Real | None = None  # how long ago the latest round ended with a decision, in real time [s]
+    given_up: Annotated[tuple[Spot, ...], Meta(max_length=1024)] = ()
 
 
 class Report(msgspec.Struct, frozen=True, array_like=True, tag=2):

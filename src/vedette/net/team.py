@@ -17,12 +17,13 @@ from vedette.net.names import Topic, robot_name
 from vedette.net.report import Condition, Spread
 from vedette.net.transport import Operator, Published
 from vedette.outcome import NO_PROGRESS, Outcome
-from vedette.record.explore.log import RobotSample, Sink
+from vedette.record.explore.log import ExploreSnapshot, RobotSample
 from vedette.record.explore.observer import ExploreObserver, ExploreReport
-from vedette.record.explore.views import RobotFigures, RobotView, Setting, planning_frame
+from vedette.record.explore.views import GroundFigures, RobotView
 from vedette.record.links import Link, links_of
+from vedette.record.log import Sink
+from vedette.record.summary import Setting, Timing
 from vedette.record.summary import Spread as Statistics
-from vedette.record.summary import Timing
 
 STARTING = 60.0  # a robot that has not reported after so long is lost [s]
 SILENT = 10.0  # one that reported before and has been silent for so long is not waited for [s]
@@ -36,9 +37,8 @@ class TeamWatch:
     plan: TeamPlan
     team: TeamProcesses
     operator: Operator
-    setting: Setting
     max_time: float  # of the mission [s]
-    sinks: Sequence[Sink] = ()
+    sinks: Sequence[Sink[ExploreSnapshot]] = ()
     stopped: bool = False
     malformed: int = 0  # reports that did not make sense
     conditions: dict[int, Condition] = field(default_factory=dict)  # the latest, by robot
@@ -58,8 +58,10 @@ class TeamWatch:
             InputError: a robot's process ends by itself before the mission begins.
         """
         plan = self.plan
-        observer = ExploreObserver(plan.world, plan.specs, plan.starts, self.setting, self.sinks)
-        self._codec = ImpactCodec(planning_frame(plan.world).size)
+        observer = ExploreObserver(
+            plan.world, plan.specs, plan.starts, plan.options, Setting(seed=plan.seed), self.sinks
+        )
+        self._codec = ImpactCodec(observer.log.scene.planning.size)
         inbox = self.operator.inbox
         self.operator.subscribe(Topic.REPORT, inbox.put)
         self._began, outcome, next_look = time.monotonic(), None, 0.0
@@ -148,10 +150,8 @@ class TeamWatch:
     def _unheard(self, i: int) -> RobotView:
         x, y, heading = self.plan.starts[i].tolist()
         shape = self.plan.world.frame.shape
-        sample = RobotSample(
-            self.plan.specs[i].name, x, y, heading, "starting", None, np.empty((0, 2)), alive=True
-        )
-        return RobotView(sample, np.zeros(shape, np.uint8), np.zeros(shape, np.bool_), None, RobotFigures())
+        sample = RobotSample(x, y, heading, "starting", True, np.empty((0, 2)), self.plan.specs[i].name, None)
+        return RobotView(sample, np.zeros(shape, np.uint8), np.zeros(shape, np.bool_), None, GroundFigures())
 
     def _links(self) -> tuple[Link, ...] | None:
         """Return the links that both ends tell of; None: it is too early to say that one is missing."""

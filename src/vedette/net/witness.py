@@ -13,7 +13,7 @@ from vedette.agent.body import Body
 from vedette.maps import UNKNOWN
 from vedette.missions.explore.exploration import Exploration
 from vedette.net import report as wire
-from vedette.net.report import Condition, LinkReport, Spread
+from vedette.net.report import Condition, LinkReport, Spot, Spread
 from vedette.net.transport import Transport
 from vedette.overlay import LinkStatus
 from vedette.record.clock import Clock
@@ -114,6 +114,9 @@ class Witness:
             planning_ms=_spread(self.clock.planning_ms, len(self.clock.planning)),
             answer_ms=_spread(self.clock.answer_ms, len(self.clock.answers)),
             round_ms=_spread(Statistics.of([1e3 * took for took in self._rounds]), len(self._rounds)),
+            given_up=tuple(
+                Spot(spot.x, spot.y, spot.unknown, spot.visited) for spot in self._mission.platform.given_up
+            ),
             decided=None if self._decided is None else max(now - self._decided, 0.0),
         )
 

@@ -33,8 +33,13 @@ class Clock:
     def timing(self, now: float) -> Timing:
         """Return the wall-clock figures of a mission that has come to ``now`` [s], its rounds simulated."""
         wall_s = self.elapsed()
-        factor = now / wall_s if wall_s > 0 else 0.0
-        return Timing(self.planning_ms, self.answer_ms, None, factor, wall_s)
+        return Timing(
+            planning_ms=self.planning_ms,
+            answer_ms=self.answer_ms,
+            round_ms=None,
+            real_time_factor=now / wall_s if wall_s > 0 else 0.0,
+            wall_s=wall_s,
+        )
 
     def measured(self, robot: int, rounds: Rounds, act: Callable[[], T]) -> T:
         """Let a robot's agent do something, and count it if it is part of a round."""

@@ -6,22 +6,16 @@ import math
 import time
 from collections.abc import Callable
 from types import TracebackType
-from typing import Generic, Protocol, TypeVar
+from typing import Generic, TypeVar
 
 from rich.console import Console, RenderableType
 from rich.live import Live
 
+from vedette.record.log import Timed
+
 _REFRESH = 0.1  # least wall time between two pictures [s]
 _DRAWING_SHARE = 0.1  # of the wall time that drawing may take
 LINE_PERIOD = 10.0  # simulated time between two plain lines [s]
-
-
-class Timed(Protocol):
-    """A moment of a mission."""
-
-    @property
-    def t(self) -> float:
-        """Simulated time [s]."""
 
 
 SnapshotT = TypeVar("SnapshotT", bound=Timed)

@@ -1,9 +1,9 @@
-"""Figures that every mission has: rounds and traffic."""
+"""Figures that every mission has, by robot and of the team: rounds, ways, traffic."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from vedette.agent.effects import Traffic as Kind
 from vedette.agent.rounds import Rounds
@@ -27,27 +27,42 @@ class RoundFigures:
 
 
 @dataclass(frozen=True)
-class Negotiated:
-    """How the team's rounds went."""
+class RobotFigures:
+    """What one robot has counted up to now."""
 
+    travelled_m: float = 0.0
+    rounds: RoundFigures = field(default_factory=RoundFigures)
+    messages: Traffic = field(default_factory=Traffic)  # sent
+    bytes: Traffic = field(default_factory=Traffic)
+
+
+@dataclass(frozen=True)
+class TeamFigures:
+    """The same of a team, as summaries hold them."""
+
+    path_m: Mapping[str, float]
     rounds: int  # that the robot with the most of them has ended with a decision
     sweeps: int  # in these
     bound_ratio: float | None  # mean value over bound, all robots' decisions; None: no decision had a bound
+    messages: Mapping[str, Traffic]
+    bytes: Mapping[str, Traffic]
 
     @classmethod
-    def by(cls, team: Sequence[RoundFigures]) -> Negotiated:
-        """Return how the rounds of a team went."""
-        leader = max(team, key=lambda each: each.rounds)
-        bounded = sum(each.bounded for each in team)
-        mean = sum(each.bound_ratios for each in team) / bounded if bounded else None
-        return cls(leader.rounds, leader.sweeps, mean)
+    def of(cls, team: Mapping[str, RobotFigures]) -> TeamFigures:
+        """Return the figures of a team by its robots' names."""
+        rounds = [each.rounds for each in team.values()]
+        leader = max(rounds, key=lambda each: each.rounds)
+        bounded = sum(each.bounded for each in rounds)
+        return cls(
+            path_m={name: each.travelled_m for name, each in team.items()},
+            rounds=leader.rounds,
+            sweeps=leader.sweeps,
+            bound_ratio=sum(each.bound_ratios for each in rounds) / bounded if bounded else None,
+            messages={name: each.messages for name, each in team.items()},
+            bytes={name: each.bytes for name, each in team.items()},
+        )
 
 
 def traffic_of(sent: Mapping[Kind, Sequence[int]], robot: int) -> Traffic:
-    """Return what one robot sent of each kind (``Links.messages_sent``, ``.bytes_sent``)."""
+    """Return what one robot sent of each kind (``Network.messages_sent``, ``.bytes_sent``)."""
     return Traffic(**{kind.value: counts[robot] for kind, counts in sent.items()})
-
-
-def traffic(names: Sequence[str], sent: Mapping[Kind, Sequence[int]]) -> dict[str, Traffic]:
-    """Return messages or bytes sent (``Links.messages_sent``, ``.bytes_sent``) by name and kind."""
-    return {name: traffic_of(sent, i) for i, name in enumerate(names)}

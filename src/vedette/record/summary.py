@@ -1,28 +1,50 @@
-"""What the figures of all missions share: outcomes, traffic, and ``timing.json`` (wall clock)."""
+"""What the figures of all missions share: how they begin, traffic, and ``timing.json`` (wall clock)."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from enum import StrEnum
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
+from vedette.outcome import Outcome
 from vedette.record.files import write_text
 from vedette.record.plain import json_text
 
-SCHEMA_VERSION = 2
+
+@dataclass(frozen=True, kw_only=True)
+class Figures:
+    """A file of figures, its fields in the order declared; ``docs/schemas`` says what may be in it."""
+
+    schema_version: Literal[3] = 3  # goes up when a field changes its meaning or goes away
+
+    def to_json(self) -> str:
+        """Return the text of the file: floats to 6 decimals."""
+        return json_text(self)
+
+    def write(self, path: Path | str) -> None:
+        """Put the file in place."""
+        write_text(path, self.to_json())
 
 
-class Outcome(StrEnum):
-    """Why a mission ended."""
+@dataclass(frozen=True, kw_only=True)
+class MissionSummary(Figures):
+    """What one mission achieved, in simulated time only: how every ``summary.json`` begins."""
 
-    COMPLETE = "complete"  # all agents agree that nothing reachable is worth seeing
-    TIME_LIMIT = "time_limit"  # --max-time passed
-    INTERRUPTED = "interrupted"  # Ctrl-C
-    TEAM_LOST = "team_lost"  # no robot is alive
-    NO_PROGRESS = "no_progress"  # living robots, work left, and no new route for anybody for too long
+    completed: bool
+    outcome: Outcome
+    seed: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class Setting:
+    """How a mission was set up beside what its team agrees on, as ``summary.json`` tells it."""
+
+    seed: int
+    radio: str | None = None  # RANGE[,WALL_DB]; None: everybody hears everybody
+    faults: str | None = None  # a file's name, or the seed of a schedule
 
 
 @dataclass(frozen=True)
@@ -52,8 +74,8 @@ class Spread:
         return cls(float(p50), float(p95), float(top))
 
 
-@dataclass(frozen=True)
-class Timing:
+@dataclass(frozen=True, kw_only=True)
+class Timing(Figures):
     """Wall-clock figures of one mission: they differ from run to run, so they have a file of their own."""
 
     planning_ms: Spread | None  # all CPU time that one robot spends on one replan, all sweeps
@@ -61,11 +83,3 @@ class Timing:
     round_ms: Spread | None  # wall time of a round from end to end; None: rounds were simulated
     real_time_factor: float  # simulated / wall seconds
     wall_s: float
-
-    def to_json(self) -> str:
-        """Return the text of ``timing.json``."""
-        return json_text(self)
-
-    def write(self, path: Path | str) -> None:
-        """Put ``timing.json`` in place."""
-        write_text(path, self.to_json())

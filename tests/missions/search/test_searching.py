@@ -17,10 +17,11 @@ from vedette.errors import InputError
 from vedette.missions.search.options import COORDINATIONS, FUSIONS
 from vedette.missions.search.searching import Looks, Searching
 from vedette.outcome import Outcome
-from vedette.record.search.summary import SearchOutcome
-from vedette.sim.search.curves import detected_at, dkw, ideal, wilson
+from vedette.record.search.counting import dkw, wilson
+from vedette.record.search.curves import ideal
 from vedette.sim.search.run import search
 from vedette.sim.search.simulation import SearchSetup, SearchSimulation
+from vedette.sim.search.trials import detected_at
 
 STILL: dict[str, Any] = {}
 SURE = {"type": "definite", "detection": 1.0, "range": 70, "noise": 5}
@@ -205,7 +206,7 @@ def test_a_target_in_front_of_a_sure_sensor_is_found_when_it_comes_into_range() 
     simulation = SearchSimulation(scene, SearchSetup(max_time=60.0))
     report = search(simulation)
     summary = report.summary
-    assert summary.outcome is SearchOutcome.FOUND
+    assert summary.outcome is Outcome.FOUND
     assert summary.found_s is not None
     assert summary.found_s == summary.time_s
     finder = scene.names.index(str(summary.found_by))
@@ -241,8 +242,8 @@ def test_a_place_is_declared_when_the_posterior_there_passes_the_threshold() -> 
             pdf = simulation.missions[simulation.declared[0]].pdf(simulation.plan.step(found.time))
             assert pdf.probability_near(found.x, found.y, 80.0) >= 0.9
             assert summary.error_m is not None
-            assert (summary.error_m <= 80.0) == (summary.outcome is SearchOutcome.FOUND)
-    assert SearchOutcome.FOUND in outcomes
+            assert (summary.error_m <= 80.0) == (summary.outcome is Outcome.FOUND)
+    assert Outcome.FOUND in outcomes
 
 
 def test_one_false_alarm_does_not_make_a_target() -> None:
@@ -278,7 +279,7 @@ def test_a_team_without_a_vehicle_left_has_lost() -> None:
     simulation = SearchSimulation(
         case(detector=BOX), SearchSetup(max_time=60.0, kills=((0, 0.0), (1, 2.0), (2, 3.0)))
     )
-    assert search(simulation).summary.outcome is SearchOutcome.TEAM_LOST
+    assert search(simulation).summary.outcome is Outcome.TEAM_LOST
 
 
 def test_bands_and_intervals_have_their_textbook_values() -> None:

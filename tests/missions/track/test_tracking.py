@@ -22,16 +22,16 @@ from vedette.missions.flying import RoundTimes
 from vedette.missions.track.options import COORDINATIONS
 from vedette.missions.track.scenario import default_scenario
 from vedette.outcome import Outcome
+from vedette.record.track.observer import TrackReport
 from vedette.record.track.summary import nees_band
 from vedette.sim.simulation import JOB_TIME
-from vedette.sim.track.run import TrackReport
 from vedette.sim.track.simulation import TrackSetup, TrackSimulation
 
 SEEDS = range(3)
 
 
 def mean_entropy(reports: list[TrackReport]) -> float:
-    return float(np.mean([report.summary.quality.entropy_mean_nat for report in reports]))
+    return float(np.mean([report.summary.entropy_mean_nat for report in reports]))
 
 
 # -- what coordination gains ----------------------------------------------------------------------------
@@ -134,7 +134,7 @@ def test_no_way_to_fuse_is_surer_than_it_should_be(fusion: str) -> None:
     short = scenario(duration=16)
     reports = [flown(short, seed=seed, fusion=fusion)[1] for seed in range(2)]
     low, high = nees_band(10)
-    nees = float(np.mean([report.summary.quality.nees for report in reports]))
+    nees = float(np.mean([report.summary.nees for report in reports]))
     assert nees < high
     if fusion == "intersection":
         exact = [flown(short, seed=seed)[1] for seed in range(2)]
@@ -246,7 +246,7 @@ def test_what_a_dead_vehicle_told_is_kept() -> None:
 def test_a_team_that_dies_is_lost_and_leaves_figures() -> None:
     _, report = flown(scenario(), kills=((0, 3.0), (1, 3.0), (2, 4.0)))
     assert report.summary.outcome is Outcome.TEAM_LOST
-    assert math.isfinite(report.summary.quality.entropy_mean_nat)
+    assert math.isfinite(report.summary.entropy_mean_nat)
 
 
 def test_a_mission_shorter_than_a_step_leaves_figures() -> None:

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from tests.support.record_mission import frames, mission, rooms
-from vedette.record.explore.live import LiveView
+from tests.support.record_mission import frames, mission, rooms, scene
+from vedette.record.explore.live import ExploreDisplay
 from vedette.record.explore.log import ExploreSnapshot
 from vedette.record.explore.screen import screen
 from vedette.record.links import Link
@@ -19,8 +19,8 @@ from vedette.record.marks import together
 from vedette.team import PlatformSpec
 
 SOLID = rooms(80, 120)
-FRAME, PLANNING = frames(SOLID, 0.1, (0.0, 0.0))
 SPECS = [PlatformSpec(name=name, range=2.5) for name in ("ada", "bob")]
+SCENE = scene("rooms", *frames(SOLID, 0.1, (0.0, 0.0)), ("ada", "bob"))
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +43,7 @@ def _text(console: Console) -> str:
 
 
 def _picture(console: Console, snapshot: ExploreSnapshot) -> list[str]:
-    console.print(screen(console, "rooms", FRAME, PLANNING, snapshot, [1.5, 2.5]))
+    console.print(screen(console, SCENE, snapshot, [1.5, 2.5]))
     return _text(console).splitlines()
 
 
@@ -51,7 +51,7 @@ def test_without_a_terminal_there_is_a_line_every_ten_seconds_and_at_last(
     snapshots: list[ExploreSnapshot],
 ) -> None:
     console = Console(file=io.StringIO(), width=40)
-    with LiveView("rooms", FRAME, PLANNING, console=console) as view:
+    with ExploreDisplay(SCENE, console=console) as view:
         for snapshot in snapshots:
             view.update(snapshot)
     lines = _text(console).splitlines()
@@ -79,7 +79,7 @@ def test_the_view_says_whether_the_team_is_together_where_links_are_simulated(
     linked, beside = (_with_links(snapshots[0], Link(0, 1, on_tree, 0.0)) for on_tree in (True, False))
     for snapshot, team in ((ideal, None), (linked, "together"), (beside, "apart"), (alone, "apart")):
         console = _terminal() if terminal else Console(file=io.StringIO(), width=200)
-        with LiveView("rooms", FRAME, PLANNING, console=console) as view:
+        with ExploreDisplay(SCENE, console=console) as view:
             view.update(snapshot)
         said = re.findall(r"together|apart: \{1\} \{2\}|apart", _text(console))
         assert set(said) == ({team.replace("apart", "apart: {1} {2}")} if team else set())
@@ -88,7 +88,7 @@ def test_the_view_says_whether_the_team_is_together_where_links_are_simulated(
 @pytest.mark.parametrize("terminal", [True, False])
 def test_a_quiet_view_prints_nothing(snapshots: list[ExploreSnapshot], terminal: bool) -> None:
     console = Console(file=io.StringIO(), force_terminal=terminal)
-    with LiveView("rooms", FRAME, PLANNING, quiet=True, console=console) as view:
+    with ExploreDisplay(SCENE, quiet=True, console=console) as view:
         for snapshot in snapshots:
             view.update(snapshot)
     assert _text(console) == ""
@@ -99,7 +99,7 @@ def test_a_terminal_gets_at_most_ten_pictures_a_second_and_the_last(
 ) -> None:
     console = _terminal()
     ticks = itertools.count()
-    with LiveView("rooms", FRAME, PLANNING, console=console, clock=lambda: next(ticks) / 1000) as view:
+    with ExploreDisplay(SCENE, console=console, clock=lambda: next(ticks) / 1000) as view:
         for snapshot in snapshots:  # 24 snapshots in less than 0.1 s
             view.update(snapshot)
     pictures = _text(console).count("covered")
@@ -111,7 +111,7 @@ def test_an_interruption_leaves_the_last_picture_and_the_cursor(snapshots: list[
     console = _terminal()
 
     def interrupted() -> None:
-        with LiveView("rooms", FRAME, PLANNING, console=console) as view:
+        with ExploreDisplay(SCENE, console=console) as view:
             view.update(snapshots[3])
             raise KeyboardInterrupt
 

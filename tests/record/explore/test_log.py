@@ -7,13 +7,14 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from tests.support.record_mission import frames, mission, recorded, rooms
+from tests.support.record_mission import frames, mission, recorded, rooms, scene
 from vedette.maps import GridFrame
 from vedette.record.explore.log import ExploreLog, ExploreSnapshot, RobotSample
 from vedette.team import PlatformSpec
 
 SOLID = rooms(80, 120)
 SPECS = [PlatformSpec(name="robot-1"), PlatformSpec(name="robot-2")]
+SCENE = scene("rooms", *frames(SOLID, 0.1, (0.0, 0.0)), ("robot-1", "robot-2"))
 
 
 def _snapshots(limit: float = 40.0) -> list[ExploreSnapshot]:
@@ -28,7 +29,7 @@ def snapshots() -> list[ExploreSnapshot]:
 
 
 def _log(budget: int = 64 << 20, sinks: tuple[object, ...] = ()) -> ExploreLog:
-    return ExploreLog("rooms", *frames(SOLID, 0.1, (0.0, 0.0)), SPECS, sinks, budget)  # type: ignore[arg-type]
+    return ExploreLog(SCENE, sinks, budget)  # type: ignore[arg-type]
 
 
 def test_stored_snapshots_come_back_as_they_were(snapshots: list[ExploreSnapshot]) -> None:
@@ -112,10 +113,10 @@ def test_every_snapshot_reaches_every_sink(snapshots: list[ExploreSnapshot]) -> 
 
 def test_a_huge_map_is_kept_in_little_memory() -> None:
     frame = GridFrame(0.05, 4000, 4000)
-    log = ExploreLog("cave", frame, frame.coarse(4), SPECS[:1])
+    log = ExploreLog(scene("cave", frame, frame.coarse(4), ("robot-1",)))
     classes = np.zeros(frame.shape, np.uint8)
     classes[1000:3000, 500:3500] = 1
-    robot = RobotSample("robot-1", 1.0, 1.0, 0.0, "driving", None, np.empty((0, 2)), True)
+    robot = RobotSample(1.0, 1.0, 0.0, "driving", True, np.empty((0, 2)), "robot-1", None)
     for t in range(3):
         log.add(ExploreSnapshot(float(t), (robot,), 0.1, 0.4, 1.0, classes, None))
     assert sum(kept.size for kept in log._stored) < 1_000_000

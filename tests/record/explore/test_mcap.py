@@ -13,7 +13,7 @@ from mcap.reader import make_reader
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from tests.support.places import ROOT
-from tests.support.record_mission import frames, mission, rooms
+from tests.support.record_mission import frames, mission, rooms, scene
 from vedette.errors import InputError
 from vedette.maps import FREE, OCCUPIED
 from vedette.record.explore.log import ExploreSnapshot
@@ -26,6 +26,7 @@ SOLID = rooms(80, 120)
 NAMES = ["robot-1", "2nd-robot"]
 ORIGIN = (-2.0, 1.0)
 FRAME, PLANNING = frames(SOLID, 0.1, ORIGIN)
+SCENE = scene("rooms", FRAME, PLANNING, NAMES)
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +38,7 @@ def snapshots() -> list[ExploreSnapshot]:
 
 
 def _write(path: Path, snapshots: list[ExploreSnapshot]) -> Path:
-    with ExploreMcapWriter(path, "rooms", FRAME, PLANNING, NAMES) as writer:
+    with ExploreMcapWriter(path, SCENE) as writer:
         for snapshot in snapshots:
             writer.update(snapshot)
     return path
@@ -181,7 +182,7 @@ def test_an_interrupted_mission_leaves_a_valid_file(tmp_path: Path, snapshots: l
     path = tmp_path / "run.mcap"
 
     def interrupted() -> None:
-        with ExploreMcapWriter(path, "rooms", FRAME, PLANNING, NAMES) as writer:
+        with ExploreMcapWriter(path, SCENE) as writer:
             for snapshot in snapshots:
                 assert not path.exists()
                 writer.update(snapshot)
@@ -198,7 +199,7 @@ def test_the_last_map_is_the_one_that_was_handed_over(
     tmp_path: Path, snapshots: list[ExploreSnapshot]
 ) -> None:
     path = tmp_path / "run.mcap"
-    writer = ExploreMcapWriter(path, "rooms", FRAME, PLANNING, NAMES)
+    writer = ExploreMcapWriter(path, SCENE)
     writer.update(snapshots[0])
     reused = ExploreSnapshot(**(vars(snapshots[1]) | {"classes": snapshots[1].classes.copy()}))
     writer.update(reused)
@@ -211,7 +212,7 @@ def test_the_last_map_is_the_one_that_was_handed_over(
 
 def test_a_folder_that_does_not_exist_is_bad_input(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"cannot write .*run\.mcap"):
-        ExploreMcapWriter(tmp_path / "none" / "run.mcap", "rooms", FRAME, PLANNING, NAMES)
+        ExploreMcapWriter(tmp_path / "none" / "run.mcap", SCENE)
 
 
 def test_corners_keep_the_shape_of_a_path() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -14,23 +14,27 @@ from tests.support.small_missions import robots, run, small_maze
 from vedette.agent.effects import Traffic as Kind
 from vedette.domains.mapping.belief import LN2
 from vedette.domains.mapping.impact import Impact
+from vedette.domains.mapping.platform import GivenUp
 from vedette.kernels.coverage import LAYERS
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
 from vedette.maps.world import World
+from vedette.missions.explore.options import ExploreOptions
 from vedette.outcome import Outcome
 from vedette.record.explore.log import RobotSample
 from vedette.record.explore.observer import ExploreObserver
-from vedette.record.explore.views import RobotFigures, RobotView, Setting, held_map, union_map
+from vedette.record.explore.summary import LeftOut
+from vedette.record.explore.views import GroundFigures, RobotView, held_map, left_out, union_map
 from vedette.record.figures import RoundFigures
 from vedette.record.links import Link
-from vedette.record.summary import Traffic
+from vedette.record.summary import Setting, Traffic
 from vedette.sim.explore.run import views
 
 ROWS, COLS = 20, 30
 WORLD = World(GridFrame(0.1, ROWS, COLS), np.zeros((ROWS, COLS), np.bool_), "hall")
 SPECS = robots(3)
 STARTS = np.array([(0.5, 0.5, 0.0), (1.0, 1.0, 0.0), (2.0, 1.0, 0.0)])
-SETTING = Setting(5, "tours", "token", "replicated", "12,3", "storm.yaml")
+SETTING = Setting(seed=5, radio="12,3", faults="storm.yaml")
+OPTIONS = ExploreOptions("tours", "token", "replicated")
 NOTHING = np.zeros((ROWS, COLS), np.uint8)
 CHAIN = (Link(0, 1, True, 0.0), Link(1, 2, True, 0.1), Link(0, 2, False, 0.5))
 SPLIT = (Link(0, 1, True, 0.0), Link(1, 2, False, 0.9))
@@ -42,13 +46,13 @@ def view(
     alive: bool = True,
     seen: NDArray[np.bool_] | None = None,
     impact: Impact | None = None,
-    figures: RobotFigures | None = None,
+    figures: GroundFigures | None = None,
 ) -> RobotView:
     """A robot seen at its start."""
     x, y, heading = STARTS[i].tolist()
-    sample = RobotSample(SPECS[i].name, x, y, heading, "idle", None, np.empty((0, 2)), alive)
+    sample = RobotSample(x, y, heading, "idle", alive, np.empty((0, 2)), SPECS[i].name, None)
     own = classes != UNKNOWN if seen is None else seen
-    return RobotView(sample, classes, own, impact, figures or RobotFigures())
+    return RobotView(sample, classes, own, impact, figures or GroundFigures())
 
 
 def columns(*known: int, kind: int = FREE) -> NDArray[np.uint8]:
@@ -60,7 +64,7 @@ def columns(*known: int, kind: int = FREE) -> NDArray[np.uint8]:
 
 def observer() -> ExploreObserver:
     """Of a team that has not begun."""
-    return ExploreObserver(WORLD, SPECS, STARTS, SETTING)
+    return ExploreObserver(WORLD, SPECS, STARTS, OPTIONS, SETTING)
 
 
 def test_a_robot_holds_what_is_fused_and_its_own_cells_that_are_not_published_yet() -> None:
@@ -159,9 +163,9 @@ def test_the_team_impact_is_that_one_of_the_living_observes_the_cell() -> None:
 
 def test_the_summary_adds_up_what_the_robots_have_counted() -> None:
     team = [
-        RobotFigures(3.0, 1, 0.4, RoundFigures(4, 9, 2, 1.5), Traffic(1, 2, 3, 4), Traffic(10, 20, 30, 40)),
-        RobotFigures(5.0, 0, 0.1, RoundFigures(5, 8, 1, 0.3), Traffic(5, 6, 7, 8), Traffic(50, 60, 70, 80)),
-        RobotFigures(1.5, 2, 0.3),
+        GroundFigures(3.0, RoundFigures(4, 9, 2, 1.5), Traffic(1, 2, 3, 4), Traffic(10, 20, 30, 40), 1, 0.4),
+        GroundFigures(5.0, RoundFigures(5, 8, 1, 0.3), Traffic(5, 6, 7, 8), Traffic(50, 60, 70, 80), 0, 0.1),
+        GroundFigures(1.5, collisions=2, min_clearance_m=0.3),
     ]
     seen = [columns(0, 1, 2) > 0, columns(2, 3) > 0, columns() > 0]
     looking = observer()
@@ -184,6 +188,24 @@ def test_the_summary_adds_up_what_the_robots_have_counted() -> None:
     assert summary.overlap == pytest.approx(1 / 4)
     assert summary.messages["robot-2"] == Traffic(5, 6, 7, 8)
     assert summary.bytes["robot-1"].overlay == 40
+
+
+def test_what_robots_gave_up_is_listed_unless_somebody_knows_it_by_now() -> None:
+    spots = [GivenUp(0.55, 0.55, 40), GivenUp(2.05, 1.05, 30, visited=False)]
+    first, second = left_out(spots[:1], "robot-1"), left_out(spots, "robot-2")
+    team = [
+        replace(view(0, columns(0, 1)), left_out=first),
+        replace(view(1, columns(*range(13))), left_out=second),
+        view(2, columns(29), alive=False),
+    ]
+    looking = observer()
+    looking.finish(1.0, team, None)
+    reach = 0.6  # [m] to each side of a spot
+    unknown = sum(abs(0.1 * (col + 0.5) - 2.05) < reach + 0.05 and col > 12 for col in range(COLS))
+    rows = sum(abs(0.1 * (row + 0.5) - 1.05) < reach + 0.05 for row in range(ROWS))
+    assert looking.summary(Outcome.COMPLETE).left_out == (
+        LeftOut(2.05, 1.05, unknown * rows, "unreached", "robot-2"),
+    )
 
 
 def test_traffic_has_a_field_for_every_kind_that_agents_send() -> None:

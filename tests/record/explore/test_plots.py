@@ -10,19 +10,18 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image
 
-from tests.support.record_mission import recorded, rooms
+from tests.support.record_mission import recorded, rooms, scene
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
 from vedette.outcome import Outcome
 from vedette.record import palette
 from vedette.record.explore.curves import curves_png
-from vedette.record.explore.film import animate_gif
+from vedette.record.explore.film import explore_gif
 from vedette.record.explore.log import ExploreLog, ExploreSnapshot, RobotSample
 from vedette.record.explore.progress import progress_png
 from vedette.record.explore.raster import enlarge, fit, known_window, paint, pool
 from vedette.record.explore.summary import ExploreSummary
 from vedette.record.links import Link
 from vedette.record.summary import Traffic
-from vedette.team import PlatformSpec
 
 
 @pytest.fixture(scope="module")
@@ -31,16 +30,16 @@ def log() -> ExploreLog:
 
 
 def _summary(log: ExploreLog, **changes: object) -> ExploreSummary:
-    names = [spec.name for spec in log.specs]
+    names = list(log.scene.vehicles)
     traffic = {name: Traffic() for name in names}
     figures: dict[str, object] = {
         "completed": True, "outcome": Outcome.COMPLETE, "seed": 3, "robots": len(names), "planner": "tours",
-        "scheme": "token", "fusion": "evidence", "world": log.world, "radio": None, "faults": None,
+        "scheme": "token", "fusion": "evidence", "world": log.scene.name, "radio": None, "faults": None,
         "apart_s": 0.0, "time_s": float(log.times[-1]),
         "t50_s": 5.0, "t90_s": 12.0, "t95_s": 15.0, "t99_s": None, "auc_s": 12.0, "coverage": 0.98,
         "map_errors": 0, "map_error_share": 0.0, "path_m": dict.fromkeys(names, 1.0), "overlap": 0.2,
         "collisions": 0, "min_clearance_m": 0.06, "rounds": 12, "sweeps": 30, "bound_ratio": None,
-        "messages": traffic, "bytes": traffic,
+        "messages": traffic, "bytes": traffic, "left_out": (),
     }  # fmt: skip
     return ExploreSummary(**(figures | changes))  # type: ignore[arg-type]
 
@@ -48,11 +47,11 @@ def _summary(log: ExploreLog, **changes: object) -> ExploreSummary:
 def _still(rows: int, cols: int, robots: int) -> ExploreLog:
     """Return a log of a single moment before anything is known."""
     frame = GridFrame(0.1, rows, cols)
-    specs = [PlatformSpec(name=f"robot-{i}") for i in range(robots)]
-    log = ExploreLog("dark", frame, frame.coarse(2), specs)
+    names = [f"robot-{i}" for i in range(robots)]
+    log = ExploreLog(scene("dark", frame, frame.coarse(2), names))
     team = tuple(
-        RobotSample(s.name, 0.1 * i, 0.1, 0.0, "idle", None, np.empty((0, 2)), True)
-        for i, s in enumerate(specs)
+        RobotSample(0.1 * i, 0.1, 0.0, "idle", True, np.empty((0, 2)), name, None)
+        for i, name in enumerate(names)
     )
     log.add(ExploreSnapshot(0.0, team, 0.0, 0.0, 1.0, np.zeros(frame.shape, np.uint8), None))
     return log
@@ -118,7 +117,7 @@ def test_the_same_log_gives_the_same_bytes(log: ExploreLog, tmp_path: Path) -> N
         (tmp_path / name).mkdir()
         progress_png(log, tmp_path / name / "progress.png")
         curves_png(log, _summary(log), tmp_path / name / "curves.png")
-        animate_gif(log, tmp_path / name / "mission.gif", frames=5)
+        explore_gif(log, tmp_path / name / "mission.gif", frames=5)
         matplotlib.rcParams["font.size"] = 30  # a user's settings must not matter
     matplotlib.rcdefaults()
     files = sorted(file.name for file in (tmp_path / "one").iterdir())
@@ -143,7 +142,7 @@ def _share(image: NDArray[np.uint8], colour: NDArray[np.generic]) -> float:
 def test_odd_shapes_and_an_unknown_world_are_drawn(rows: int, cols: int, robots: int, tmp_path: Path) -> None:
     log = _still(rows, cols, robots)
     progress_png(log, tmp_path / "progress.png")
-    animate_gif(log, tmp_path / "mission.gif")
+    explore_gif(log, tmp_path / "mission.gif")
     nothing = {"t50_s": None, "t90_s": None, "t95_s": None}
     curves_png(log, _summary(log, **nothing), tmp_path / "curves.png")
     for file in tmp_path.iterdir():
@@ -155,10 +154,10 @@ def _linked(links: tuple[Link, ...] | None) -> ExploreLog:
     """Return a log of three robots far from each other in the dark."""
     frame = GridFrame(0.1, 60, 90)
     places = ((1.0, 1.0), (8.0, 1.0), (4.5, 5.0))
-    log = ExploreLog("dark", frame, frame.coarse(2), [PlatformSpec(name=f"robot-{i}") for i in range(3)])
+    log = ExploreLog(scene("dark", frame, frame.coarse(2), ("robot-0", "robot-1", "robot-2")))
     team = tuple(
-        RobotSample(spec.name, *place, 0.0, "idle", None, np.empty((0, 2)), True)
-        for spec, place in zip(log.specs, places, strict=True)
+        RobotSample(*place, 0.0, "idle", True, np.empty((0, 2)), name, None)
+        for name, place in zip(log.scene.vehicles, places, strict=True)
     )
     for t in (0.0, 1.0, 2.0):
         log.add(ExploreSnapshot(t, team, 0.0, 0.0, 1.0, np.full(frame.shape, FREE, np.uint8), None, links))
@@ -188,7 +187,7 @@ def test_links_on_the_tree_are_drawn_dark_and_others_faint_and_the_legend_explai
 def test_a_film_shows_links(tmp_path: Path) -> None:
     frames = []
     for name, links in (("without", None), ("with", (Link(0, 1, True, 0.0), Link(1, 2, False, 0.0)))):
-        animate_gif(_linked(links), tmp_path / f"{name}.gif")
+        explore_gif(_linked(links), tmp_path / f"{name}.gif")
         with Image.open(tmp_path / f"{name}.gif") as film:
             frames.append(np.asarray(film.convert("RGB")).astype(int))
     changed = np.abs(frames[0] - frames[1]).max(axis=2) > 30
@@ -209,7 +208,7 @@ def test_times_apart_are_shaded_in_the_curves(tmp_path: Path) -> None:
 
 
 def test_the_film_is_short_small_and_ends_slowly(log: ExploreLog, tmp_path: Path) -> None:
-    animate_gif(log, tmp_path / "mission.gif", frames=6)
+    explore_gif(log, tmp_path / "mission.gif", frames=6)
     with Image.open(tmp_path / "mission.gif") as film:
         assert film.n_frames == 6  # type: ignore[attr-defined]
         assert max(film.size) <= 800

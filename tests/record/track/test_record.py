@@ -18,14 +18,13 @@ from tests.support.places import ROOT
 from tests.support.track_scenes import flown, scenario
 from vedette.record.display import Display
 from vedette.record.track.entropy import entropy_png
-from vedette.record.track.film import track_gif
 from vedette.record.track.live import line, screen, track_display
 from vedette.record.track.log import TrackLog, TrackSnapshot
 from vedette.record.track.mcap import TrackMcapWriter
-from vedette.record.track.panel import SIGMA, ellipse_axes
+from vedette.record.track.observer import TrackReport
+from vedette.record.track.panel import SIGMA, ellipse_axes, track_gif
 from vedette.record.track.summary import TrackSummary
 from vedette.record.track.tracks import tracks_png
-from vedette.sim.track.run import TrackReport
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +39,7 @@ def test_every_field_of_the_summary_is_documented_in_its_order(report: TrackRepo
     section = text.partition("### `summary.json` of `vedette track`")[2].partition("\n## ")[0]
     documented = re.findall(r"^\| `(\w+)` \|", section, flags=re.MULTILINE)
     assert documented[: len(figures)] == list(figures)
-    assert figures["schema_version"] == 2
+    assert figures["schema_version"] == 3
     assert set(figures["messages"]["vehicle-1"]) == {"negotiation", "fusion", "beacons", "overlay"}
     assert 0.0 < figures["bound_ratio"] <= 1.0
 

@@ -81,12 +81,14 @@ def _coverage(axes: Axes, log: ExploreLog, summary: ExploreSummary) -> None:
 
 def _distance(axes: Axes, log: ExploreLog) -> None:
     """Draw how far each robot has travelled."""
-    for i, (spec, length) in enumerate(zip(log.specs, log.path_length.T, strict=True)):
+    for i, (name, length) in enumerate(zip(log.scene.vehicles, log.path_length.T, strict=True)):
         colour = palette.unit(palette.robot_colour(i))
-        axes.plot(log.times, length, color=colour, lw=1.6, dashes=_DASHES[i % len(_DASHES)], label=spec.name)
+        axes.plot(log.times, length, color=colour, lw=1.6, dashes=_DASHES[i % len(_DASHES)], label=name)
     top = max(1.0, float(log.path_length.max()))
     axes.set(ylabel="travelled [m]", xlabel="time [s]", ylim=(0, 1.05 * top))
-    axes.legend(loc="upper left", frameon=False, ncols=2 if len(log.specs) > 3 else 1, labelspacing=0.3)
+    axes.legend(
+        loc="upper left", frameon=False, ncols=2 if len(log.scene.vehicles) > 3 else 1, labelspacing=0.3
+    )
 
 
 def _apart(shared: Sequence[Axes], log: ExploreLog, summary: ExploreSummary) -> None:

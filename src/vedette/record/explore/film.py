@@ -1,4 +1,4 @@
-"""``mission.gif``: the mission as a short film."""
+"""The film of an exploration: painted straight into pixels, as maps are large."""
 
 from __future__ import annotations
 
@@ -14,39 +14,20 @@ from vedette.maps import UNKNOWN
 from vedette.record import palette
 from vedette.record.explore.log import ExploreLog, ExploreSnapshot, RobotSample
 from vedette.record.explore.raster import enlarge, known_window, paint
-from vedette.record.files import atomic_path
+from vedette.record.film import write_gif
+from vedette.record.log import evenly
 
 _SIDE = 800  # most pixels a side, caption included
 _CAPTION = 30  # height of the caption [px]
-_FRAME_MS = 100
-_LAST_MS = 2500  # the last frame stays
 _DISC = 9.0  # radius of a robot's sign [px]
 _FAINT = 180, 180, 180  # a link that is not on the tree
 _FINE = 4  # sub-pixels a side of a pixel of a robot's sign
 
 
-def animate_gif(log: ExploreLog, path: Path | str, frames: int = 200) -> None:
-    """Write at most ``frames`` stored snapshots of a log that is not empty, evenly chosen, ten a second."""
-    chosen = _evenly(log.stored(), frames)
-    film = _Film(log)
-    pictures = film.pictures(chosen)
-    first = next(pictures)
-    durations = [_FRAME_MS] * (len(chosen) - 1) + [_LAST_MS]
-    with atomic_path(path) as temporary:
-        first.save(
-            temporary,
-            save_all=True,
-            append_images=pictures,
-            duration=durations,
-            loop=0,
-            optimize=False,
-            disposal=1,
-        )
-
-
-def _evenly(available: int, wanted: int) -> list[int]:
-    """Return at most ``wanted`` indices of ``available``, the first and the last included."""
-    return [int(i) for i in np.unique(np.linspace(0, available - 1, min(available, wanted)).round())]
+def explore_gif(log: ExploreLog, path: Path | str, frames: int = 200) -> None:
+    """Write at most ``frames`` stored snapshots of a log that is not empty, evenly chosen."""
+    chosen = evenly(log.stored(), frames)
+    write_gif(_Film(log).pictures(chosen), len(chosen), path)
 
 
 class _Film:
@@ -54,7 +35,7 @@ class _Film:
 
     def __init__(self, log: ExploreLog) -> None:
         self._log = log
-        self._window = known_window(log.frame, log.last.classes)
+        self._window = known_window(log.scene.frame, log.last.classes)
         part = self._window.frame
         scale = min(_SIDE / part.cols, (_SIDE - _CAPTION) / part.rows)  # pixels a cell
         self._size = max(1, int(part.cols * scale)), max(1, int(part.rows * scale))
@@ -81,7 +62,7 @@ class _Film:
     def _frame(self, snapshot: ExploreSnapshot) -> Image.Image:
         width, height = self._size
         image = Image.new("RGB", (max(width, 260), height + _CAPTION), (255, 255, 255))
-        colours = paint(snapshot, self._log.planning, self._window, self._size[::-1])[::-1]
+        colours = paint(snapshot, self._log.scene.planning, self._window, self._size[::-1])[::-1]
         image.paste(enlarge(np.ascontiguousarray(colours), self._size), (0, _CAPTION))
         draw = ImageDraw.Draw(image)
         caption = f"{snapshot.t:.0f} s    {100 * snapshot.coverage:.1f} % covered"

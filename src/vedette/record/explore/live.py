@@ -8,30 +8,27 @@ from collections.abc import Callable
 
 from rich.console import Console, RenderableType
 
-from vedette.maps import GridFrame
 from vedette.record.display import Display
-from vedette.record.explore.log import ExploreSnapshot
+from vedette.record.explore.log import ExploreScene, ExploreSnapshot
 from vedette.record.explore.screen import screen
 from vedette.record.marks import together
 
 
-class LiveView(Display[ExploreSnapshot]):
+class ExploreDisplay(Display[ExploreSnapshot]):
     """Show each snapshot while the mission runs: a context manager, and a ``Sink``."""
 
     def __init__(
         self,
-        world: str,
-        frame: GridFrame,
-        planning: GridFrame,
+        scene: ExploreScene,
         quiet: bool = False,
         console: Console | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Prepare a view of a mission in ``world``; the ``clock`` [s] only limits the pictures a second."""
+        """Prepare a view of a mission; the ``clock`` [s] only limits the pictures a second."""
         travelled = self._travelled = list[float]()
 
         def picture(console: Console, snapshot: ExploreSnapshot) -> RenderableType:
-            return screen(console, world, frame, planning, snapshot, travelled)
+            return screen(console, scene, snapshot, travelled)
 
         super().__init__(picture, _line, quiet, console, clock)
 

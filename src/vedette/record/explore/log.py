@@ -3,32 +3,41 @@
 from __future__ import annotations
 
 import zlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.domains.mapping.belief import planning_factor
 from vedette.maps import GridFrame
+from vedette.maps.world import World
 from vedette.record.links import Link, parts
-from vedette.team import PlatformSpec
+from vedette.record.log import MissionScene, Sink, VehicleSample
 
 _FULL = 255  # impacts are kept as whole 255ths
 
 
+@dataclass(frozen=True, kw_only=True)
+class ExploreScene(MissionScene):
+    """What stays the same all through an exploration."""
+
+    frame: GridFrame  # of the map
+    planning: GridFrame  # of the planning cells over it
+
+    @classmethod
+    def of(cls, world: World, robots: Iterable[str]) -> ExploreScene:
+        """Return the scene of robots, by their names, in a world."""
+        planning = world.frame.coarse(planning_factor(world.frame.resolution))
+        return cls(name=world.name, vehicles=tuple(robots), frame=world.frame, planning=planning)
+
+
 @dataclass(frozen=True, eq=False)
-class RobotSample:
+class RobotSample(VehicleSample):
     """One robot at one moment."""
 
     name: str
-    x: float  # [m], team frame
-    y: float
-    heading: float  # [rad]
-    state: str  # the agent's word for what it does: "driving", "planning", "done", ...
     goal: tuple[float, float] | None  # where it is going [m], team frame
-    path: NDArray[np.float64]  # (k, 2) way points still ahead [m], team frame; k may be 0
-    alive: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,13 +59,6 @@ class ExploreSnapshot:
     def parts(self) -> tuple[tuple[int, ...], ...]:
         """The living robots in groups, each on a tree of its own; more than one: the team is apart."""
         return parts([robot.alive for robot in self.robots], self.links)
-
-
-class Sink(Protocol):
-    """An output that follows the mission while it runs."""
-
-    def update(self, snapshot: ExploreSnapshot) -> None:
-        """Take the next snapshot; its arrays may change after the call."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,18 +84,12 @@ class ExploreLog:
 
     def __init__(
         self,
-        world: str,
-        frame: GridFrame,
-        planning: GridFrame,
-        specs: Sequence[PlatformSpec],
-        sinks: Sequence[Sink] = (),
+        scene: ExploreScene,
+        sinks: Sequence[Sink[ExploreSnapshot]] = (),
         budget: int = 64 << 20,
     ) -> None:
-        """Start an empty log of a team in ``world``; every snapshot is forwarded to the ``sinks``."""
-        self.world = world
-        self.frame = frame
-        self.planning = planning
-        self.specs = tuple(specs)
+        """Start an empty log of a team; every snapshot is forwarded to the ``sinks``."""
+        self.scene = scene
         self._sinks = tuple(sinks)
         self._budget = budget
         self._curves: list[tuple[float, float, float, float, float]] = []
@@ -158,7 +154,7 @@ class ExploreLog:
     @property
     def poses(self) -> NDArray[np.float64]:
         """``(T, n, 3)`` x, y, heading of each robot in all snapshots [m, m, rad], team frame."""
-        return np.array(self._poses, dtype=np.float64).reshape(len(self), len(self.specs), 3)
+        return np.array(self._poses, dtype=np.float64).reshape(len(self), len(self.scene.vehicles), 3)
 
     @property
     def path_length(self) -> NDArray[np.float64]:
@@ -192,13 +188,13 @@ class ExploreLog:
         return [*(self._unpack(kept[i]) for i in first), last]
 
     def _check(self, snapshot: ExploreSnapshot) -> None:
-        names = [robot.name for robot in snapshot.robots]
-        if names != [spec.name for spec in self.specs]:
-            raise ValueError(f"the log is of {[spec.name for spec in self.specs]}; got a snapshot of {names}")
-        if snapshot.classes.shape != self.frame.shape:
-            raise ValueError(f"classes must be {self.frame.shape}; got {snapshot.classes.shape}")
-        if snapshot.impact is not None and snapshot.impact.shape != self.planning.shape:
-            raise ValueError(f"impact must be {self.planning.shape}; got {snapshot.impact.shape}")
+        names, scene = tuple(robot.name for robot in snapshot.robots), self.scene
+        if names != scene.vehicles:
+            raise ValueError(f"the log is of {scene.vehicles}; got a snapshot of {names}")
+        if snapshot.classes.shape != scene.frame.shape:
+            raise ValueError(f"classes must be {scene.frame.shape}; got {snapshot.classes.shape}")
+        if snapshot.impact is not None and snapshot.impact.shape != scene.planning.shape:
+            raise ValueError(f"impact must be {scene.planning.shape}; got {snapshot.impact.shape}")
         if self._curves and snapshot.t < self._curves[-1][0]:
             raise ValueError(
                 f"snapshots come in order of time; got {snapshot.t} s after {self._curves[-1][0]} s"
@@ -221,10 +217,10 @@ class ExploreLog:
         return np.array(self._curves, dtype=np.float64).reshape(-1, 5)[:, column]
 
     def _unpack(self, packed: _Packed) -> ExploreSnapshot:
-        classes = np.frombuffer(zlib.decompress(packed.classes), np.uint8).reshape(self.frame.shape)
+        classes = np.frombuffer(zlib.decompress(packed.classes), np.uint8).reshape(self.scene.frame.shape)
         impact: NDArray[np.float32] | None = None
         if packed.impact is not None:
-            level = np.frombuffer(zlib.decompress(packed.impact), np.uint8).reshape(self.planning.shape)
+            level = np.frombuffer(zlib.decompress(packed.impact), np.uint8).reshape(self.scene.planning.shape)
             impact = level.astype(np.float32) / np.float32(_FULL)
         return replace(packed.snapshot, classes=classes, impact=impact)
 

@@ -7,23 +7,26 @@ network report.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vedette.domains.mapping.belief import LN2
 from vedette.domains.mapping.impact import final_miss
+from vedette.domains.mapping.stops import unknown_near
 from vedette.maps import UNKNOWN
 from vedette.maps.world import World
+from vedette.missions.explore.options import ExploreOptions
 from vedette.outcome import Outcome
-from vedette.record.explore.log import ExploreLog, ExploreSnapshot, Sink
+from vedette.record.explore.log import ExploreLog, ExploreScene, ExploreSnapshot
 from vedette.record.explore.score import Progress, Reference, coverage, map_errors, overlap
-from vedette.record.explore.summary import ExploreSummary
-from vedette.record.explore.views import RobotView, Setting, planning_frame, union_map
-from vedette.record.figures import Negotiated
+from vedette.record.explore.summary import ExploreSummary, LeftOut
+from vedette.record.explore.views import RobotView, union_map
+from vedette.record.figures import TeamFigures
 from vedette.record.links import Link, parts
-from vedette.record.summary import Timing
+from vedette.record.log import Sink
+from vedette.record.summary import Setting, Timing
 from vedette.team import PlatformSpec
 
 LARGE = 1_000_000  # cells from which a map is looked at less often
@@ -48,18 +51,19 @@ class ExploreObserver:
         world: World,
         specs: Sequence[PlatformSpec],
         starts: NDArray[np.float64],
+        options: ExploreOptions,
         setting: Setting,
-        sinks: Sequence[Sink] = (),
+        sinks: Sequence[Sink[ExploreSnapshot]] = (),
     ) -> None:
         """Prepare to observe a team that starts at ``starts``, (n, 3) x, y, heading [m, m, rad].
 
         The ``sinks`` follow the mission while it goes on.
         """
-        self._world, self._setting = world, setting
+        self._world, self._options, self._setting = world, options, setting
         self._reference = Reference(world, specs, starts)
         self._progress = Progress()
         self.period = LOOK_PERIOD if world.frame.size <= LARGE else LOOK_PERIOD_IF_LARGE  # of looking [s]
-        self.log = ExploreLog(world.name, world.frame, planning_frame(world), specs, sinks)
+        self.log = ExploreLog(ExploreScene.of(world, [spec.name for spec in specs]), sinks)
         self.apart_s = 0.0  # time during which the living robots were not all on one tree
         self._apart = False  # since the last look
         self._views: tuple[RobotView, ...] = ()  # of the last look
@@ -109,7 +113,7 @@ class ExploreObserver:
 
     def _team_impact(self) -> NDArray[np.float32]:
         """Probability that the strategies decided on last will observe each planning cell."""
-        frame = self.log.planning
+        frame = self.log.scene.planning
         miss = np.ones(frame.size, np.float32)
         for view in self._views:
             if view.sample.alive and view.impact is not None and len(view.impact.keys):
@@ -127,22 +131,17 @@ class ExploreObserver:
 
     def summary(self, outcome: Outcome) -> ExploreSummary:
         """Return the figures of the mission, in simulated time; not before the first look."""
-        progress, setting = self._progress, self._setting
-        time = progress.times[-1]
-        team = {view.sample.name: view.figures for view in self._views}
-        rounds = Negotiated.by([each.rounds for each in team.values()])
+        progress, views = self._progress, self._views
+        time, team = progress.times[-1], [view.figures for view in views]
         wrong, known = map_errors(self._world, self.delivered_map())
         return ExploreSummary(
-            completed=outcome is Outcome.COMPLETE,
+            completed=outcome.completed,
             outcome=outcome,
-            seed=setting.seed,
             robots=len(team),
-            planner=setting.planner,
-            scheme=setting.scheme,
-            fusion=setting.fusion,
+            planner=self._options.planner,
+            scheme=self._options.negotiates_by,
+            fusion=self._options.fusion,
             world=self._world.name,
-            radio=setting.radio,
-            faults=setting.faults,
             time_s=time,
             t50_s=progress.t_at(0.50),
             t90_s=progress.t_at(0.90),
@@ -152,14 +151,21 @@ class ExploreObserver:
             coverage=progress.coverages[-1],
             map_errors=wrong,
             map_error_share=wrong / known if known else 0.0,
-            path_m={name: each.travelled_m for name, each in team.items()},
-            overlap=overlap([view.seen for view in self._views]),
-            collisions=sum(each.collisions for each in team.values()),
-            min_clearance_m=min(each.min_clearance_m for each in team.values()),
-            rounds=rounds.rounds,
-            sweeps=rounds.sweeps,
-            bound_ratio=rounds.bound_ratio,
+            overlap=overlap([view.seen for view in views]),
+            collisions=sum(each.collisions for each in team),
+            min_clearance_m=min(each.min_clearance_m for each in team),
             apart_s=self.apart_s,
-            messages={name: each.messages for name, each in team.items()},
-            bytes={name: each.bytes for name, each in team.items()},
+            left_out=self._left_out(),
+            **vars(self._setting),
+            **vars(TeamFigures.of({view.sample.name: view.figures for view in views})),
         )
+
+    def _left_out(self) -> tuple[LeftOut, ...]:
+        """Return what robots gave up and nobody has come to know since."""
+        frame, classes = self._world.frame, union_map(self._views)
+        spots = [
+            replace(spot, unknown_cells=unknown_near(classes, frame, spot.x, spot.y))
+            for view in self._views
+            for spot in view.left_out
+        ]
+        return tuple(spot for spot in spots if spot.unknown_cells)

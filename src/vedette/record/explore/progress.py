@@ -40,7 +40,7 @@ class _Layout:
 def progress_png(log: ExploreLog, path: Path | str) -> None:
     """Draw map, team impact, robots, paths and goals at three stages of a log that is not empty."""
     stages = log.stages()
-    window = known_window(log.frame, stages[-1].classes)
+    window = known_window(log.scene.frame, stages[-1].classes)
     layout = _layout(window.frame.cols / window.frame.rows, len(stages), stages[-1])
     with picture():
         figure = Figure(figsize=(layout.width, layout.height), dpi=DPI)
@@ -82,7 +82,7 @@ def _panel(
     """Draw one stage."""
     axes = figure.add_axes(_box(layout, *corner, *layout.panel))
     size = max(1, round(layout.panel[0] * DPI)), max(1, round(layout.panel[1] * DPI))
-    colours = paint(stage, log.planning, window, size[::-1])
+    colours = paint(stage, log.scene.planning, window, size[::-1])
     axes.imshow(
         np.asarray(enlarge(colours, size)),
         extent=window.frame.extent,
@@ -138,9 +138,9 @@ def _robot(axes: Axes, index: int, robot: RobotSample) -> None:
 
 def _heading(figure: Figure, layout: _Layout, log: ExploreLog) -> None:
     """Write the world and the team over the panels."""
-    robots = f"{len(log.specs)} robot" + ("s" if len(log.specs) > 1 else "")
+    robots = f"{len(log.scene.vehicles)} robot" + ("s" if len(log.scene.vehicles) > 1 else "")
     at = _MARGIN / layout.width, 1 - 0.2 / layout.height
-    figure.text(*at, f"{log.world}: {robots}", fontsize=12, fontweight="bold", va="top")
+    figure.text(*at, f"{log.scene.name}: {robots}", fontsize=12, fontweight="bold", va="top")
 
 
 def _legend(figure: Figure, layout: _Layout, last: ExploreSnapshot) -> None:

@@ -7,10 +7,8 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
+from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
 from rich.measure import Measurement
-from rich.panel import Panel
-from rich.progress_bar import ProgressBar
 from rich.segment import Segment
 from rich.style import Style
 from rich.table import Table
@@ -18,7 +16,8 @@ from rich.text import Text
 
 from vedette.maps import FREE, OCCUPIED, GridFrame
 from vedette.record import palette
-from vedette.record.explore.log import ExploreSnapshot, RobotSample
+from vedette.record.board import figures_line, framed, share_bar, team_table
+from vedette.record.explore.log import ExploreScene, ExploreSnapshot, RobotSample
 from vedette.record.explore.raster import Window, fit, paint, pool
 from vedette.record.marks import badge, sign, together, two_colours
 
@@ -27,58 +26,38 @@ _TABLE = 50  # columns of the table beside the map
 
 
 def screen(
-    console: Console,
-    world: str,
-    frame: GridFrame,
-    planning: GridFrame,
-    snapshot: ExploreSnapshot,
-    travelled: Sequence[float],
+    console: Console, scene: ExploreScene, snapshot: ExploreSnapshot, travelled: Sequence[float]
 ) -> RenderableType:
     """Return the picture of a snapshot, fitted to the console; ``travelled`` by robot [m].
 
     The table of robots goes below the map or beside it, whichever leaves the map more room.
     """
-    head: list[RenderableType] = [_figures(snapshot), _bar(snapshot)]
+    known = 100 * snapshot.known_fraction
+    figures = figures_line(
+        ("time", f"{snapshot.t:6.1f} s"),
+        ("known", f"{known:5.1f} %"),
+        ("entropy", f"{snapshot.entropy:,.0f} nat"),
+    )
+    head: list[RenderableType] = [figures, share_bar("covered", snapshot.coverage)]
     if snapshot.links is not None:
         head.append(_team(snapshot))
     below = console.height - 6 - len(head) - len(snapshot.robots), console.width - 4
     left = console.height - 4 - len(head), console.width - 4 - _TABLE
     rooms = [(min(_MAP[0], lines), min(_MAP[1], columns)) for lines, columns in (below, left)]
-    sizes = [_size(frame, room) if min(room) >= 4 else (0, 0) for room in rooms]
-    table = _robots(snapshot.robots, travelled)
-    parts = list(head)
+    sizes = [_size(scene.frame, room) if min(room) >= 4 else (0, 0) for room in rooms]
+    table = _robots(scene, snapshot.robots, travelled)
     if sizes[1][0] and sizes[1] >= sizes[0]:
         body = Table.grid(padding=(0, 3))
-        body.add_row(HalfBlocks.of(console, frame, planning, snapshot, sizes[1]), table)
-        parts.append(body)
-    elif sizes[0][0]:
-        parts += [HalfBlocks.of(console, frame, planning, snapshot, sizes[0]), Text(""), table]
-    else:
-        parts.append(table)
-    return Panel(
-        Group(*parts), title=f"[bold]vedette[/] {world}", title_align="left", border_style="bright_black"
-    )
+        body.add_row(HalfBlocks.of(console, scene, snapshot, sizes[1]), table)
+        return framed(scene, *head, body)
+    if sizes[0][0]:
+        return framed(scene, *head, HalfBlocks.of(console, scene, snapshot, sizes[0]), Text(""), table)
+    return framed(scene, *head, table)
 
 
 def _size(frame: GridFrame, room: tuple[int, int]) -> tuple[int, int]:
     """Return the map's rows and columns [pixel] in a room of so many lines and columns."""
     return fit(frame.shape, (2 * room[0], room[1]))
-
-
-def _figures(snapshot: ExploreSnapshot) -> Text:
-    known = 100 * snapshot.known_fraction
-    return Text.assemble(
-        ("time ", "dim"), (f"{snapshot.t:6.1f} s", "bold"),
-        ("    known ", "dim"), (f"{known:5.1f} %", "bold"),
-        ("    entropy ", "dim"), (f"{snapshot.entropy:,.0f} nat", "bold"),
-    )  # fmt: skip
-
-
-def _bar(snapshot: ExploreSnapshot) -> Table:
-    grid = Table.grid(padding=(0, 1))
-    bar = ProgressBar(total=1.0, completed=snapshot.coverage, width=40, complete_style="green")
-    grid.add_row(Text("covered", "dim"), bar, Text(f"{100 * snapshot.coverage:.1f} %", "bold"))
-    return grid
 
 
 def _team(snapshot: ExploreSnapshot) -> Text:
@@ -88,17 +67,14 @@ def _team(snapshot: ExploreSnapshot) -> Text:
     )
 
 
-def _robots(robots: Sequence[RobotSample], travelled: Sequence[float]) -> Table:
-    table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim", pad_edge=False)
-    for title in ("", "robot", "state"):
-        table.add_column(title, no_wrap=True)
-    for title in ("goal (m)", "driven (m)"):
-        table.add_column(title, no_wrap=True, justify="right")
-    for i, (robot, metres) in enumerate(zip(robots, travelled, strict=True)):
-        goal = "" if robot.goal is None else f"{robot.goal[0]:.1f}, {robot.goal[1]:.1f}"
-        mark = Text(f" {sign(i, robot.alive)} ", badge(i))
-        table.add_row(mark, robot.name, robot.state, goal, f"{metres:.1f}")
-    return table
+def _robots(scene: ExploreScene, robots: Sequence[RobotSample], travelled: Sequence[float]) -> Table:
+    goals = ["" if robot.goal is None else f"{robot.goal[0]:.1f}, {robot.goal[1]:.1f}" for robot in robots]
+    columns = [
+        ("state", [robot.state for robot in robots]),
+        ("goal (m)", goals),
+        ("driven (m)", [f"{metres:.1f}" for metres in travelled]),
+    ]
+    return team_table("robot", scene, robots, columns)
 
 
 class HalfBlocks:
@@ -113,19 +89,19 @@ class HalfBlocks:
     def of(
         cls,
         console: Console,
-        frame: GridFrame,
-        planning: GridFrame,
+        scene: ExploreScene,
         snapshot: ExploreSnapshot,
         room: tuple[int, int],
     ) -> HalfBlocks:
         """Draw a snapshot in at most ``room`` lines and columns; without colours as walls alone."""
+        frame = scene.frame
         rows, cols = fit(frame.shape, (2 * room[0], room[1]))
         whole = Window(slice(0, frame.rows), slice(0, frame.cols), frame)
         signs = dict(_signs(snapshot.robots, frame, rows, cols))
         if console.color_system is None or console.no_color:
             glyphs = _glyphs(_paired(pool(snapshot.classes, rows, cols)[::-1]))
             return cls([_plain_line(line, i, signs) for i, line in enumerate(glyphs)])
-        colours = paint(snapshot, planning, whole, (rows, cols), palette.SCREEN)[::-1]
+        colours = paint(snapshot, scene.planning, whole, (rows, cols), palette.SCREEN)[::-1]
         return cls([_line(pair, i, signs) for i, pair in enumerate(_paired(colours))])
 
     def __rich_measure__(self, console: Console, options: ConsoleOptions) -> Measurement:

@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from pathlib import Path
+from dataclasses import dataclass
+from typing import Literal
 
-from vedette.outcome import Outcome
-from vedette.record.files import write_text
-from vedette.record.plain import json_text, plain
-from vedette.record.summary import SCHEMA_VERSION, Traffic
+from vedette.record.summary import MissionSummary, Traffic
 
 
 @dataclass(frozen=True)
-class ExploreSummary:
+class LeftOut:
+    """A frontier that a robot gave up for good, where the map is still unknown."""
+
+    x: float  # [m], team frame
+    y: float
+    unknown_cells: int  # near it
+    why: Literal["unseeable", "unreached"]  # visits did not change it; or the robot could not get there
+    by: str  # the robot
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExploreSummary(MissionSummary):
     """What one mission achieved, in simulated time only; the fields are explained in ``docs/outputs.md``."""
 
-    completed: bool
-    outcome: Outcome
-    seed: int
     robots: int
     planner: str
     scheme: str
@@ -45,12 +50,4 @@ class ExploreSummary:
     apart_s: float
     messages: Mapping[str, Traffic]
     bytes: Mapping[str, Traffic]
-    schema_version: int = field(default=SCHEMA_VERSION, init=False)
-
-    def to_json(self) -> str:
-        """Return the text of ``summary.json``: fields in the order declared, floats to 6 decimals."""
-        return json_text({"schema_version": self.schema_version} | plain(self))
-
-    def write(self, path: Path | str) -> None:
-        """Put ``summary.json`` in place."""
-        write_text(path, self.to_json())
+    left_out: tuple[LeftOut, ...]

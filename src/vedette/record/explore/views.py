@@ -3,30 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.domains.mapping.belief import planning_factor
 from vedette.domains.mapping.impact import Impact
-from vedette.maps import UNKNOWN, GridFrame
-from vedette.maps.world import World
+from vedette.domains.mapping.platform import GivenUp
+from vedette.maps import UNKNOWN
 from vedette.record.explore.log import RobotSample
-from vedette.record.figures import RoundFigures
-from vedette.record.summary import Traffic
+from vedette.record.explore.summary import LeftOut
+from vedette.record.figures import RobotFigures
 
 
 @dataclass(frozen=True)
-class RobotFigures:
-    """What one robot has counted up to now."""
+class GroundFigures(RobotFigures):
+    """What one robot on the ground has counted up to now."""
 
-    travelled_m: float = 0.0
     collisions: int = 0  # steps in which a contact stopped it
-    min_clearance_m: float = np.inf  # from its edge to a wall or to another robot, so far
-    rounds: RoundFigures = field(default_factory=RoundFigures)
-    messages: Traffic = field(default_factory=Traffic)  # sent
-    bytes: Traffic = field(default_factory=Traffic)
+    min_clearance_m: float = 0.5  # from its edge to a wall or to another robot, so far; measured up to 0.5 m
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,24 +32,8 @@ class RobotView:
     classes: NDArray[np.uint8]  # (R, C) the map as it holds it, its own cells included: see ``held_map``
     seen: NDArray[np.bool_]  # (R, C) what its own sensor has observed
     impact: Impact | None  # of its last decision, over planning cells; None: it has not decided yet
-    figures: RobotFigures
-
-
-@dataclass(frozen=True)
-class Setting:
-    """How a mission was set up, as ``summary.json`` tells it."""
-
-    seed: int
-    planner: str
-    scheme: str
-    fusion: str
-    radio: str | None = None  # RANGE[,WALL_DB]; None: everybody hears everybody
-    faults: str | None = None  # a file's name, or the seed of a schedule
-
-
-def planning_frame(world: World) -> GridFrame:
-    """Return the frame of the planning cells over a world."""
-    return world.frame.coarse(planning_factor(world.frame.resolution))
+    figures: GroundFigures
+    left_out: tuple[LeftOut, ...] = ()
 
 
 def held_map(fused: NDArray[np.uint8], own: NDArray[np.int8]) -> NDArray[np.uint8]:
@@ -79,3 +58,11 @@ def union_map(views: Sequence[RobotView]) -> NDArray[np.uint8]:
     for view in living[1:]:
         np.maximum(union, view.classes, out=union)  # UNKNOWN < FREE < OCCUPIED
     return union
+
+
+def left_out(given_up: Sequence[GivenUp], by: str) -> tuple[LeftOut, ...]:
+    """Return what a robot gave up, to be told."""
+    return tuple(
+        LeftOut(spot.x, spot.y, spot.unknown, "unseeable" if spot.visited else "unreached", by)
+        for spot in given_up
+    )

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.colors import Colormap, ListedColormap, PowerNorm
 
 from vedette.record import palette
+from vedette.record.film import flight_gif
 from vedette.record.search.log import SearchLog, SearchSnapshot
 from vedette.record.signs import INK, draw_vehicle
 
@@ -15,6 +18,7 @@ TRUTH = palette.unit((0, 190, 200))
 _BRIGHTEST = 0.999  # share of the first pdf's cells that the scale of colours must hold
 _ROOM = 1.5  # the darkest colour is so much above that: what is not searched grows likelier
 _POWER = 0.6  # of the colour scale: what is left after a while is faint
+_COLOURS = 200  # of the film
 _SWATH = 0.2  # opacity of what a plan sweeps
 
 
@@ -59,3 +63,15 @@ def draw(axes: Axes, log: SearchLog, snapshot: SearchSnapshot, norm: PowerNorm, 
         axes.plot(*snapshot.target, "*", color=TRUTH, mec=INK, mew=0.8, ms=13, zorder=9)
     for i, vehicle in enumerate(snapshot.vehicles):
         draw_vehicle(axes, i, vehicle)
+
+
+def search_gif(log: SearchLog, path: Path | str, frames: int = 150) -> None:
+    """Write at most ``frames`` snapshots of a log that is not empty as a film, evenly chosen."""
+    stages, norm, frame = log.stages(frames), scale(log), log.scene.frame
+    flight_gif(
+        stages,
+        lambda axes, stage: draw(axes, log, stage, norm, stage is stages[-1]),
+        frame.cols / frame.rows,
+        _COLOURS,
+        path,
+    )

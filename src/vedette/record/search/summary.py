@@ -3,33 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
-from enum import StrEnum
-from pathlib import Path
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vedette.domains.search.metrics import mean_time_to_detection
-from vedette.record.files import write_text
-from vedette.record.plain import json_text, plain
-from vedette.record.summary import Traffic
-
-SCHEMA_VERSION = 2
-
-
-class SearchOutcome(StrEnum):
-    """Why a search ended."""
-
-    FOUND = "found"  # a vehicle declared the target, and it is there
-    MISTAKEN = "mistaken"  # a vehicle declared the target, and it is elsewhere
-    TIME_LIMIT = "time_limit"  # the scenario's duration, or --max-time, passed
-    INTERRUPTED = "interrupted"  # Ctrl-C
-    TEAM_LOST = "team_lost"  # no vehicle is alive
+from vedette.record.summary import MissionSummary, Traffic
 
 
 @dataclass(frozen=True)
-class Quality:
+class SearchQuality:
     """How soon a search finds its target; what the ways of coordination are compared by."""
 
     detection: float
@@ -38,7 +22,7 @@ class Quality:
     mean_time_s: float
 
     @classmethod
-    def of(cls, times: NDArray[np.float64], detection: NDArray[np.float64]) -> Quality:
+    def of(cls, times: NDArray[np.float64], detection: NDArray[np.float64]) -> SearchQuality:
         """Return the figures of a curve ``(K + 1,)``, the probability of detection by each time [s].
 
         The mean time is cut at the end of the search: ``E[min(T, t_K)]``, docs/search.md (V50).
@@ -74,14 +58,17 @@ class Best:
     detection: float
     mean_time_s: float
 
+    @classmethod
+    def of(cls, times: NDArray[np.float64], detection: NDArray[np.float64]) -> Best:
+        """Return the figures of a curve, as of a search's."""
+        quality = SearchQuality.of(times, detection)
+        return cls(quality.detection, quality.mean_time_s)
 
-@dataclass(frozen=True)
-class SearchSummary:
+
+@dataclass(frozen=True, kw_only=True)
+class SearchSummary(MissionSummary):
     """What one search achieved; the fields are explained in ``docs/outputs.md``."""
 
-    completed: bool
-    outcome: SearchOutcome
-    seed: int
     scenario: str
     coordination: str
     scheme: str
@@ -98,8 +85,11 @@ class SearchSummary:
     error_m: float | None
     detection_then: float
     duration_s: float
-    quality: Quality | None
-    counted: Counted | None
+    detection: float | None = None
+    t50_s: float | None = None
+    t90_s: float | None = None
+    mean_time_s: float | None = None
+    counted: Counted | None = None
     bound: Best
     koopman: Best
     path_m: Mapping[str, float]
@@ -108,23 +98,7 @@ class SearchSummary:
     bound_ratio: float | None
     messages: Mapping[str, Traffic]
     bytes: Mapping[str, Traffic]
-    comparison: Mapping[str, Quality]
-    schema_version: int = field(default=SCHEMA_VERSION, init=False)
-
-    def to_json(self) -> str:
-        """Return the text of ``summary.json``: the team's quality among the other fields, where it stands."""
-        flat: dict[str, object] = {"schema_version": self.schema_version}
-        for each in fields(self):
-            value = getattr(self, each.name)
-            if each.name == "quality":
-                flat |= plain(value) if value else {part.name: None for part in fields(Quality)}
-            else:
-                flat[each.name] = plain(value)
-        return json_text(flat)
-
-    def write(self, path: Path | str) -> None:
-        """Put ``summary.json`` in place."""
-        write_text(path, self.to_json())
+    comparison: Mapping[str, SearchQuality] = field(default_factory=dict)
 
 
 def _passed(times: NDArray[np.float64], detection: NDArray[np.float64], level: float) -> float | None:

@@ -46,7 +46,7 @@ def entropy_png(logs: Mapping[str, TrackLog], left_out: Mapping[str, str], path:
         above = figure.add_subplot(grid[0])
         below = figure.add_subplot(grid[1], sharex=above)
         _entropy(above, logs, left_out)
-        _nees(below, logs, dimensions(some))
+        _nees(below, logs, dimensions(some.scene))
         for axes in (above, below):
             tidy(axes, "y")
             axes.tick_params(labelbottom=axes is below)

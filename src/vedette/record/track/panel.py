@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,8 +11,10 @@ from matplotlib.patches import Ellipse, Wedge
 from numpy.typing import NDArray
 
 from vedette.record import palette
+from vedette.record.film import flight_gif
+from vedette.record.log import evenly
 from vedette.record.signs import draw_vehicle
-from vedette.record.track.log import TrackLog, TrackSnapshot, VehicleSample
+from vedette.record.track.log import TrackLog, TrackSample, TrackSnapshot
 
 SIGMA = math.sqrt(-2.0 * math.log(0.05))  # a Gaussian in the plane lies within 2.45 sigma to 95 %
 INK = palette.unit(palette.INK)
@@ -19,6 +22,7 @@ TRUTH = palette.unit((150, 153, 157))
 KNOWN = palette.unit((255, 183, 0))  # of an ellipse's inside
 RECENT = 20.0  # a vehicle's way of so long stands out from the rest of it [s]
 _MARGIN = 0.02  # of the larger side
+_COLOURS = 128  # of the film
 
 Box = tuple[float, float, float, float]  # lowest x, lowest y, highest x, highest y [m]
 
@@ -57,6 +61,14 @@ def draw(axes: Axes, log: TrackLog, snapshot: TrackSnapshot, box: Box) -> None:
         draw_vehicle(axes, i, vehicle)
 
 
+def track_gif(log: TrackLog, path: Path | str, frames: int = 150) -> None:
+    """Write at most ``frames`` snapshots of a log that is not empty as a film, evenly chosen."""
+    box = window(log)
+    stages = [log.snapshots[k] for k in evenly(len(log.snapshots), frames)]
+    aspect = (box[2] - box[0]) / (box[3] - box[1])
+    flight_gif(stages, lambda axes, stage: draw(axes, log, stage, box), aspect, _COLOURS, path)
+
+
 def ellipse_axes(covariance: NDArray[np.float64]) -> tuple[float, float, float]:
     """Return width and height [m] of a position's 95 % ellipse, and the angle of its width [deg]."""
     variances, axes = np.linalg.eigh(covariance[:2, :2])
@@ -64,7 +76,7 @@ def ellipse_axes(covariance: NDArray[np.float64]) -> tuple[float, float, float]:
     return width, height, math.degrees(math.atan2(axes[1, 1], axes[0, 1]))
 
 
-def _view(axes: Axes, log: TrackLog, i: int, vehicle: VehicleSample) -> None:
+def _view(axes: Axes, log: TrackLog, i: int, vehicle: TrackSample) -> None:
     """Shade what a living vehicle's sensor views."""
     if not vehicle.alive:
         return

@@ -4,23 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields
-from pathlib import Path
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.outcome import Outcome
-from vedette.record.files import write_text
-from vedette.record.plain import json_text, plain
-from vedette.record.summary import Traffic
-from vedette.record.track.log import TrackLog
-
-SCHEMA_VERSION = 2
+from vedette.record.summary import MissionSummary, Traffic
+from vedette.record.track.log import TrackLog, TrackScene
 
 
 @dataclass(frozen=True)
-class Quality:
+class TrackQuality:
     """How well the targets were known; what the ways of coordination are compared by."""
 
     entropy_mean_nat: float
@@ -31,10 +26,10 @@ class Quality:
     in_view: float
 
     @classmethod
-    def of(cls, log: TrackLog) -> Quality:
+    def of(cls, log: TrackLog) -> TrackQuality:
         """Return the figures of a log that is not empty."""
         entropy, nees = log.curve(lambda s: s.entropy), log.curve(lambda s: s.nees)
-        low, high = nees_band(dimensions(log))
+        low, high = nees_band(dimensions(log.scene))
         return cls(
             entropy_mean_nat=float(entropy.mean()),
             entropy_final_nat=float(entropy[-1]),
@@ -44,14 +39,15 @@ class Quality:
             in_view=float(log.in_view().mean()),
         )
 
+    def of_team(self) -> dict[str, Any]:
+        """Return the figures by name, the share in view of all targets told apart from that of each."""
+        return {"in_view_mean" if name == "in_view" else name: each for name, each in vars(self).items()}
 
-@dataclass(frozen=True)
-class TrackSummary:
+
+@dataclass(frozen=True, kw_only=True)
+class TrackSummary(MissionSummary):
     """What one mission achieved; the fields are explained in ``docs/outputs.md``."""
 
-    completed: bool
-    outcome: Outcome
-    seed: int
     scenario: str
     coordination: str
     scheme: str
@@ -64,7 +60,12 @@ class TrackSummary:
     targets: int
     time_s: float
     steps: int
-    quality: Quality
+    entropy_mean_nat: float
+    entropy_final_nat: float
+    position_rmse_m: float
+    nees: float
+    nees_in_band: float
+    in_view_mean: float
     nees_band: tuple[float, float]
     in_view: Mapping[str, float]
     path_m: Mapping[str, float]
@@ -74,25 +75,12 @@ class TrackSummary:
     skipped: int
     messages: Mapping[str, Traffic]
     bytes: Mapping[str, Traffic]
-    comparison: Mapping[str, Quality]
-    schema_version: int = field(default=SCHEMA_VERSION, init=False)
-
-    def to_json(self) -> str:
-        """Return the text of ``summary.json``: the team's quality among the other fields, where it stands."""
-        flat: dict[str, object] = {"schema_version": self.schema_version}
-        for each in fields(self):
-            value = plain(getattr(self, each.name))
-            flat |= _of_team(value) if each.name == "quality" else {each.name: value}
-        return json_text(flat)
-
-    def write(self, path: Path | str) -> None:
-        """Put ``summary.json`` in place."""
-        write_text(path, self.to_json())
+    comparison: Mapping[str, TrackQuality] = field(default_factory=dict)
 
 
-def dimensions(log: TrackLog) -> int:
+def dimensions(scene: TrackScene) -> int:
     """Return how many numbers the states of all targets have."""
-    return sum(4 if moving else 2 for moving in log.scene.moving)
+    return sum(4 if moving else 2 for moving in scene.moving)
 
 
 def nees_band(dimensions: int) -> tuple[float, float]:
@@ -122,8 +110,3 @@ def _where(falling: Callable[[float], float], level: float) -> float:
 def squared_position_error(means: NDArray[np.float64], truth: NDArray[np.float64]) -> float:
     """Return the mean over targets of the squared error of the position [m^2]; both (T, 4)."""
     return float(np.square(means[:, :2] - truth[:, :2]).sum(axis=1).mean())
-
-
-def _of_team(quality: dict[str, object]) -> dict[str, object]:
-    """Name the share in view of all targets apart from that of each."""
-    return {"in_view_mean" if name == "in_view" else name: value for name, value in quality.items()}

@@ -8,13 +8,13 @@ import numpy as np
 
 from vedette.agent.driving import remaining
 from vedette.maps.world import World
-from vedette.record.explore.log import RobotSample, Sink
+from vedette.record.explore.log import ExploreSnapshot, RobotSample
 from vedette.record.explore.observer import ExploreObserver, ExploreReport
-from vedette.record.explore.views import RobotFigures, RobotView, Setting, held_map
-from vedette.record.figures import RoundFigures, traffic_of
-from vedette.record.summary import Traffic
+from vedette.record.explore.views import GroundFigures, RobotView, held_map, left_out
+from vedette.record.log import Sink
 from vedette.sim.explore.simulation import ExploreSetup, ExploreSimulation
 from vedette.sim.starts import choose_starts
+from vedette.sim.views import NOWHERE, figures, setting, state
 from vedette.team import PlatformSpec
 
 
@@ -28,7 +28,7 @@ def prepare(world: World, specs: Sequence[PlatformSpec], setup: ExploreSetup) ->
     return ExploreSimulation(world, specs, starts, setup)
 
 
-def explore(simulation: ExploreSimulation, sinks: Sequence[Sink] = ()) -> ExploreReport:
+def explore(simulation: ExploreSimulation, sinks: Sequence[Sink[ExploreSnapshot]] = ()) -> ExploreReport:
     """Run a mission to its end; ``sinks`` follow it, and Ctrl-C ends it in good order."""
     observer = observer_of(simulation, sinks)
     simulation.clock.start()
@@ -39,46 +39,34 @@ def explore(simulation: ExploreSimulation, sinks: Sequence[Sink] = ()) -> Explor
     return observer.report(outcome, simulation.clock.timing(simulation.now))
 
 
-def observer_of(simulation: ExploreSimulation, sinks: Sequence[Sink] = ()) -> ExploreObserver:
+def observer_of(
+    simulation: ExploreSimulation, sinks: Sequence[Sink[ExploreSnapshot]] = ()
+) -> ExploreObserver:
     """Return an observer of a simulated mission that has not begun."""
     setup = simulation.setup
-    setting = Setting(
-        setup.seed,
-        setup.planner,
-        setup.options.negotiates_by,
-        setup.fusion,
-        radio=None if setup.radio is None else str(setup.radio),
-        faults=setup.faults_from,
+    return ExploreObserver(
+        simulation.world, simulation.specs, simulation.starts, setup.options, setting(setup), sinks
     )
-    return ExploreObserver(simulation.world, simulation.specs, simulation.starts, setting, sinks)
 
 
 def views(simulation: ExploreSimulation) -> list[RobotView]:
     """Return what can be told of every simulated robot now."""
-    network = simulation.network
-    messages, size = network.messages_sent, network.bytes_sent
-    return [
-        _view(simulation, i, traffic_of(messages, i), traffic_of(size, i))
-        for i in range(len(simulation.specs))
-    ]
+    return [_view(simulation, i) for i in range(len(simulation.specs))]
 
 
-def _view(simulation: ExploreSimulation, i: int, messages: Traffic, size: Traffic) -> RobotView:
-    mission, rounds = simulation.missions[i], simulation.network.agents[i].rounds
-    bodies = simulation.robots.bodies
+def _view(simulation: ExploreSimulation, i: int) -> RobotView:
+    mission, bodies, sample = simulation.missions[i], simulation.robots.bodies, _sample(simulation, i)
     return RobotView(
-        _sample(simulation, i),
+        sample,
         held_map(mission.fusion.classes, mission.log_odds),
         mission.log_odds != 0,
-        rounds.impact,
-        RobotFigures(
-            travelled_m=float(bodies.travelled[i]),
+        simulation.network.agents[i].rounds.impact,
+        GroundFigures(
+            **vars(figures(simulation, i, float(bodies.travelled[i]))),
             collisions=int(bodies.collisions[i]),
             min_clearance_m=float(bodies.min_clearance[i]),
-            rounds=RoundFigures.of(rounds),
-            messages=messages,
-            bytes=size,
         ),
+        left_out(mission.platform.given_up, sample.name),
     )
 
 
@@ -86,7 +74,7 @@ def _sample(simulation: ExploreSimulation, i: int) -> RobotSample:
     x, y, heading = simulation.pose(i)
     alive = bool(simulation.robots.alive[i])
     wanted = simulation.drivers[i].wanted if alive else None
-    path = np.empty((0, 2)) if wanted is None else remaining(wanted.path, x, y, np.inf)
+    path = NOWHERE if wanted is None else remaining(wanted.path, x, y, np.inf)
     goal = (float(path[-1, 0]), float(path[-1, 1])) if len(path) else None
-    state = simulation.network.agents[i].state.value if alive else "dead"
-    return RobotSample(simulation.specs[i].name, x, y, heading, state, goal, path, alive)
+    name = simulation.specs[i].name
+    return RobotSample(x, y, heading, state(simulation, i), alive, path, name, goal)

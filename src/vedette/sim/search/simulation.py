@@ -13,6 +13,7 @@ from vedette.missions.search.case import SearchCase
 from vedette.missions.search.options import SearchOptions
 from vedette.missions.search.searching import Declared, Searching
 from vedette.outcome import Outcome
+from vedette.record.search.observer import first_declared
 from vedette.sim.flights import FlightSetup
 from vedette.sim.search.hidden import Hidden, Searchers
 from vedette.sim.simulation import Simulation, random_streams
@@ -43,7 +44,7 @@ class SearchSimulation(Simulation):
             InputError: rounds take longer over these links than plans reach ahead.
         """
         self.case, self.names = case, case.names
-        team = SearchTeam(case, setup.options, setup.times)
+        team = self.team = SearchTeam(case, setup.options, setup.times)
         self.plan = team.plan
         vehicles, step = case.scenario.vehicles, case.scenario.step
         streams = random_streams(setup.seed, len(self.names))
@@ -72,8 +73,5 @@ class SearchSimulation(Simulation):
 
     @property
     def declared(self) -> tuple[int, Declared] | None:
-        """Who declared the target found, and where; a detection goes before a belief."""
-        told = [
-            (i, mission.declared) for i, mission in enumerate(self.missions) if mission.declared is not None
-        ]
-        return min(told, key=lambda each: (not each[1].certain, each[1].time, each[0]), default=None)
+        """Who declared the target found, and where."""
+        return first_declared([mission.declared for mission in self.missions])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from math import ceil
@@ -14,17 +14,19 @@ import numpy as np
 from msgspec import structs
 from numpy.typing import NDArray
 
+from vedette.domains.search.belief import TargetPdf
+from vedette.domains.search.detectors import Detector
 from vedette.missions.search.case import SearchCase
 from vedette.missions.search.options import COORDINATIONS
 from vedette.outcome import Outcome
-from vedette.record.search.curves import CountedCurve
-from vedette.record.search.summary import Counted, Quality, SearchOutcome
-from vedette.sim.search.curves import Looks, detected_at, dkw, predicted, wilson
-from vedette.sim.search.run import SearchReport, ended_as
+from vedette.record.search.counting import Trials, counted, counted_curve
+from vedette.record.search.curves import Looks, predicted
+from vedette.record.search.observer import SearchReport, ended_as
+from vedette.record.search.summary import SearchQuality
+from vedette.sim.search.hidden import draw_places
 from vedette.sim.search.simulation import SearchSetup, SearchSimulation
 
 LOOKED_AT, RUNS = 1000, 20  # trials by default: without and with false alarms
-_NORMAL = 1.959963984540054  # 97.5 % quantile
 
 
 @dataclass
@@ -45,15 +47,6 @@ class Running:
         """Run a simulation that nobody follows; tell whether it came to its own end."""
         self.current = simulation
         return not self.stopped and simulation.run(lambda: None) is not Outcome.INTERRUPTED
-
-
-@dataclass(frozen=True, eq=False)
-class Trials:
-    """When each of many targets was found."""
-
-    steps: NDArray[np.int64]  # (n,) at whose end; K + 1: never, or the team was mistaken
-    of: str  # "looks": at which the vehicles looked as they would; "runs": each looked for in earnest
-    mistaken: int = 0
 
 
 def assessed(
@@ -117,60 +110,59 @@ def _runs(case: SearchCase, setup: SearchSetup, steps: int, trials: int, running
                 return None
             ended.append(task.result())
     at = [
-        ceil(time / case.pdf.dt - 1e-6) if outcome is SearchOutcome.FOUND else steps + 1
-        for outcome, time in ended
+        ceil(time / case.pdf.dt - 1e-6) if outcome is Outcome.FOUND else steps + 1 for outcome, time in ended
     ]
-    return Trials(np.array(at), "runs", sum(outcome is SearchOutcome.MISTAKEN for outcome, _ in ended))
+    return Trials(np.array(at), "runs", sum(outcome is Outcome.MISTAKEN for outcome, _ in ended))
 
 
-def search_once(case: SearchCase, setup: SearchSetup) -> tuple[SearchOutcome, float]:
+def search_once(case: SearchCase, setup: SearchSetup) -> tuple[Outcome, float]:
     """Run one search that nobody follows; return how it ended and when [s]."""
     simulation = SearchSimulation(case, setup)
     outcome = simulation.run(lambda: None)
-    return ended_as(simulation, outcome), simulation.now
+    found = None if simulation.declared is None else simulation.declared[1]
+    return ended_as(outcome, found, simulation.plan, simulation.hidden.at), simulation.now
 
 
 def _joined(
     report: SearchReport, detection: dict[str, NDArray[np.float64]], trials: Trials | None, interrupted: bool
 ) -> SearchReport:
     times = report.curves.times
-    comparison = {name: Quality.of(times, detection[name]) for name in COORDINATIONS if name in detection}
-    outcome = SearchOutcome.INTERRUPTED if interrupted else report.summary.outcome
+    names = [name for name in COORDINATIONS if name in detection]
+    comparison = {name: SearchQuality.of(times, detection[name]) for name in names}
+    outcome = Outcome.INTERRUPTED if interrupted else report.summary.outcome
+    own = comparison.get(report.summary.coordination)
     summary = replace(
         report.summary,
         outcome=outcome,
-        completed=outcome is SearchOutcome.FOUND,
-        quality=comparison.get(report.summary.coordination),
-        counted=None if trials is None else _counted(times, trials),
+        completed=outcome.completed,
+        **({} if own is None else vars(own)),
+        counted=None if trials is None else counted(times, trials),
         comparison=comparison,
     )
-    curve = None if trials is None else _curve(len(times) - 1, trials)
+    curve = None if trials is None else counted_curve(len(times) - 1, trials)
     curves = replace(report.curves, detection=detection, counted=curve)
     return replace(report, summary=summary, curves=curves)
 
 
-def _curve(steps: int, trials: Trials) -> CountedCurve:
-    count = len(trials.steps)
-    share = np.bincount(trials.steps, minlength=steps + 2)[: steps + 1].cumsum() / count
-    return CountedCurve(share, dkw(count), count, trials.of)
+def detected_at(
+    pdf: TargetPdf,
+    detectors: Sequence[Detector],
+    looks: Looks,
+    steps: int,
+    trials: int,
+    rng: np.random.Generator,
+) -> NDArray[np.int64]:
+    """Draw targets from the prior, move them by the model, and look at them as the vehicles did.
 
-
-def _counted(times: NDArray[np.float64], trials: Trials) -> Counted:
-    steps, count = len(times) - 1, len(trials.steps)
-    found = int(np.count_nonzero(trials.steps <= steps))
-    low, high = wilson(found, count)
-    spent = times[np.minimum(trials.steps, steps)]
-    half = _NORMAL * float(spent.std(ddof=1)) / np.sqrt(count) if count > 1 else float("nan")
-    mean = float(spent.mean())
-    return Counted(
-        count,
-        trials.of,
-        found / count,
-        low,
-        high,
-        mean,
-        mean - half,
-        mean + half,
-        dkw(count),
-        trials.mistaken,
-    )
+    Returns:
+        ``(trials,)`` the step at whose end each was first detected; ``steps + 1`` for those that never were.
+    """
+    places = draw_places(pdf, trials, rng)
+    first = np.full(trials, steps + 1)
+    for step in range(1, steps + 1):
+        places = pdf.motion.move(rng, places, pdf.frame, pdf.dt)
+        for detector, made in zip(detectors, looks, strict=True):
+            for pose in made.get(step, ()):
+                found = rng.random(trials) < detector.chance(pose, places)
+                first[found] = np.minimum(first[found], step)
+    return first

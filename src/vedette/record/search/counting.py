@@ -1,0 +1,68 @@
+"""What was counted over many targets, with how far chance may have misled it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.record.search.curves import CountedCurve
+from vedette.record.search.summary import Counted
+
+_NORMAL = 1.959963984540054  # 97.5 % quantile
+
+
+@dataclass(frozen=True, eq=False)
+class Trials:
+    """When each of many targets was found."""
+
+    steps: NDArray[np.int64]  # (n,) at whose end; K + 1: never, or the team was mistaken
+    of: str  # "looks": at which the vehicles looked as they would; "runs": each looked for in earnest
+    mistaken: int = 0
+
+
+def counted_curve(steps: int, trials: Trials) -> CountedCurve:
+    """Return the share found by the end of each step."""
+    count = len(trials.steps)
+    share = np.bincount(trials.steps, minlength=steps + 2)[: steps + 1].cumsum() / count
+    return CountedCurve(share, dkw(count), count, trials.of)
+
+
+def counted(times: NDArray[np.float64], trials: Trials) -> Counted:
+    """Return the figures of the trials of a search whose steps end at ``times`` (K + 1,) [s]."""
+    steps, count = len(times) - 1, len(trials.steps)
+    found = int(np.count_nonzero(trials.steps <= steps))
+    low, high = wilson(found, count)
+    spent = times[np.minimum(trials.steps, steps)]
+    half = _NORMAL * float(spent.std(ddof=1)) / np.sqrt(count) if count > 1 else float("nan")
+    mean = float(spent.mean())
+    return Counted(
+        count,
+        trials.of,
+        found / count,
+        low,
+        high,
+        mean,
+        mean - half,
+        mean + half,
+        dkw(count),
+        trials.mistaken,
+    )
+
+
+def dkw(trials: int, confidence: float = 0.95) -> float:
+    """``sqrt(ln(2 / (1 - c)) / (2 n))``: half width of a band that holds a whole distribution function.
+
+    Dvoretzky, Kiefer, Wolfowitz; Massart's constant.
+    """
+    return math.sqrt(math.log(2.0 / (1.0 - confidence)) / (2.0 * trials))
+
+
+def wilson(found: int, trials: int) -> tuple[float, float]:
+    """Return Wilson's 95 % interval of a probability from ``found`` of ``trials``."""
+    z, share = _NORMAL, found / trials
+    middle = (share + z * z / (2.0 * trials)) / (1.0 + z * z / trials)
+    half = z * math.sqrt(share * (1.0 - share) / trials + (z / (2.0 * trials)) ** 2) / (1.0 + z * z / trials)
+    return max(0.0, middle - half), min(1.0, middle + half)

@@ -1,0 +1,50 @@
+"""However a mission ends, files, screen and exit status say the same."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from vedette.cli.exploring import closing
+from vedette.cli.options import end
+from vedette.outcome import Outcome
+from vedette.record.explore.summary import ExploreSummary, LeftOut
+
+
+def summary(outcome: Outcome, left_out: tuple[LeftOut, ...] = ()) -> ExploreSummary:
+    return ExploreSummary(
+        completed=outcome.completed, outcome=outcome, seed=1, robots=1, planner="tours", scheme="token",
+        fusion="replicated", world="hall", radio=None, faults=None, time_s=60.0, t50_s=20.0, t90_s=50.0,
+        t95_s=None, t99_s=None, auc_s=30.0, coverage=0.92, map_errors=0, map_error_share=0.0,
+        path_m={"robot-1": 12.0}, overlap=0.0, collisions=0, min_clearance_m=0.2, rounds=9, sweeps=9,
+        bound_ratio=None, apart_s=0.0, messages={}, bytes={}, left_out=left_out,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("outcome", Outcome)
+def test_file_screen_and_exit_status_agree(outcome: Outcome, capsys: pytest.CaptureFixture[str]) -> None:
+    for as_json in (True, False):
+        with pytest.raises(SystemExit) as exit_:
+            end(summary(outcome), closing(summary(outcome), Path("runs")), as_json)
+        assert exit_.value.code == outcome.status
+        said = capsys.readouterr().out
+        if as_json:
+            figures = json.loads(said)
+            assert (figures["outcome"], figures["completed"]) == (outcome.value, outcome.completed)
+        else:
+            assert said.startswith(f"{outcome.value.replace('_', ' ')}: 92.0 % of hall")
+            assert (outcome.meaning in said) != outcome.completed
+
+
+def test_only_ends_with_status_0_are_completed_or_ordered() -> None:
+    assert {outcome for outcome in Outcome if outcome.status == 0} == {
+        Outcome.ORDERED, *(outcome for outcome in Outcome if outcome.completed)
+    }  # fmt: skip
+
+
+def test_what_is_left_out_is_counted_by_its_reason() -> None:
+    spots = [LeftOut(1.0, k, 9, "unreached" if k else "unseeable", "robot-1") for k in (0.0, 1.0, 2.0)]
+    lines = closing(summary(Outcome.COMPLETE, tuple(spots)), Path("runs"))
+    assert lines[1] == "frontiers left out: 1 unseeable, 2 unreached; summary.json lists them"
