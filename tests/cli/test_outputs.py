@@ -126,6 +126,7 @@ def test_a_study_is_not_left_where_its_maps_are_but_goes_on_from_its_own_copy_of
         "track specs/track.yaml --force",
         "search specs/search.yaml --force",
         "study specs/study.yaml --jobs 1",
+        "world maze --width 10 --height 10 --force",
     ],
 )
 def test_a_folder_that_another_run_has_is_refused_and_left_as_it_is(

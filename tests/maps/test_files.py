@@ -71,7 +71,7 @@ def test_the_written_pair_is_map_savers_with_the_top_row_first(tmp_path: Path) -
 
 
 def as_nav2(pixel: int, mode: str, negate: bool, occupied: float, free: float) -> int:
-    """Class a grey level as Nav2's map_io does since April 2025, one pixel at a time, all in float32."""
+    """Class a grey level as Nav2's map_io does since 2025, one pixel at a time, all in float32."""
     if mode == "raw":
         occ = np.float32(pixel / 100) if pixel <= 100 else np.float32(np.nan)
     else:
@@ -259,7 +259,8 @@ def test_the_argument_overrides_the_pairs_resolution_and_exponents_are_numbers(t
         ({"image": 3}, "/3: No such file"),
         ({"image": "gone.png"}, "gone.png: No such file"),
         ({"image": "."}, "Is a directory"),
-        ({"image": '"a\\0b"'}, "cannot read"),
+        ({"image": '"a\\0b"'}, "image a\\x00b cannot be the name of a file"),
+        ({"image": '"a\\nb"'}, "image a\\nb cannot be the name of a file"),
         ({"image": "map.yaml"}, "not a map"),
         (
             {"resolution": "0.05\nresolution: 0.1"},

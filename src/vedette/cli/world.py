@@ -8,7 +8,7 @@ import click
 import numpy as np
 
 from vedette.errors import InputError, nearest_name
-from vedette.record.files import output_directory
+from vedette.record.folder import OutputFolder
 from vedette.sim.worlds import GENERATORS
 
 
@@ -28,7 +28,8 @@ def world(
     if kind not in GENERATORS:
         raise InputError(f"unknown kind of world {kind!r}; {nearest_name(kind, GENERATORS)}")
     made = GENERATORS[kind](np.random.default_rng(seed), width, height, resolution)
-    path = made.save(output_directory(out, force))
+    with OutputFolder.make(out, force, kind) as folder:
+        path = made.save(folder.path)
     free = np.count_nonzero(~made.solid) * resolution**2
     click.echo(
         f"{kind}, seed {seed}: {width:g} x {height:g} m at {resolution:g} m, {free:.0f} m2 free -> {path}"

@@ -23,7 +23,7 @@ _WORTH_A_WORD = 0.001  # share of the pixels: fewer are the soft edges of a draw
 def classes_of_pair(meta: MapMeta, levels: Levels) -> NDArray[np.uint8]:
     """Return the class that map_server gives to each pixel, ``uint8[rows, cols]``, bottom row first.
 
-    The rules are those of Nav2 since its pull request 5071 (April 2025): of a colour the luma counts, in 8
+    The rules are those of Nav2 since its pull request 5071 (2025): of a colour the luma counts, in 8
     bits; occupied from ``occupied_thresh`` up, free from ``free_thresh`` down, in single precision; unknown
     unless opaque. Ours: a graded value (scale, raw) is known only beyond the thresholds, and raw heeds alpha.
 

@@ -45,6 +45,8 @@ def read_meta(path: Path) -> MapMeta:
     image = content.get("image") if isinstance(content, dict) else None
     if not isinstance(image, str) or not image:
         raise InputError(f"{path} is not a map: it has no 'image: FILE' line")
+    if not image.isprintable():
+        raise InputError(f"{path}: image {_said(image)} cannot be the name of a file; write it anew")
     resolution = content.get("resolution")
     if resolution is not None:
         resolution = checked_resolution(resolution, f"{path}: resolution")
