@@ -11,7 +11,8 @@ from vedette.errors import InputError
 from vedette.maps import GridFrame
 from vedette.maps.world import World, reachable_poses, standable
 from vedette.sim.components import largest
-from vedette.sim.starts import choose_starts, clearance, indoors, parse_starts
+from vedette.sim.indoors import indoors
+from vedette.sim.starts import choose_starts, clearance, parse_starts
 from vedette.sim.worlds import GENERATORS, office
 from vedette.team import PlatformSpec
 

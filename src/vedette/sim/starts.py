@@ -11,10 +11,8 @@ from numpy.typing import NDArray
 
 from vedette.errors import InputError
 from vedette.kernels.distance import distance_field
-from vedette.kernels.frontier import traversable
-from vedette.maps import FREE
 from vedette.maps.world import World, reachable_poses, standable
-from vedette.sim.components import components, largest
+from vedette.sim.indoors import indoors
 from vedette.team import PlatformSpec
 
 _GAP = 0.05  # [m] least gap between robots that a user placed
@@ -49,7 +47,7 @@ def choose_starts(
     """Return ``f64[n, 3]`` start poses x, y, heading [m, m, rad], team frame.
 
     A start that a spec gives is checked and kept. The others stand together, 0.3 m apart (0.1 m where that is
-    too much), near the first given start or else at a random spot indoors (:func:`indoors`).
+    too much), near the first given start or else at a random spot indoors (`vedette.sim.indoors`).
 
     Raises:
         InputError: a given start is outside, in or too near a wall, too near another, or cut off from the
@@ -67,30 +65,6 @@ def choose_starts(
         anchor = world.frame.flat(*starts[given[0], :2]) if given else _spot(world, specs, rng)
         _place(world, specs, starts, given, others, anchor)
     return starts
-
-
-def indoors(world: World, radius: float) -> NDArray[np.bool_]:
-    """Return ``bool[rows, cols]``: where a disc of ``radius`` [m] fits in the largest area between walls.
-
-    A cell is between walls if on all four sides there comes one, or a gap too narrow for the disc, before the
-    grid ends. So a team starts inside a building though the map calls its surroundings free. Where nothing is
-    between walls, the largest area counts as it is.
-    """
-    places = standable(world, radius)
-    between = places & _between_walls(world, radius)
-    if not between.any():
-        return largest(places)
-    labels = components(places)
-    return np.asarray(between & (labels == np.bincount(labels[between]).argmax()))
-
-
-def _between_walls(world: World, radius: float) -> NDArray[np.bool_]:
-    margin = math.ceil(radius / world.frame.resolution) + 1
-    around = np.pad(world.classes(), margin, constant_values=FREE)  # the grid's end is no wall
-    wall = ~traversable(around, radius, world.frame.resolution)[margin:-margin, margin:-margin]
-    met = np.logical_or.accumulate
-    across = met(wall, axis=1) & met(wall[:, ::-1], axis=1)[:, ::-1]
-    return np.asarray(across & met(wall, axis=0) & met(wall[::-1], axis=0)[::-1])
 
 
 def _checked(world: World, spec: PlatformSpec) -> tuple[float, float, float]:

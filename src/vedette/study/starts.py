@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from vedette.errors import InputError
 from vedette.kernels.distance import distance_field
 from vedette.maps.world import World, standable
-from vedette.sim.starts import indoors
+from vedette.sim.indoors import indoors
 from vedette.team import PlatformSpec
 
 _TRIES = 8  # places that a robot is offered, of which it takes the one farthest from those before it
