@@ -65,7 +65,7 @@ MISTAKES = {
     ),
     "vehicles: [{start: [a, 2]}]": "vehicles[0].start[0]: expected `float`, got `str`; it is 'a'",
     "": "object missing required field `vehicles`",
-    "[1, 2]": "a scenario is 'field: value' pairs; got [1, 2]",
+    "[1, 2]": "must be 'field: value' pairs; got [1, 2]",
 }
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+
+Limits = tuple[float, float, str]  # lowest, highest, unit
 
 
 class InputError(ValueError):
@@ -25,3 +27,12 @@ def nearest_name(name: str, known: Iterable[str]) -> str:
     known = list(known)
     close = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
     return f"did you mean {close[0]!r}?" if close else f"known: {', '.join(known)}"
+
+
+def check_limits(thing: object, limits: Mapping[str, Limits]) -> None:
+    """Raise InputError for the first of these fields that is not within its limits, the ends included."""
+    for field, (low, high, unit) in limits.items():
+        value = getattr(thing, field)
+        if not low <= value <= high:
+            span = f"{low:g} to {high:g} {unit}".rstrip()
+            raise InputError(f"{field} must be {span}; got {value}")

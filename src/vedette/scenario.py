@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 from reprlib import repr as repr_short
 from typing import Any, TypeVar
@@ -31,10 +33,18 @@ def load_scenario(path: Path | str, kind: type[T]) -> T:
     return as_scenario({} if content is None else content, kind, str(path))
 
 
-def as_scenario(content: Any, kind: type[T], where: str) -> T:
-    """Return plain data as a value of ``kind``; an `InputError` begins with ``where``."""
-    if not isinstance(content, dict):
-        raise InputError(f"{where}: a scenario is 'field: value' pairs; got {repr_short(content)}")
+def as_scenario(content: Any, kind: type[T], where: str, known: Sequence[str] | None = None) -> T:
+    """Return plain data as a value of ``kind``; an `InputError` begins with ``where``.
+
+    A dataclass, which does not forbid unknown fields, takes those that are ``known``: its own, if not told.
+    """
+    if not isinstance(content, Mapping):
+        raise InputError(f"{where}: must be 'field: value' pairs; got {repr_short(content)}")
+    if known is None and is_dataclass(kind):
+        known = [field.name for field in fields(kind)]
+    for name in content:
+        if known is not None and name not in known:
+            raise InputError(f"{where}: unknown field {repr_short(name)}; {nearest_name(str(name), known)}")
     _refuse_infinite(content, where, "")
     try:
         return msgspec.convert(content, kind)
@@ -42,8 +52,19 @@ def as_scenario(content: Any, kind: type[T], where: str) -> T:
         raise InputError(f"{where}: {_in_words(str(error), content, kind)}") from None
 
 
+def as_one_of(kinds: Mapping[str, type[T]], content: Any, where: str) -> T:
+    """Return plain data as a value of the kind that its ``type`` names; else as `as_scenario`."""
+    if not isinstance(content, Mapping):
+        raise InputError(f"{where}: must be 'field: value' pairs with a type; got {repr_short(content)}")
+    name = content.get("type")
+    if not isinstance(name, str) or name not in kinds:
+        raise InputError(f"{where}: unknown type {repr_short(name)}; {nearest_name(str(name), kinds)}")
+    rest = {field: value for field, value in content.items() if field != "type"}
+    return as_scenario(rest, kinds[name], where)
+
+
 def _refuse_infinite(value: Any, where: str, place: str) -> None:
-    if isinstance(value, dict):
+    if isinstance(value, Mapping):
         for key, item in value.items():
             _refuse_infinite(item, where, f"{place}.{key}")
     elif isinstance(value, list):
@@ -69,7 +90,7 @@ def _in_words(error: str, content: Any, kind: type[Any]) -> str:
     if re.match(r"Invalid (enum )?value", what):
         return f"{field}unknown {_last(place)} {value!r}; {nearest_name(str(value), _words(schema))}"
     what = what[0].lower() + what[1:]
-    return f"{field}{what}" + ("" if isinstance(value, dict) else f"; it is {repr_short(value)}")
+    return f"{field}{what}" + ("" if isinstance(value, Mapping) else f"; it is {repr_short(value)}")
 
 
 def _last(place: str) -> str:

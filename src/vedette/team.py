@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, replace
 from pathlib import Path
 from reprlib import repr as repr_short
-from typing import Any
 
-from vedette.errors import InputError, nearest_name
+from vedette.errors import InputError, check_limits
+from vedette.scenario import as_scenario
 from vedette.yaml_file import read_yaml
 
-_RANGES = {  # field: lowest, highest, unit
+_LIMITS = {
     "speed": (0.01, 10.0, "m/s"),
     "turn_rate": (0.05, 20.0, "rad/s"),
     "radius": (0.02, 5.0, "m"),
@@ -33,7 +33,7 @@ class PlatformSpec:
     """One robot: a disc that drives and turns in place, with a planar lidar at its centre.
 
     Raises:
-        InputError: a field has the wrong type or is out of its range; the line names field, value and range.
+        InputError: a field is out of its range; the line names field, value and range.
     """
 
     name: str = "robot-1"  # letters, digits, '-', '_' and '.', for it becomes part of file and topic names
@@ -50,20 +50,13 @@ class PlatformSpec:
     pose_std_heading: float = 0.0  # and of the heading [deg]
 
     def __post_init__(self) -> None:
-        if not isinstance(self.name, str) or not _NAME.fullmatch(self.name):
+        if not _NAME.fullmatch(self.name):
             raise InputError(
                 f"name must be letters, digits, '-', '_' or '.', at most 64; got {repr_short(self.name)}"
             )
-        for field, (low, high, unit) in _RANGES.items():
-            value = getattr(self, field)
-            if not _is_number(value) or not low <= value <= high:
-                raise InputError(f"{field} must be {low:g} to {high:g} {unit}; got {repr_short(value)}")
-        if self.beams != int(self.beams):
-            raise InputError(f"beams must be a whole number; got {self.beams!r}")
-        if self.start is not None and not (
-            isinstance(self.start, tuple) and len(self.start) in (2, 3) and all(map(_is_number, self.start))
-        ):
-            raise InputError(f"start must be [x, y] or [x, y, heading in deg]; got {repr_short(self.start)}")
+        check_limits(self, _LIMITS)
+        if self.start is not None and not (len(self.start) in (2, 3) and all(map(math.isfinite, self.start))):
+            raise InputError(f"start must be [x, y] or [x, y, heading in deg]; got {list(self.start)}")
 
 
 @dataclass(frozen=True)
@@ -95,57 +88,18 @@ def load_team(path: Path | str) -> list[PlatformSpec]:
         InputError: unreadable, not YAML, no platforms, an unknown field (with the nearest valid name), a
             wrong type, a value out of range, a name used twice; the line names file, platform and field.
     """
-    path = Path(path)
+    remedy = "a team file is a list under 'platforms:' of at least one, for instance '- {}'"
+    content = read_yaml(Path(path), "team file", remedy)
+    entries = content.get("platforms") if isinstance(content, dict) and len(content) == 1 else None
+    if not isinstance(entries, list) or not entries:
+        raise InputError(f"{path}: {remedy}; got {repr_short(content)}")
     specs: list[PlatformSpec] = []
     names: set[str] = set()
-    for number, entry in enumerate(_platforms(path), start=1):
+    for number, entry in enumerate(entries, start=1):
         where = f"{path}: platform {number}"
-        specs.append(_spec(where, f"robot-{number}", entry))
+        spec = as_scenario({} if entry is None else entry, PlatformSpec, where)
+        specs.append(spec if entry and "name" in entry else replace(spec, name=f"robot-{number}"))
         if specs[-1].name in names:
             raise InputError(f"{where}: the name {specs[-1].name!r} is used twice; names must differ")
         names.add(specs[-1].name)
     return specs
-
-
-def _platforms(path: Path) -> list[Any]:
-    content = read_yaml(path, "team file", "a team file is a list under 'platforms:'")
-    if not isinstance(content, dict) or not isinstance(content.get("platforms", []), list):
-        raise InputError(f"{path}: a team file is a list under 'platforms:'; found something else")
-    for key in content:
-        if key != "platforms":
-            raise InputError(
-                f"{path}: unknown key {repr_short(key)}; {nearest_name(str(key), ['platforms'])}"
-            )
-    if not content.get("platforms"):
-        raise InputError(f"{path}: no platforms; list at least one under 'platforms:', for instance '- {{}}'")
-    return list(content["platforms"])
-
-
-def _spec(where: str, name: str, entry: Any) -> PlatformSpec:
-    entry = {} if entry is None else entry
-    if not isinstance(entry, dict):
-        raise InputError(f"{where}: must be 'field: value' pairs; got {repr_short(entry)}")
-    known = [field.name for field in fields(PlatformSpec)]
-    for key in entry:
-        if key not in known:
-            raise InputError(f"{where}: unknown field {repr_short(key)}; {nearest_name(str(key), known)}")
-    values = {"name": name} | {key: _plain(key, value) for key, value in entry.items()}
-    try:
-        return PlatformSpec(**values)
-    except InputError as error:
-        raise InputError(f"{where}: {error}") from error
-
-
-def _plain(field: str, value: Any) -> Any:
-    """Return the value in the field's own type where that loses nothing; else as it is, to be refused."""
-    if field == "start" and isinstance(value, list):
-        return tuple(_plain("", part) for part in value)
-    if field == "beams":
-        return int(value) if isinstance(value, float) and value.is_integer() else value
-    return float(value) if _is_number(value) else value
-
-
-def _is_number(value: Any) -> bool:
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return False
-    return math.isfinite(value) if isinstance(value, float) else abs(value) < 10**300

@@ -295,7 +295,7 @@ def test_options_that_make_no_sense_are_refused(
         ("platforms: [{sped: 1.0}]", ["sped", "speed"]),
         ("platfroms: [{}]", ["platfroms", "platforms"]),
         ("platforms: [{speed: fast}]", ["speed", "fast"]),
-        ("platforms: []", ["no platforms"]),
+        ("platforms: []", ["a list under 'platforms:'", "at least one"]),
         ("platforms: [{}]", ["--robots is 2", "lists 1"]),
         ("platforms: [{name: a}, {name: a}]", ["used twice"]),
         ("platforms: [{start: [0.1, 0.1]}, {}]", ["in a wall"]),

@@ -7,10 +7,10 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from vedette.domains.mapping.planners import planner
-from vedette.errors import InputError, nearest_name
+from vedette.errors import InputError, check_limits, nearest_name
 from vedette.missions.explore.assemble import FUSIONS
 from vedette.negotiation import SCHEMES
 from vedette.scenario import as_scenario
@@ -24,8 +24,7 @@ from vedette.team import PlatformSpec
 
 MOST_RUNS = 100_000
 _WORDS: Mapping[str, Sequence[str]] = {"scheme": tuple(SCHEMES), "fusion": tuple(FUSIONS)}
-_RANGES = {"link_loss": (0.0, 0.9), "link_delay": (0.0, 0.3), "max_time": (1.0, math.inf)}
-T = TypeVar("T")
+_LIMITS = {"link_loss": (0.0, 0.9, ""), "link_delay": (0.0, 0.3, "s"), "max_time": (1.0, math.inf, "s")}
 
 
 def runs_of(spec: Spec, path: Path) -> list[Run]:
@@ -90,23 +89,20 @@ def _each(fields: Mapping[str, Any], where: str) -> Iterator[dict[str, Any]]:
 
 
 def _platform(fields: Mapping[str, Any], path: Path) -> PlatformSpec:
-    return _checked(fields, PlatformSpec, OF_PLATFORM, f"{path}: platform")
+    return as_scenario(fields, PlatformSpec, f"{path}: platform", OF_PLATFORM)
 
 
 def _setup(fields: Mapping[str, Any], path: Path, robots: int) -> ExploreSetup:
     """Return a setup that a team of so many robots can have."""
     where = f"{path}: setup"
     written = {name: value for name, value in fields.items() if name not in _READ}
-    setup = _checked(written, ExploreSetup, OF_SETUP, where)
+    setup = as_scenario(written, ExploreSetup, where, OF_SETUP)
     for name, words in _WORDS.items():
         value = getattr(setup, name)
         if value not in words:
             raise InputError(f"{where}: unknown {name} {value!r}; {nearest_name(value, words)}")
-    for name, (low, high) in _RANGES.items():
-        value = getattr(setup, name)
-        if not low <= value <= high:
-            raise InputError(f"{where}: {name} must be {low:g} to {high:g}; got {value:g}")
     try:
+        check_limits(setup, _LIMITS)
         read = {name: _READ[name](fields[name], path, robots) for name in _READ if name in fields}
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
@@ -145,10 +141,3 @@ def _faults(value: Any, path: Path, robots: int) -> Schedule | None:
 _READ: Mapping[str, Callable[[Any, Path, int], Any]] = {
     "kills": _kills, "radio": _radio, "faults": _faults,
 }  # fmt: skip
-
-
-def _checked(fields: Mapping[str, Any], kind: type[T], known: Sequence[str], where: str) -> T:
-    for name in fields:
-        if name not in known:
-            raise InputError(f"{where}: unknown field {name!r}; {nearest_name(str(name), known)}")
-    return as_scenario(dict(fields), kind, where)

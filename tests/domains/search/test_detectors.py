@@ -93,8 +93,8 @@ def test_detectors_are_made_by_name() -> None:
         ({"type": "definite", "rnge": 3}, "did you mean 'range'"),
         ({"type": "definite", "range": -3}, "range must be"),
         ({"type": "definite", "detection": 1.2}, "detection must be 0 to 1"),
-        ({"type": "definite", "noise": float("nan")}, "noise must be"),
-        ({"type": "definite", "view": "wide"}, "view must be"),
+        ({"type": "definite", "noise": float("nan")}, "noise: must be a finite number"),
+        ({"type": "definite", "view": "wide"}, "view: expected `float`"),
         ({"type": "exponential", "sigma": 0}, "sigma must be"),
     ],
 )

@@ -218,7 +218,7 @@ def test_who_is_not_seen_contributes_nothing() -> None:
 
 
 def test_scenarios_name_sensors() -> None:
-    assert sensor_of({"type": "bearing", "range": 60, "bearing_noise": "5e-1"}, "f") == BearingOnly(
+    assert sensor_of({"type": "bearing", "range": 60, "bearing_noise": 5e-1}, "f") == BearingOnly(
         range=60, bearing_noise=0.5
     )
     assert sensor_of({"type": "position"}, "f") == Position()
@@ -228,28 +228,28 @@ def test_scenarios_name_sensors() -> None:
     ("entry", "line"),
     [
         ("bearing", "p.yaml: platform 1: must be 'field: value' pairs with a type; got 'bearing'"),
-        ({}, "p.yaml: platform 1: unknown sensor type None; known: range-bearing, bearing, range, position"),
-        ({"type": "bearings"}, "p.yaml: platform 1: unknown sensor type 'bearings'; did you mean 'bearing'?"),
+        ({}, "p.yaml: platform 1: unknown type None; known: range-bearing, bearing, range, position"),
+        ({"type": "bearings"}, "p.yaml: platform 1: unknown type 'bearings'; did you mean 'bearing'?"),
         (
             {"type": "range", "rnge": 3},
-            "p.yaml: platform 1: a range sensor has no field 'rnge'; did you mean 'range'?",
+            "p.yaml: platform 1: unknown field 'rnge'; did you mean 'range'?",
         ),
         (
             {"type": "range", "bearing_noise": 3},
-            "p.yaml: platform 1: a range sensor has no field 'bearing_noise'; did you mean 'range_noise'?",
+            "p.yaml: platform 1: unknown field 'bearing_noise'; did you mean 'range_noise'?",
         ),
-        ({"type": "range", "view": 0}, "p.yaml: platform 1: sensor: view must be 1 to 360 deg; got 0"),
+        ({"type": "range", "view": 0}, "p.yaml: platform 1: view must be 1 to 360 deg; got 0.0"),
         (
             {"type": "range", "range": float("nan")},
-            "p.yaml: platform 1: sensor: range must be 0.1 to 1e+06 m; got nan",
+            "p.yaml: platform 1: range: must be a finite number; got nan",
         ),
         (
             {"type": "range", "detection": 2},
-            "p.yaml: platform 1: sensor: detection must be 0.01 to 1; got 2",
+            "p.yaml: platform 1: detection must be 0.01 to 1; got 2.0",
         ),
         (
             {"type": "position", "noise": "small"},
-            "p.yaml: platform 1: sensor: noise must be 0.001 to 100000 m; got 'small'",
+            "p.yaml: platform 1: noise: expected `float`, got `str`; it is 'small'",
         ),
     ],
 )

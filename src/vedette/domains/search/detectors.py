@@ -11,9 +11,10 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from vedette.errors import InputError, nearest_name
+from vedette.errors import Limits, check_limits
 from vedette.kernels.search import look_footprints
 from vedette.maps import GridFrame
+from vedette.scenario import as_one_of
 
 Report: TypeAlias = tuple[float, float] | None  # where a target was reported [m], team frame; None: nowhere
 Pose: TypeAlias = ArrayLike  # (3,) x, y, heading [m, m, rad], team frame
@@ -42,11 +43,7 @@ class Detector(ABC):
     false_alarm: float = 0.0  # probability of a false alarm, per look without a detection
 
     def __post_init__(self) -> None:
-        for name, (low, high, unit) in _RANGES.items():
-            value = getattr(self, name, low)
-            number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-            if not number or not low <= value <= high:
-                raise InputError(f"detector: {name} must be {low:g} to {high:g}{unit}; got {value!r}")
+        check_limits(self, {field.name: _LIMITS[field.name] for field in fields(self)})
 
     @abstractmethod
     def probability(self, distance: ArrayLike) -> NDArray[np.float64]:
@@ -142,13 +139,13 @@ class ExponentialRange(Detector):
 
 DETECTORS: dict[str, type[Detector]] = {"definite": DefiniteRange, "exponential": ExponentialRange}
 
-_RANGES = {  # field: lowest, highest, unit
+_LIMITS: dict[str, Limits] = {
     "detection": (0.0, 1.0, ""),
-    "range": (1e-3, 1e6, " m"),
-    "view": (1.0, 360.0, " deg"),
-    "noise": (0.0, 1e6, " m"),
+    "range": (1e-3, 1e6, "m"),
+    "view": (1.0, 360.0, "deg"),
+    "noise": (0.0, 1e6, "m"),
     "false_alarm": (0.0, 1.0, ""),
-    "sigma": (1e-3, 1e6, " m"),
+    "sigma": (1e-3, 1e6, "m"),
     "power": (0.1, 20.0, ""),
 }
 
@@ -159,12 +156,4 @@ def detector_from(settings: Mapping[str, Any]) -> Detector:
     Raises:
         InputError: no or an unknown type, an unknown field (with the nearest known), a value out of range.
     """
-    kind = settings.get("type")
-    if not isinstance(kind, str) or kind not in DETECTORS:
-        raise InputError(f"detector: unknown type {kind!r}; {nearest_name(str(kind), DETECTORS)}")
-    known = [field.name for field in fields(DETECTORS[kind])]
-    values = {name: value for name, value in settings.items() if name != "type"}
-    for name in values:
-        if name not in known:
-            raise InputError(f"detector: unknown field {name!r}; {nearest_name(str(name), known)}")
-    return DETECTORS[kind](**values)
+    return as_one_of(DETECTORS, settings, "detector")

@@ -5,17 +5,14 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
-from reprlib import repr as repr_short
-from typing import Any, ClassVar
+from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from vedette.domains.tracking.models import STATE
-from vedette.errors import InputError
-
-Limits = tuple[float, float, str]  # lowest, highest, unit
+from vedette.errors import Limits, check_limits
 
 _COMMON: dict[str, Limits] = {
     "range": (0.1, 1e6, "m"),
@@ -37,7 +34,7 @@ class Sensor(ABC):
     mean of a log-det is below the log-det of the mean. Which target a measurement belongs to is known.
 
     Raises:
-        InputError: a field has the wrong type or is out of its range; the line names field, value and range.
+        InputError: a field is out of its range; the line names field, value and range.
     """
 
     limits: ClassVar[Mapping[str, Limits]] = {}  # of the fields that a kind of sensor adds
@@ -48,12 +45,7 @@ class Sensor(ABC):
     detection: float = 1.0  # probability of detecting a target in view
 
     def __post_init__(self) -> None:
-        known = {**_COMMON, **self.limits}
-        for field in fields(self):
-            value, (low, high, unit) = getattr(self, field.name), known[field.name]
-            if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
-                span = f"{low:g} to {high:g} {unit}".rstrip()
-                raise InputError(f"sensor: {field.name} must be {span}; got {repr_short(value)}")
+        check_limits(self, {**_COMMON, **self.limits})
 
     @abstractmethod
     def weights(self, r: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
@@ -223,18 +215,3 @@ def evidence(
         covariance = None if covariances is None else covariances[target]
         information[target], vector[target] = sensor.likelihood(z, pose, means[target], covariance)
     return information, vector
-
-
-def sensor_fields(kind: type[Sensor]) -> list[str]:
-    """Names of what a scenario can set for this kind."""
-    return [field.name for field in fields(kind)]
-
-
-def plain(value: Any) -> Any:
-    """Return a number given as text, as YAML readers do for 5e-2, as a number; else the value itself."""
-    if isinstance(value, str):
-        try:
-            return float(value)
-        except ValueError:
-            return value
-    return value

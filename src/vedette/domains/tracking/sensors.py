@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from reprlib import repr as repr_short
-from typing import Any, ClassVar, TypeAlias
+from typing import ClassVar, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.domains.tracking.sensing import Sensor, geometry, plain, sensor_fields, wrapped
-from vedette.errors import InputError, nearest_name
+from vedette.domains.tracking.sensing import Sensor, geometry, wrapped
+from vedette.scenario import as_one_of
 
 Floats: TypeAlias = NDArray[np.float64]
 
@@ -182,28 +180,7 @@ def sensor_of(entry: object, where: str) -> Sensor:
         InputError: not such a mapping, an unknown type or field (with the nearest valid name), a value of the
             wrong type or out of range; the line starts with ``where``.
     """
-    if not isinstance(entry, Mapping):
-        raise InputError(f"{where}: must be 'field: value' pairs with a type; got {repr_short(entry)}")
-    name = entry.get("type")
-    if not isinstance(name, str) or name not in SENSORS:
-        raise InputError(
-            f"{where}: unknown sensor type {repr_short(name)}; {nearest_name(str(name), SENSORS)}"
-        )
-    kind = SENSORS[name]
-    values: dict[str, Any] = {}
-    for key, value in entry.items():
-        if key == "type":
-            continue
-        known = sensor_fields(kind)
-        if key not in known:
-            raise InputError(
-                f"{where}: a {name} sensor has no field {repr_short(key)}; {nearest_name(str(key), known)}"
-            )
-        values[key] = plain(value)
-    try:
-        return kind(**values)
-    except InputError as error:
-        raise InputError(f"{where}: {error}") from error
+    return as_one_of(SENSORS, entry, where)
 
 
 def _bearing(pose: Floats, point: Floats) -> float:
