@@ -5,6 +5,7 @@
 
 VENV := .venv
 MAPS ?= ../shared/maps
+DIST ?= dist
 BIN := $(VENV)/bin
 PY := $(BIN)/python
 PIP := $(PY) -m pip --disable-pip-version-check --quiet
@@ -19,7 +20,7 @@ INSTALLED := $(VENV)/.installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help explore test test-all check lint types contracts rust-lint bench fuzz missions figures api build ready ready-dev clean
+.PHONY: help explore test test-all check lint types contracts rust-lint bench fuzz missions figures api dist build ready ready-dev clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -67,13 +68,17 @@ api: ready-dev ## Write the API reference from the docstrings into build/api
 	@$(PY) tools/api_reference.py build/api
 	@echo "open build/api/index.html"
 
+dist: ready-dev ## Build the sdist, and wheels for x86-64 and aarch64, into dist/
+	@$(PIP) install -c constraints.txt 'ziglang>=0.17,<0.18'
+	@PATH="$(CURDIR)/$(BIN):$$PATH" tools/dist.sh $(DIST)
+
 # The copy is moved into place: overwriting a module that a running process has loaded would crash it.
 build: ## Compile the kernels and put them in place
 	@cargo build --release --quiet $(CARGO_FLAGS) --features extension-module
 	@cp rust/target/release/lib_kernels.so $(KERNELS).new && mv $(KERNELS).new $(KERNELS)
 
 clean: ## Remove all that make has made; runs/ stays
-	rm -rf $(VENV) build rust/target $(KERNELS) .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
+	rm -rf $(VENV) build dist rust/target $(KERNELS) .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
 
 # Installing compiles the kernels, so make has to look at their age afresh after it.
 ready: $(INSTALLED)

@@ -1,10 +1,10 @@
 """The README and the docs do what they say: their fenced blocks are run, in order, in a copy of the tree.
 
 ``sh`` and ``console`` blocks are commands (in ``console`` those after ``$``; the rest is output), ``python``
-blocks are programs; other languages are left alone. Lines that call make, or git to clone, are left out. The
-blocks of one document share a directory, so they run in one process: with pytest-xdist, ``--dist loadfile``.
-A block under the line ``<!-- slow -->`` runs with the slow tests. A ``text`` block that comes next after one
-of them, with nothing in between, is its output to the letter.
+blocks are programs; other languages are left alone. Lines that call make, git to clone or pip to install are
+left out. The blocks of one document share a directory, so they run in one process: with pytest-xdist,
+``--dist loadfile``. A block under the line ``<!-- slow -->`` runs with the slow tests. A ``text`` block that
+comes next after one of them, with nothing in between, is its output to the letter.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from tests.support.places import ROOT
 
 DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 SHELL, CONSOLE, PYTHON = "sh", "console", "python"
-LEFT_OUT = re.compile(r"\s*(make|git clone)\b")
+LEFT_OUT = re.compile(r"\s*(make|git clone|pip install)\b")
 MADE = shutil.ignore_patterns(".*", "target", "runs", "build", "dist", "__pycache__", "*.so")
 TIMEOUT_S = 600  # a block that hangs, not one that is slow where the host has other work to do
 
@@ -129,6 +129,7 @@ EXAMPLE = """\
 ```sh
 git clone https://example.org/vedette && cd vedette
 make explore
+pip install .
 vedette --version  # says which
 ```
 <!-- slow -->
@@ -160,12 +161,12 @@ def test_blocks_are_found_with_their_place_language_speed_and_output() -> None:
     ]
     assert found == [
         (3, SHELL, False, None),
-        (9, CONSOLE, True, None),
-        (14, PYTHON, False, "indented\n"),
+        (10, CONSOLE, True, None),
+        (15, PYTHON, False, "indented\n"),
     ]
 
 
-def test_commands_are_what_a_reader_would_type_but_for_make_and_clone() -> None:
+def test_commands_are_what_a_reader_would_type_but_for_make_clone_and_install() -> None:
     shell, console, python = blocks("example.md", EXAMPLE)
     assert commands(shell) == "vedette --version  # says which"
     assert commands(console) == "echo one\necho two"

@@ -75,7 +75,7 @@ class MissesCodec:
         layer = (impact.keys % self._layers).astype(np.min_scalar_type(self._layers))  # sorted by radix
         order = np.argsort(layer, kind="stable")
         cell = (impact.keys // self._layers)[order].astype(np.int64)
-        run, place = np.divmod(layer[order] * np.int64(self._cells) + cell, self._places)
+        run, place = np.divmod(layer[order].astype(np.int64) * self._cells + cell, self._places)
         counts = np.bincount(run, minlength=self._runs)
         gap = np.diff(place, prepend=0)
         first = _firsts(counts)
