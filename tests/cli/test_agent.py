@@ -80,6 +80,16 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
     ({"body": {"start": [1.0, 1.0]}}, "body.start: expected `array` of length 3"),
     ({"body": {"start": [100.0, 1.0, 0.0]}}, "start 100,1 is outside the map"),
     ({"body": {"speed": -1.0}}, "speed must be 0.01 to 10 m/s; got -1.0"),
+    ({"body": {"map": None}}, "body.map: missing; name the world"),
+    ({"body": {"start": None}}, "body.start: missing; give x, y and heading"),
+    ({"explore": {}, "track": {}}, "track: a robot has one mission, and explore is given too"),
+    ({"track": {}}, "begins: missing; vehicles plan by a common clock"),
+    ({"track": {}, "begins": "2027-01-31 12:00"}, "begins"),
+    ({"track": {}, "begins": "2027-01-31T12:00:00Z"}, "body.map: vehicles fly over their scenario's area"),
+    ({"track": {"coordination": "optimum"}}, "track.coordination: unknown coordination 'optimum'"),
+    ({"search": {"fusion": "channel"}}, "search.fusion: unknown fusion 'channel'"),
+    ({"scenario": "raft.yaml"}, "scenario: is for vehicles that track or search; leave it out"),
+    ({"faults": "storm.yaml"}, "begins: missing; faults need the time at which the mission begins"),
 ]
 
 

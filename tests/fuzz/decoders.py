@@ -32,7 +32,8 @@ from vedette.maps import GridFrame
 from vedette.negotiation import messages as negotiation_messages
 from vedette.negotiation.messages import Down, Gather, Outcome, Stop, Tally, Token, Up
 from vedette.net import report
-from vedette.net.gather import status_of, view_of
+from vedette.net.explore import content as map_content
+from vedette.net.gather import status_of
 from vedette.overlay import hello, packet
 from vedette.sim import shown
 
@@ -185,16 +186,20 @@ def _reports() -> list[bytes]:
     classes[4:9] = 1
     impact = MappingCodec(FRAME.size).encode(Misses(np.arange(3, dtype=np.uint32), np.ones(3, np.uint8)))
     (condition,) = conditions()
-    return [report.report(condition, classes, classes > 0, told) for told in (impact, None)]
+    return [
+        report.encode(report.Report(condition, map_content.content(classes, classes > 0, told)))
+        for told in (impact, None)
+    ]
 
 
 def _read_report(data: bytes) -> None:
     """Take a report as the operator does; its grids, deflated, need not be told in the same bytes again."""
     with contextlib.suppress(ValueError):
-        condition, _ = view_of(data, FRAME, MappingCodec(FRAME.size))
-        status_of(condition)
+        told = report.read_report(data)
+        status_of(told.condition)
+        map_content.view_of(told.condition, told.content, FRAME.shape, MappingCodec(FRAME.size))
     with contextlib.suppress(ValueError):
-        report.seen_of(report.read_report(data))
+        map_content.seen_of(map_content.read_content(report.read_report(data).content))
 
 
 def decoders() -> list[Target]:

@@ -132,9 +132,7 @@ class HostedTeam(TeamProcesses):
     def _command(self, i: int) -> list[str]:
         return ["ip", "netns", "exec", self.hosts.name(i), *super()._command(i)]
 
-    def _config(self, i: int, endpoints: Sequence[str]) -> dict[str, Any]:
-        config = super()._config(i, endpoints)
+    def _links(self, i: int) -> dict[str, Any]:
         lower = [min(cable) for cable in self.hosts.cables if max(cable) == i]
-        config["links"]["listen"] = [f"tls/0.0.0.0:{PORT}"]
-        config["links"]["connect"] = [f"tls/{self.hosts.address(peer, i)}:{PORT}" for peer in lower]
-        return config
+        connect = [f"tls/{self.hosts.address(peer, i)}:{PORT}" for peer in lower]
+        return {"listen": [f"tls/0.0.0.0:{PORT}"], "connect": connect}

@@ -19,13 +19,16 @@ import numpy as np
 from tests.support.small_missions import robots
 from vedette.maps.world import World
 from vedette.missions.explore.options import ExploreOptions
-from vedette.net.launch import TeamPlan, TeamProcesses
+from vedette.net.explore.plan import ExplorePlan
+from vedette.net.explore.watch import ExploreWatcher
+from vedette.net.launch import TeamProcesses
 from vedette.net.names import Topic
 from vedette.net.report import Condition, read_report
 from vedette.net.team import TeamWatch
 from vedette.net.transport import Operator, Published
 from vedette.record.explore.log import ExploreSnapshot
 from vedette.record.explore.observer import ExploreReport
+from vedette.record.summary import Setting
 from vedette.sim.starts import choose_starts
 
 SPEED = 5.0  # times real time
@@ -33,11 +36,11 @@ LEASE = 3.0  # [s]
 UNTIL_AGREED = 10.0  # for the last evidence to come round [s]
 
 
-def plan_of(world: World, count: int, speed: float = SPEED, lease: float = LEASE) -> TeamPlan:
+def plan_of(world: World, count: int, speed: float = SPEED, lease: float = LEASE) -> ExplorePlan:
     """A team that starts together, as ``vedette team explore`` starts one with seed 0."""
     specs = robots(count)
     places = choose_starts(world, specs, np.random.default_rng([0, 1]))
-    return TeamPlan(world, specs, places, ExploreOptions(), 0, speed, lease)
+    return ExplorePlan(world, specs, places, ExploreOptions(), 0, speed, lease)
 
 
 @dataclass(frozen=True)
@@ -52,7 +55,7 @@ class Told:
 class Diary:
     """All that the robots of a team reported, and what befell them."""
 
-    plan: TeamPlan
+    plan: ExplorePlan
     team: TeamProcesses
     by_robot: dict[int, list[Told]] = field(default_factory=dict)
     kept: list[tuple[float, str]] = field(default_factory=list)  # when what was done [s]
@@ -129,20 +132,16 @@ def freeze(find: Callable[[Diary], int], seconds: float = inf) -> Callable[[Diar
 class Chain(TeamProcesses):
     """Each robot reaches the one before it and the one after it alone."""
 
-    def _config(self, i: int, endpoints: Sequence[str]) -> dict[str, Any]:
-        config = super()._config(i, endpoints)
-        config["links"]["connect"] = list(endpoints[i - 1 : i]) if i else []
-        return config
+    def _links(self, i: int) -> dict[str, Any]:
+        return super()._links(i) | {"connect": self.endpoints[i - 1 : i] if i else []}
 
 
 @dataclass
 class Ring(TeamProcesses):
     """As a chain, and the last one and the first one reach each other too."""
 
-    def _config(self, i: int, endpoints: Sequence[str]) -> dict[str, Any]:
-        config = super()._config(i, endpoints)
-        config["links"]["connect"] = [endpoints[(i + 1) % len(endpoints)]]
-        return config
+    def _links(self, i: int) -> dict[str, Any]:
+        return super()._links(i) | {"connect": [self.endpoints[(i + 1) % len(self.endpoints)]]}
 
 
 @dataclass
@@ -187,10 +186,10 @@ class Mission:
 
 
 def run(
-    plan: TeamPlan,
+    plan: ExplorePlan,
     logs: Path,
     faults: Sequence[Fault] = (),
-    team: Callable[[TeamPlan, Path, Path], TeamProcesses] = TeamProcesses,
+    team: Callable[[ExplorePlan, Path, Path], TeamProcesses] = TeamProcesses,
     max_time: float = 900.0,
     rest: float = 0.0,
 ) -> Mission:
@@ -205,7 +204,8 @@ def run(
         diary = Diary(plan, processes)
         operator.subscribe(Topic.REPORT, diary.take)
         fate = _Fate(diary, sorted(faults, key=lambda fault: fault.coverage))
-        watch = TeamWatch(plan, processes, operator, max_time, sinks=(fate,))
+        watcher = ExploreWatcher(plan, Setting(seed=plan.seed), (fate,))
+        watch = TeamWatch(plan, processes, operator, watcher, max_time)
         report = watch.run()
         ended = time.monotonic()
         living = [i for i in range(len(plan.specs)) if processes.runs(i)]

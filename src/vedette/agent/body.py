@@ -29,7 +29,7 @@ class BodyFigures:
 
     travelled: float = 0.0  # way driven or flown [m]
     collisions: int = 0  # steps in which a contact stopped it
-    min_clearance: float = float("inf")  # from its edge to a wall or to another robot, so far [m]
+    min_clearance: float | None = None  # from its edge to a wall or to a robot, so far [m]; None: not known
 
 
 class Body(Protocol):

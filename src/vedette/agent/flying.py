@@ -65,11 +65,6 @@ class FlightBehaviour:
         """Arrive nowhere."""
         return []
 
-    @property
-    def path(self) -> NDArray[np.float64]:
-        """Not told: a flight is turn rates, and leads where the vehicle will be then."""
-        return np.empty((0, 2))
-
     def ahead(self, pose: Pose) -> NDArray[np.float64]:
         """Beacon no path: nobody has to make room."""
         return np.empty((0, 2))

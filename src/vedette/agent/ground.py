@@ -66,11 +66,6 @@ class GroundBehaviour:
         """Return the pose itself: tours begin where the robot is."""
         return pose
 
-    @property
-    def path(self) -> NDArray[np.float64]:
-        """The wanted route."""
-        return np.empty((0, 2)) if self.driver.wanted is None else self.driver.wanted.path
-
     def ahead(self, pose: Pose) -> NDArray[np.float64]:
         """Return the next few metres that the robot will really drive, ``(L, 2)`` [m], team frame."""
         return self.driver.beaconed(pose)

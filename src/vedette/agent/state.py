@@ -61,10 +61,6 @@ class Behaviour(Protocol):
     def look_out(self, agent: Agent, pose: Pose, now: float) -> list[Effect]:
         """Mind the mates, and whether the strategy still has a point."""
 
-    @property
-    def path(self) -> NDArray[np.float64]:
-        """The whole way that the robot means to go, ``(L, 2)`` [m], team frame; for people to see."""
-
     def ahead(self, pose: Pose) -> NDArray[np.float64]:
         """Return the next few metres of the robot's path, ``(L, 2)`` [m], team frame, for its beacon."""
 

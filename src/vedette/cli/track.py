@@ -9,31 +9,19 @@ from pathlib import Path
 import click
 
 from vedette.cli.options import (
-    OneOf,
-    Positive,
     end,
     ending_on_ctrl_c,
     fault_options,
     output_options,
     parse_faults,
     parse_kills,
-    seed_option,
-    write_figures,
 )
-from vedette.domains.tracking.objective import OBJECTIVES
-from vedette.fusion.gaussian import WAYS
-from vedette.missions.track.options import COORDINATIONS
-from vedette.missions.track.scenario import default_scenario, read_scenario
-from vedette.negotiation import SCHEMES
+from vedette.cli.tracking import closing, inputs_of, scenario_of, tracking_options, write_outputs
 from vedette.record.folder import OutputFolder
-from vedette.record.track.entropy import entropy_png
 from vedette.record.track.live import track_display
 from vedette.record.track.log import TrackScene
 from vedette.record.track.mcap import TrackMcapWriter
 from vedette.record.track.observer import TrackReport
-from vedette.record.track.panel import track_gif
-from vedette.record.track.summary import TrackSummary
-from vedette.record.track.tracks import tracks_png
 from vedette.sim.radio import Radio
 from vedette.sim.track.run import compared
 from vedette.sim.track.run import track as run_mission
@@ -41,34 +29,7 @@ from vedette.sim.track.simulation import TrackSetup, TrackSimulation
 
 
 @click.command()
-@click.argument("scenario_path", metavar="[SCENARIO]", required=False, type=Path)
-@seed_option("the targets' true ways and all chance")
-@click.option(
-    "--coordination",
-    type=OneOf(COORDINATIONS),
-    default="negotiated",
-    show_default=True,
-    help="How the vehicles decide.",
-)
-@click.option("--scheme", type=OneOf(SCHEMES), default="token", show_default=True, help="How they negotiate.")
-@click.option(
-    "--fusion",
-    type=OneOf(WAYS),
-    default="replicated",
-    show_default=True,
-    help="How they share what they see.",
-)
-@click.option(
-    "--objective",
-    type=OneOf(list(OBJECTIVES)),
-    help="What they gain.  [default: the scenario's, else trajectory]",
-)
-@click.option(
-    "--continuous", is_flag=True, help="Improve the best course's turn rates by the objective's gradient."
-)
-@click.option(
-    "--max-time", type=Positive("s"), help="Simulated time limit [s].  [default: the scenario's duration]"
-)
+@tracking_options
 @fault_options
 @output_options
 @click.option("--no-compare", is_flag=True, help="Leave out the other ways of coordination.")
@@ -98,8 +59,7 @@ def track(
     Afterwards the same is done with every other way of coordination, to compare. Exit status: 0 complete,
     1 incomplete, 2 bad input, 130 interrupted.
     """
-    scenario = default_scenario() if scenario_path is None else read_scenario(scenario_path)
-    name = "track" if scenario_path is None else scenario_path.stem
+    scenario, name = scenario_of(scenario_path)
     setup = TrackSetup(
         scheme=scheme,
         seed=seed,
@@ -117,15 +77,14 @@ def track(
     )
     # Everything that can be wrong with the input is found before the folder is made.
     prepared = TrackSimulation(scenario, setup)
-    inputs = [Path(file) for file in (scenario_path, faults) if file is not None]
-    with OutputFolder.make(out, force, name, inputs) as folder:
+    with OutputFolder.make(out, force, name, inputs_of(scenario_path, faults)) as folder:
         running = _Running(name, folder, quiet=as_json)
         with ending_on_ctrl_c(running.stop):
             report = running.live(prepared)
             if not no_compare:
                 report = compared(report, scenario, setup, running.beside)
-            _write(report, folder, animate)
-        closed = _closing(report.summary, folder.path)
+            write_outputs(report, folder, animate)
+        closed = closing(report.summary, folder.path)
     end(report.summary, closed, as_json)
 
 
@@ -165,26 +124,3 @@ class _Running:
         self._now = simulation
         if self.stopped:
             simulation.stop()
-
-
-def _write(report: TrackReport, folder: OutputFolder, animate: bool) -> None:
-    write_figures(report.summary, report.timing, folder)
-    tracks_png(report.log, folder / "tracks.png")
-    logs = {report.summary.coordination: report.log, **report.others}
-    entropy_png(logs, report.left_out, folder / "entropy.png")
-    if animate:
-        track_gif(report.log, folder / "mission.gif")
-
-
-def _closing(summary: TrackSummary, folder: Path) -> list[str]:
-    """Say in a few lines how it went and where the pictures are."""
-    lines = [
-        f"{summary.outcome.said}: {summary.vehicles} vehicles followed {summary.targets} targets for "
-        f"{summary.time_s:.0f} s; entropy {summary.entropy_mean_nat:.1f} nat on average, "
-        f"position error {summary.position_rmse_m:.1f} m (rms), NEES {summary.nees:.2f}",
-        f"pictures: {folder / 'tracks.png'}, {folder / 'entropy.png'}; all else beside them",
-    ]
-    if summary.comparison:
-        each = (f"{name} {quality.entropy_mean_nat:.1f}" for name, quality in summary.comparison.items())
-        lines.insert(1, f"mean entropy [nat]: {', '.join(each)}")
-    return lines

@@ -13,8 +13,13 @@ from msgspec import Meta, Struct
 
 from vedette.domains.mapping.planners import PLANNERS, planner
 from vedette.errors import InputError, nearest_name
+from vedette.fusion.gaussian import WAYS
 from vedette.missions.explore.assemble import FUSIONS
 from vedette.missions.explore.options import ExploreOptions
+from vedette.missions.search import options as search_options
+from vedette.missions.search.options import SearchOptions
+from vedette.missions.track import options as track_options
+from vedette.missions.track.options import TrackOptions
 from vedette.negotiation import SCHEMES
 from vedette.net.access import Access
 from vedette.net.credentials import credentials
@@ -23,6 +28,7 @@ from vedette.scenario import load_scenario
 from vedette.team import PlatformSpec
 
 OF_BODY = tuple(field.name for field in fields(PlatformSpec) if field.name not in ("name", "start"))
+MISSIONS = ("explore", "track", "search")
 ADMITTED = 64  # robots numbered higher are let in only by a robot that knows of so many
 
 Robot = Annotated[int, Meta(ge=1, le=MOST_ROBOTS)]
@@ -37,6 +43,7 @@ class Links(Struct, forbid_unknown_fields=True, frozen=True):
     insecure: bool = False  # plain TCP, open to everybody
     scouting: bool = False  # find others by multicast as well
     lease: Annotated[float, Meta(ge=0.2, le=60.0)] = 3.0  # after which a silent neighbour is given up [s]
+    delay: Annotated[float, Meta(ge=0.0, le=1.0)] = 0.02  # of a message, as vehicles reckon with it [s]
     address: str | None = None  # where others reach ``listen``, if that says 0.0.0.0
 
     @property
@@ -52,8 +59,8 @@ class Links(Struct, forbid_unknown_fields=True, frozen=True):
 class Body(Struct, forbid_unknown_fields=True, frozen=True):
     """The robot itself; in this version a simulated one."""
 
-    map: str  # the world: a map_server .yaml beside this file, or an image
-    start: tuple[float, float, float]  # x, y, heading [m, m, deg], team frame
+    map: str | None = None  # the world: a map_server .yaml beside this file, or an image
+    start: tuple[float, float, float] | None = None  # x, y, heading [m, m, deg], team frame
     resolution: float | None = None  # of an image [m]
     seed: Annotated[int, Meta(ge=0)] = 0  # of the lidar's noise
     speed: float = 0.5  # [m/s]
@@ -88,11 +95,21 @@ class AgentConfig(Struct, forbid_unknown_fields=True, frozen=True):
 
     team: str
     robot: Robot
-    body: Body
+    body: Body = Body()
     robots: Robot = 1  # it waits for so many, itself included, before it begins; for a while
     best: Best | None = None  # of the whole team; None: as this robot
     links: Links = Links()
-    explore: ExploreOptions = ExploreOptions()
+    explore: ExploreOptions | None = None  # one of the three; without any, it explores
+    track: TrackOptions | None = None
+    search: SearchOptions | None = None
+    scenario: str | None = None  # of track and search, beside this file; None: the one that is built in
+    begins: Annotated[datetime, Meta(tz=True)] | None = None  # when the mission's, or the faults', time is 0
+    faults: str | None = None  # a schedule of what befalls links, beside this file; to try a team
+
+    @property
+    def mission(self) -> str:
+        """What the robot does: ``explore``, ``track`` or ``search``."""
+        return next((name for name in MISSIONS if getattr(self, name) is not None), MISSIONS[0])
 
 
 def load_config(path: Path | str) -> AgentConfig:
@@ -103,11 +120,11 @@ def load_config(path: Path | str) -> AgentConfig:
     """
     config = load_scenario(path, AgentConfig)
     try:
-        _check_word("planner", config.explore.planner, list(PLANNERS))
-        _check_word("scheme", config.explore.scheme, SCHEMES)
-        _check_word("fusion", config.explore.fusion, list(FUSIONS))
-        planner(config.explore.planner, config.robots)
-        config.body.spec(f"robot-{config.robot}")
+        _check_missions(config)
+        if config.mission == "explore":
+            _check_explore(config)
+        else:
+            _check_flight(config)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
     return config
@@ -132,6 +149,50 @@ def access_of(config: AgentConfig, folder: Path, now: datetime) -> Access:
     )
 
 
-def _check_word(what: str, word: str, words: Sequence[str]) -> None:
+def _check_missions(config: AgentConfig) -> None:
+    given = [name for name in MISSIONS if getattr(config, name) is not None]
+    if len(given) > 1:
+        raise InputError(f"{given[1]}: a robot has one mission, and {given[0]} is given too; leave one out")
+
+
+def _check_explore(config: AgentConfig) -> None:
+    options = config.explore or ExploreOptions()
+    _check_word("explore.planner", options.planner, list(PLANNERS))
+    _check_word("explore.scheme", options.scheme, SCHEMES)
+    _check_word("explore.fusion", options.fusion, list(FUSIONS))
+    planner(options.planner, config.robots)
+    if config.body.map is None:
+        raise InputError("body.map: missing; name the world that the robot is simulated in")
+    if config.body.start is None:
+        raise InputError("body.start: missing; give x, y and heading [m, m, deg]")
+    config.body.spec(f"robot-{config.robot}")
+    if config.scenario is not None:
+        raise InputError("scenario: is for vehicles that track or search; leave it out")
+    if config.faults is not None and config.begins is None:
+        raise InputError("begins: missing; faults need the time at which the mission begins")
+
+
+def _check_flight(config: AgentConfig) -> None:
+    mission, options = config.mission, config.track or config.search
+    assert options is not None
+    coordinations, fusions = (
+        (track_options.COORDINATIONS[:-1], WAYS)  # the optimum is nobody's to work out
+        if mission == "track"
+        else (search_options.COORDINATIONS, search_options.FUSIONS)
+    )
+    _check_word(f"{mission}.coordination", options.coordination, coordinations)
+    _check_word(f"{mission}.scheme", options.scheme, SCHEMES)
+    _check_word(f"{mission}.fusion", options.fusion, fusions)
+    if config.begins is None:
+        raise InputError(
+            "begins: missing; vehicles plan by a common clock: give the time at which the mission begins, "
+            "the same for all, such as 2027-01-31T12:00:00Z"
+        )
+    if config.body.map is not None:
+        raise InputError("body.map: vehicles fly over their scenario's area; leave it out")
+
+
+def _check_word(where: str, word: str, words: Sequence[str]) -> None:
     if word not in words:
-        raise InputError(f"explore.{what}: unknown {what} {word!r}; {nearest_name(word, words)}")
+        what = where.rpartition(".")[2]
+        raise InputError(f"{where}: unknown {what} {word!r}; {nearest_name(word, words)}")

@@ -9,42 +9,51 @@ import sys
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from datetime import datetime
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import Any, Protocol, Self
 
 import msgspec
-import numpy as np
-from numpy.typing import NDArray
 
-from vedette.maps.world import World
-from vedette.missions.explore.options import ExploreOptions
 from vedette.net.access import Access
-from vedette.net.config import OF_BODY
 from vedette.net.credentials import credentials
 from vedette.net.endpoints import free_port
 from vedette.net.keys import issue_team
 from vedette.net.names import OPERATOR, robot_name
 from vedette.record.files import write_text
-from vedette.team import PlatformSpec
 
 TEAM = "team"
 PATIENCE = 5.0  # for a process that was told to stop; then it is killed [s]
 KEY_DAYS = 2
+FAULTS = "faults.yaml"
+STARTING, STARTING_EACH = 2.0, 1.0  # a team with a shared clock begins so long after it is started [s]
 
 
-@dataclass(frozen=True, eq=False)
-class TeamPlan:
+class TeamPlan(Protocol):
     """What is to be started."""
 
-    world: World
-    specs: Sequence[PlatformSpec]
-    starts: NDArray[np.float64]  # (n, 3) x, y, heading [m, m, rad], team frame
-    options: ExploreOptions
-    seed: int
-    speed: float  # times real time
-    lease: float = 3.0  # [s]
+    @property
+    def size(self) -> int:
+        """Number of robots."""
+
+    @property
+    def speed(self) -> float:
+        """Of the mission, times real time."""
+
+    @property
+    def lease(self) -> float:
+        """After which a silent neighbour is given up [s]."""
+
+    @property
+    def shared_clock(self) -> bool:
+        """Whether all of the team count the mission's time from one moment on."""
+
+    def write(self, folder: Path) -> None:
+        """Write the files that the robots share."""
+
+    def config(self, i: int, pose: Sequence[float] | None) -> dict[str, Any]:
+        """Return what a robot's file says of its mission; ``pose``: where it is put, None: at its start."""
 
 
 @dataclass
@@ -54,8 +63,11 @@ class TeamProcesses:
     plan: TeamPlan
     folder: Path  # for keys, the world and the robots' files; private
     logs: Path  # what the processes say
+    faults: str | None = None  # the text of a schedule of what befalls links
     processes: list[subprocess.Popen[bytes]] = field(default_factory=list)
     operator: Access = field(init=False)
+    begins: datetime = field(init=False)  # when the time of the mission, or of faults, is 0
+    endpoints: list[str] = field(default_factory=list)  # where the operator reaches each robot
 
     def __enter__(self) -> Self:
         """Write the robots' files and start them.
@@ -63,13 +75,15 @@ class TeamProcesses:
         Raises:
             InputError: a file cannot be written.
         """
-        n = len(self.plan.specs)
+        n = self.plan.size
         issue_team(TEAM, self.folder / "keys", n, datetime.now().astimezone(), KEY_DAYS)
-        self.plan.world.save(self.folder)
-        endpoints = self._endpoints()
+        self.plan.write(self.folder)
+        if self.faults is not None:
+            write_text(self.folder / FAULTS, self.faults)
+        self.endpoints = self._endpoints()
         self.operator = Access(
             TEAM,
-            connect=tuple(endpoints),
+            connect=tuple(self.endpoints),
             credentials=credentials(self.folder / "keys" / OPERATOR, datetime.now().astimezone()),
             robots=n,
             lease=self.plan.lease,
@@ -77,8 +91,9 @@ class TeamProcesses:
         self.logs.mkdir(parents=True, exist_ok=True)
         for old in self.logs.glob("robot-*.log"):  # of a larger team
             old.unlink()
+        self.begins = datetime.now(UTC) + timedelta(seconds=STARTING + n * STARTING_EACH)
         for i in range(n):
-            write_text(self._file_of(i), msgspec.yaml.encode(self._config(i, endpoints)).decode())
+            self._write(i)
             self.processes.append(self._start(i))
         return self
 
@@ -98,9 +113,24 @@ class TeamProcesses:
                 process.kill()
                 process.wait()
 
-    def restart(self, robot: int) -> None:
-        """Start a robot again whose process has ended: with empty memory, where it was first put."""
+    @property
+    def time(self) -> float:
+        """Mission time of a team with a shared clock, and of faults; negative until they begin [s]."""
+        return (datetime.now(UTC) - self.begins).total_seconds() * self.plan.speed
+
+    def restart(self, robot: int, pose: Sequence[float] | None = None) -> None:
+        """Start a robot again whose process has ended, with empty memory.
+
+        ``pose``: where it is by now, x, y, heading [m, m, rad]; None: where it was first put.
+        """
+        if pose is not None:
+            self._write(robot, pose)
         self.processes[robot] = self._start(robot)
+
+    def signal(self, robot: int, number: signal.Signals) -> None:
+        """Send a robot's process a signal, if it still runs."""
+        if self.runs(robot):
+            self.processes[robot].send_signal(number)
 
     def runs(self, robot: int) -> bool:
         """Tell whether a robot's process has not ended."""
@@ -124,7 +154,7 @@ class TeamProcesses:
 
     def _endpoints(self) -> list[str]:
         """Return where the operator reaches each robot."""
-        return [f"tls/127.0.0.1:{port}" for port in _free_ports(len(self.plan.specs))]
+        return [f"tls/127.0.0.1:{port}" for port in _free_ports(self.plan.size)]
 
     def _file_of(self, i: int) -> Path:
         return self.folder / f"{robot_name(i)}.yaml"
@@ -146,31 +176,23 @@ class TeamProcesses:
         command = [sys.executable, "-m", "vedette", "agent", str(self._file_of(i))]
         return [*command, "--speed", str(self.plan.speed), "--starter", str(os.getpid())]
 
-    def _config(self, i: int, endpoints: Sequence[str]) -> dict[str, Any]:
-        plan, spec = self.plan, self.plan.specs[i]
-        x, y, heading = plan.starts[i].tolist()
-        return {
+    def _links(self, i: int) -> dict[str, Any]:
+        """Return where a robot listens, and what it connects to."""
+        return {"listen": [self.endpoints[i]], "connect": self.endpoints[:i]}
+
+    def _write(self, i: int, pose: Sequence[float] | None = None) -> None:
+        config = {
             "team": TEAM,
             "robot": i + 1,
-            "robots": len(plan.specs),
-            "best": {
-                "range": max(spec.range for spec in plan.specs),
-                "speed": max(spec.speed for spec in plan.specs),
-            },
-            "links": {
-                "listen": [endpoints[i]],
-                "connect": list(endpoints[:i]),
-                "keys": f"keys/{robot_name(i)}",
-                "lease": plan.lease,
-            },
-            "explore": msgspec.to_builtins(plan.options),
-            "body": {
-                "map": "map.yaml",
-                "start": [x, y, float(np.degrees(heading))],
-                "seed": plan.seed,
-                **{name: getattr(spec, name) for name in OF_BODY},
-            },
+            "robots": self.plan.size,
+            "links": {"keys": f"keys/{robot_name(i)}", "lease": self.plan.lease, **self._links(i)},
+            **self.plan.config(i, pose),
         }
+        if self.plan.shared_clock or self.faults is not None:
+            config["begins"] = self.begins
+        if self.faults is not None:
+            config["faults"] = FAULTS
+        write_text(self._file_of(i), msgspec.yaml.encode(config).decode())
 
 
 def _free_ports(n: int) -> list[int]:

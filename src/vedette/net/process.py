@@ -7,12 +7,14 @@ from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
+from typing import Protocol
 
 from vedette.agent import Datagram, NetworkedAgent
-from vedette.agent.body import TICK, Body, Shown
+from vedette.agent.body import Body, Shown
 from vedette.agent.effects import Drive, Fly, Job
 from vedette.agent.events import JobDone
 from vedette.agent.networked import Output
+from vedette.net.clock import MissionClock
 from vedette.net.inbox import Datagram as Received
 from vedette.net.inbox import Inbox, PeerGone, PeerSeen
 from vedette.net.names import Topic
@@ -22,7 +24,6 @@ from vedette.net.witness import Witness
 REPORT_PERIOD = 0.5  # of mission time, but not more often than LEAST_REPORTS apart [s]
 LEAST_REPORTS = 0.1  # [s]
 MOST_HEARING = 0.05  # at a stretch, before the body moves on [s]
-LATE = 5  # ticks that are made up for at most; a process that falls behind more runs slower
 
 
 @dataclass(frozen=True)
@@ -33,27 +34,14 @@ class _Done:
     error: BaseException | None
 
 
-@dataclass
-class MissionClock:
-    """Mission time: ticks of the body, and what has passed of the present one."""
+class Staged(Protocol):
+    """Faults of links, done to what the robot sends; ``now`` by the process's clock [s]."""
 
-    speed: float  # seconds of the mission in a second
-    ticks: int = 0
-    ticked: float = 0.0  # when the last one was, by the process's clock [s]
+    def put(self, to: int, payload: bytes, now: float) -> None:
+        """Take a datagram; it may get lost."""
 
-    def shows(self, now: float) -> float:
-        """Return the mission's time [s]; it stands still rather than overtake the body."""
-        return self.ticks * TICK + min(max(now - self.ticked, 0.0) * self.speed, TICK)
-
-    @property
-    def next(self) -> float:
-        """When the next tick is due [s]."""
-        return self.ticked + TICK / self.speed
-
-    def tick(self, now: float) -> None:
-        """Go on by a tick; one that comes much too late moves all later ones."""
-        self.ticks += 1
-        self.ticked = max(self.next, now - LATE * TICK / self.speed)
+    def take(self, now: float) -> Iterable[tuple[int, bytes]]:
+        """Yield what is to be sent by now: to whom, and the datagram."""
 
 
 @dataclass
@@ -71,6 +59,7 @@ class AgentProcess:
     inbox: Inbox
     witness: Witness
     mission: MissionClock
+    staged: Staged | None = None  # what befalls its links, to try a team
     clock: Callable[[], float] = time.monotonic
     stopped: bool = False
     _reported: float = -1e9  # [s]
@@ -85,7 +74,7 @@ class AgentProcess:
         if self.shown is not None:
             self.transport.subscribe(Topic.BODY, self.inbox.put)
         self.transport.answer_status(lambda: self.witness.status)
-        self.mission.ticked = self.clock()
+        self.mission.start(self.clock())
         with ThreadPoolExecutor(1, thread_name_prefix="planning") as self._worker:
             while not self.stopped:
                 self._turn()
@@ -107,6 +96,9 @@ class AgentProcess:
             self._take(event)
             event = self.inbox.get(timeout=0.0) if self.clock() < until else None
         now = self.clock()
+        if self.staged is not None:
+            for to, payload in self.staged.take(now):
+                self.transport.send(to, payload)
         if now >= self.mission.next:
             self._tick(now)
         elif now >= self.node.wake:
@@ -133,7 +125,7 @@ class AgentProcess:
     def _tick(self, now: float) -> None:
         """Move the body, and let the agent know what it senses."""
         self.mission.tick(now)
-        at = self.mission.ticks * TICK
+        at = self.mission.at
         sensed = self.body.sense(at)
         if self.shown is not None:
             self.transport.publish(Topic.BODY, self.shown.show(now))
@@ -162,6 +154,8 @@ class AgentProcess:
         agent = self.node.agent
         for output in self.witness.clock.measured(agent.robot, agent.rounds, act):
             match output:
+                case Datagram(to, payload) if self.staged is not None:
+                    self.staged.put(to, payload, self.clock())
                 case Datagram(to, payload):
                     self.transport.send(to, payload)
                 case Job():

@@ -3,21 +3,29 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
 
 from vedette.agent import NetworkedAgent
-from vedette.maps.world import World
-from vedette.missions.explore.assemble import assemble
+from vedette.net.clock import MissionClock
 from vedette.net.config import AgentConfig, access_of
+from vedette.net.explore.robot import explorer
 from vedette.net.inbox import Inbox
 from vedette.net.names import robot_name
-from vedette.net.process import AgentProcess, MissionClock
-from vedette.net.simulated import simulated_robot
+from vedette.net.process import AgentProcess
+from vedette.net.robot import Robot
+from vedette.net.search.robot import searcher
+from vedette.net.simulated import staged_faults
+from vedette.net.track.robot import tracker
 from vedette.net.transport import Transport
 from vedette.net.witness import Witness
-from vedette.team import Most
 
+ROBOTS: Mapping[str, Callable[[AgentConfig, Path, int, float], Robot]] = {
+    "explore": explorer,
+    "track": tracker,
+    "search": searcher,
+}
 EPOCH = datetime(2025, 1, 1, tzinfo=UTC)
 
 
@@ -33,30 +41,18 @@ def agent_process(config: AgentConfig, folder: Path, speed: float) -> AgentProce
     """Open a robot's session and bring it to life; ``folder``: what paths in its file are relative to.
 
     Raises:
-        InputError: the map, the start, the keys or an endpoint cannot be used.
+        InputError: the map, the scenario, the start, the keys or an endpoint cannot be used.
     """
     now = datetime.now(UTC)
-    robot, boot = config.robot - 1, boot_at(now)
-    world = World.from_map(folder / config.body.map, config.body.resolution)
-    body, best = simulated_robot(config, world), config.best
-    agent = assemble(
-        world.frame,
-        body.hull,
-        config.explore,
-        robot,
-        boot,
-        robots=config.robots,
-        most=Most.of([body.hull]) if best is None else Most(best.range, best.speed),
-        waits_for=config.robots,
-    )
-    clock = MissionClock(speed)
+    index = config.robot - 1
+    begins = None if config.begins is None else time.monotonic() + (config.begins - now).total_seconds()
+    shared = MissionClock(speed, begins)
+    # Robots on the ground begin when they have found each other, each by a clock of its own.
+    clock = MissionClock(speed) if config.mission == "explore" else shared
+    staged = staged_faults(config, folder, shared)
+    robot = ROBOTS[config.mission](config, folder, boot_at(now), speed)
     inbox = Inbox()
-    transport = Transport(access_of(config, folder, now), robot, inbox)
-    node = NetworkedAgent(
-        agent,
-        time.monotonic(),
-        lease=config.links.lease,
-        mission_time=clock.shows,
-    )
-    witness = Witness(node, body, transport, robot_name(robot))
-    return AgentProcess(node, body, body, transport, inbox, witness, clock)
+    transport = Transport(access_of(config, folder, now), index, inbox)
+    node = NetworkedAgent(robot.agent, time.monotonic(), lease=config.links.lease, mission_time=clock.shows)
+    witness = Witness(node, robot.body, transport, robot.teller, robot_name(index))
+    return AgentProcess(node, robot.body, robot.shown, transport, inbox, witness, clock, staged)

@@ -67,7 +67,7 @@ def _row(said: Condition, digest: int) -> list[str]:
     parent = "root" if said.parent is None else robot_name(said.parent)
     return [
         said.state if said.refusal is None else f"refused: {said.refusal}",
-        f"{100 * said.known:.1f} %",
+        "-" if said.known is None else f"{100 * said.known:.1f} %",
         "same" if said.digest == digest else "differs",
         f"{robot_name(said.root)}, {said.size} robots, {said.age:.0f} s old",
         parent,

@@ -3,22 +3,34 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import cast
+from typing import Protocol
 
 import numpy as np
 from msgspec import structs
+from numpy.typing import NDArray
 
 from vedette.agent import NetworkedAgent
 from vedette.agent.body import Body
-from vedette.maps import UNKNOWN
-from vedette.missions.explore.exploration import Exploration
 from vedette.net import report as wire
-from vedette.net.report import Condition, LinkReport, Spot, Spread
+from vedette.net.report import Condition, LinkReport, Spread
 from vedette.net.transport import Transport
 from vedette.overlay import LinkStatus
 from vedette.record.clock import Clock
-from vedette.record.explore.views import held_map
 from vedette.record.summary import Spread as Statistics
+
+
+class Teller(Protocol):
+    """What a robot of one domain has to tell the operator beside its condition."""
+
+    @property
+    def known(self) -> float | None:
+        """Share of its map's cells that it knows; None: it makes no map."""
+
+    def path(self, now: float) -> NDArray[np.float64]:
+        """Return where it means to go, ``(k, 2)`` [m], team frame; ``now``: mission time [s], as below."""
+
+    def content(self, now: float) -> bytes:
+        """Return what it has found out, for the domain's own ``view_of``."""
 
 
 @dataclass
@@ -28,6 +40,7 @@ class Witness:
     node: NetworkedAgent
     body: Body
     transport: Transport
+    teller: Teller
     name: str
     clock: Clock = field(default_factory=Clock)
     malformed: int = 0  # of what is told of bodies
@@ -36,11 +49,7 @@ class Witness:
     _round_began: float | None = None
     _decisions: int = 0
     _decided: float | None = None  # when the latest round ended with a decision [s]
-    _began: float | None = None  # mission time at which the robot began to map [s]
-
-    @property
-    def _mission(self) -> Exploration:
-        return cast(Exploration, self.node.agent.mission)
+    _began: float | None = None  # mission time at which the robot began [s]
 
     def note(self, now: float) -> None:
         """Watch the rounds, after every act; ``now`` [s]."""
@@ -58,20 +67,16 @@ class Witness:
         """Return a report; ``state`` takes the place of the agent's own."""
         if self._began is None and self.node.agent.awake:
             self._began = mission_time
-        classes = held_map(self._mission.fusion.classes, self._mission.log_odds)
-        known = float(np.count_nonzero(classes != UNKNOWN) / classes.size)
-        condition = self._condition(now, mission_time, known)
+        condition = self._condition(now, mission_time)
         if state is not None:
             condition = structs.replace(condition, state=state)
         self.status = wire.encode(condition)
-        decided = self.node.agent.rounds.impact
-        impact = None if decided is None else self._mission.codec.encode(decided)
-        return wire.report(condition, classes, self._mission.log_odds != 0, impact)
+        return wire.encode(wire.Report(condition, self.teller.content(mission_time)))
 
-    def _condition(self, now: float, mission_time: float, known: float) -> Condition:
+    def _condition(self, now: float, mission_time: float) -> Condition:
         agent, overlay = self.node.agent, self.node.overlay.status(now)
         x, y, heading = self.body.pose
-        path = tuple(agent.behaviour.path.ravel().tolist())
+        path = self.teller.path(mission_time).ravel().tolist()
         counted = self.body.figures
         return Condition(
             robot=agent.robot,
@@ -83,7 +88,7 @@ class Witness:
             x=x,
             y=y,
             heading=heading,
-            path=path[-2000:],
+            path=tuple(path[-2000:]),
             root=overlay.root,
             epoch=overlay.epoch,
             number=overlay.place.epoch,
@@ -92,8 +97,8 @@ class Witness:
             size=overlay.place.size,
             age=overlay.age,
             links=tuple(map(_link, overlay.links)),
-            digest=self._mission.fusion.digest,
-            known=known,
+            digest=agent.mission.fusion.digest,
+            known=self.teller.known,
             rounds=agent.rounds.decisions,
             sweeps=agent.rounds.sweeps,
             cuts=agent.rounds.cuts,
@@ -114,9 +119,6 @@ class Witness:
             planning_ms=_spread(self.clock.planning_ms, len(self.clock.planning)),
             answer_ms=_spread(self.clock.answer_ms, len(self.clock.answers)),
             round_ms=_spread(Statistics.of([1e3 * took for took in self._rounds]), len(self._rounds)),
-            given_up=tuple(
-                Spot(spot.x, spot.y, spot.unknown, spot.visited) for spot in self._mission.platform.given_up
-            ),
             decided=None if self._decided is None else max(now - self._decided, 0.0),
         )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import floor
 from typing import TypeAlias
 
 import numpy as np
@@ -82,7 +83,7 @@ class Vehicles:
         """Return the pose, and at the end of a step what the sensor saw."""
         events: list[Event] = [Pose(*self.pose(i))]
         if now >= self._looks[i] * self._step - 1e-9:
-            self._looks[i] += 1
+            self._looks[i] = floor(now / self._step + 1e-6) + 1  # what could not be seen in time is not seen
             seen = self._look(i, self.poses[i].copy(), now)
             if seen is not None:
                 events.append(Sensed(seen, now))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -25,6 +26,8 @@ from vedette.missions.flying import FlyingMission, SharedBelief, box_around
 from vedette.problem import Reach
 from vedette.team import Most
 from vedette.vehicle import drive
+
+LOOKS_KEPT = 8  # steps whose looks are kept, for people to see
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,6 +77,7 @@ class Searching(FlyingMission):
     tells_plans: bool = True  # False: the team shares beliefs alone
     strategy: Flight = field(default_factory=lambda: Flight(0, np.empty(0)))
     declared: Declared | None = None
+    looked: deque[tuple[int, NDArray[np.float64]]] = field(default_factory=lambda: deque(maxlen=LOOKS_KEPT))
     objective: SearchObjective = field(default_factory=SearchObjective)
     codec: ImpactCodec = field(init=False)
     platform: RoundPlatform[SearchBelief, Flight, Impact] = field(init=False)
@@ -98,7 +102,9 @@ class Searching(FlyingMission):
         self._seen_at = pose.x, pose.y, now
         detector, reports = self.vehicle.detector, seen.data.reports
         told = evidence_of_looks(detector, self.team.prior.frame, seen.data.poses, reports)
-        self._waiting.append((self.team.step(seen.time), told))
+        step = self.team.step(seen.time)
+        self._waiting.append((step, told))
+        self.looked.append((step, seen.data.poses))
         places = [report for report in reports if report is not None]
         if places and detector.false_alarm == 0.0 and self.declared is None:
             self.declared = Declared(*places[0], now, certain=True)
@@ -108,6 +114,11 @@ class Searching(FlyingMission):
         waiting, self._waiting = self._waiting, []
         for step, told in waiting:
             self.fusion.publish(step, self._elements.of(told.cells.astype(np.int64), told.levels))
+
+    @property
+    def first_step(self) -> int:
+        """The first step whose pdf can still be had."""
+        return self._filter.first
 
     def pdf(self, step: int) -> TargetPdf:
         """Return where the target may be at a step, by all that this vehicle has published and heard."""
@@ -120,7 +131,7 @@ class Searching(FlyingMission):
 
         By a clock that is behind, the present may be a step that is no longer kept: the first that is, then.
         """
-        step = max(self.team.step(t0), self._filter.first)
+        step = max(self.team.step(t0), self.first_step)
         pdf = self.pdf(step)
         if self.declared is None and self.vehicle.detector.false_alarm > 0.0:
             self.declared = self._sure(pdf, t0)

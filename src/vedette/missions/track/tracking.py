@@ -66,6 +66,7 @@ class Tracking(FlyingMission):
     tells_plans: bool = True  # False: the team shares beliefs alone
     strategy: Course = field(default_factory=lambda: Course(0, ()))
     skipped: int = 0  # measurements that could not be linearised, or whose likelihood exceeded the bounds
+    seen: tuple[int, ...] = ()  # targets, by the latest look
     codec: ImpactCodec = field(init=False)
     platform: RoundPlatform[Tracks, Course, Impact] = field(init=False)
     _waiting: list[tuple[int, Information]] = field(default_factory=list)  # step, likelihood
@@ -86,6 +87,7 @@ class Tracking(FlyingMission):
         """``I = H' R^-1 H``, ``i = H' R^-1 (z - h(x) + H x)`` of each target seen; paper, eqs. (20), (21)."""
         assert isinstance(seen.data, Mapping)
         self._seen_at = pose.x, pose.y, now
+        self.seen = tuple(seen.data)
         if not seen.data:
             return
         step, known = self.team.step(seen.time), self.tracks()

@@ -43,8 +43,13 @@ def save_faults(path: Path | str, schedule: Schedule) -> None:
     Raises:
         InputError: the file cannot be written.
     """
+    write_text(path, faults_text(schedule))
+
+
+def faults_text(schedule: Schedule) -> str:
+    """Return a schedule as a file of it says it."""
     lines = [f"  - {_line(fault)}\n" for _, fault in schedule.in_time()]
-    write_text(path, "faults:\n" + "".join(lines) if lines else "faults: []\n")
+    return "faults:\n" + "".join(lines) if lines else "faults: []\n"
 
 
 def _line(fault: Fault) -> str:

@@ -10,8 +10,10 @@ from numpy.typing import ArrayLike, NDArray
 from vedette.agent.body import TICK
 from vedette.domains.search.belief import TargetPdf
 from vedette.domains.search.detectors import Detector
+from vedette.missions.search.case import SearchCase
 from vedette.missions.search.searching import Looks
 from vedette.outcome import Outcome
+from vedette.sim.simulation import random_streams
 from vedette.sim.vehicles import Vehicles
 
 
@@ -43,6 +45,12 @@ class Hidden:
         self._rng, self._sensor_rngs = rng, tuple(sensor_rngs)
         drawn = draw_places(pdf, 1, rng)  # drawn always: the way is the same wherever it starts
         self._places: list[NDArray[np.float64]] = [drawn if start is None else np.array([start], np.float64)]
+
+    @classmethod
+    def of(cls, case: SearchCase, seed: int) -> Hidden:
+        """Return the target of a search, the same for everybody who simulates a part of it."""
+        rng, streams = np.random.default_rng([seed, 3]), random_streams(seed, len(case.names))
+        return cls(case.pdf, case.scenario.target.start, case.detectors, rng, streams[:-1])
 
     def at(self, step: int) -> NDArray[np.float64]:
         """Return the true place (2,) [m] at a step."""
@@ -86,6 +94,25 @@ class Searchers(Vehicles):
             [] for _ in looks
         ]  # poses of the present step's looks
         self.looks: list[dict[int, NDArray[np.float64]]] = [{} for _ in looks]  # by vehicle: (L, 3) by step
+
+    @classmethod
+    def of(
+        cls,
+        case: SearchCase,
+        hidden: Hidden | None,
+        over: Callable[[float], Outcome | None] = lambda now: None,
+    ) -> Searchers:
+        """Return the vehicles of a search, at their starts."""
+        vehicles = case.scenario.vehicles
+        return cls(
+            [vehicle.pose for vehicle in vehicles],
+            [vehicle.speed for vehicle in vehicles],
+            [vehicle.turn_rate for vehicle in vehicles],
+            case.scenario.step,
+            [case.looks(i) for i in range(len(vehicles))],
+            hidden,
+            over,
+        )
 
     def advance(self, now: float, dt: float) -> None:
         """Fly on to now, and look if it is time."""

@@ -6,8 +6,6 @@ from dataclasses import dataclass
 from math import floor
 from typing import cast
 
-import numpy as np
-
 from vedette.missions.search.assemble import SearchTeam
 from vedette.missions.search.case import SearchCase
 from vedette.missions.search.options import SearchOptions
@@ -16,7 +14,7 @@ from vedette.outcome import Outcome
 from vedette.record.search.observer import first_declared
 from vedette.sim.flights import FlightSetup
 from vedette.sim.search.hidden import Hidden, Searchers
-from vedette.sim.simulation import Simulation, random_streams
+from vedette.sim.simulation import Simulation
 
 
 @dataclass(frozen=True)
@@ -46,20 +44,12 @@ class SearchSimulation(Simulation):
         self.case, self.names = case, case.names
         team = self.team = SearchTeam(case, setup.options, setup.times)
         self.plan = team.plan
-        vehicles, step = case.scenario.vehicles, case.scenario.step
-        streams = random_streams(setup.seed, len(self.names))
-        rng = np.random.default_rng([setup.seed, 3])
-        self.hidden = Hidden(case.pdf, case.scenario.target.start, case.detectors, rng, streams[:-1])
-        self.vehicles = Searchers(
-            [vehicle.pose for vehicle in vehicles],
-            [vehicle.speed for vehicle in vehicles],
-            [vehicle.turn_rate for vehicle in vehicles],
-            step,
-            [case.looks(i) for i in range(len(vehicles))],
-            None if setup.blind else self.hidden,
-            lambda now: None if self.declared is None else Outcome.COMPLETE,
-        )
+        self.hidden = Hidden.of(case, setup.seed)
+        self.vehicles = Searchers.of(case, None if setup.blind else self.hidden, self._found)
         super().__init__(team.assemble, self.vehicles, setup)
+
+    def _found(self, now: float) -> Outcome | None:
+        return None if self.declared is None else Outcome.COMPLETE
 
     @property
     def missions(self) -> list[Searching]:

@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import cast
 
-import numpy as np
-
 from vedette.agent import Agent
 from vedette.errors import InputError
 from vedette.missions.track.assemble import TrackTeam
@@ -15,10 +13,9 @@ from vedette.missions.track.scenario import TrackScenario
 from vedette.missions.track.tracking import Tracking
 from vedette.outcome import Outcome
 from vedette.sim.flights import FlightSetup
-from vedette.sim.simulation import Simulation, random_streams
+from vedette.sim.simulation import Simulation
 from vedette.sim.track.oracle import MOST_JOINT, Dictated, Oracle, joint_choices
-from vedette.sim.track.targets import Targets
-from vedette.sim.vehicles import Vehicles
+from vedette.sim.track.targets import Targets, trackers
 
 
 @dataclass(frozen=True)
@@ -52,18 +49,8 @@ class TrackSimulation(Simulation):
         if setup.coordination == "optimum":
             check_optimum(scenario, setup)
         self._oracle = Oracle()
-        rng = np.random.default_rng([setup.seed, 2])
-        start = scenario.draw(rng)
-        streams = random_streams(setup.seed, len(self.names))
-        self.targets = Targets(self.prior.models, start, self.sensors, scenario.step, rng, streams[:-1])
-        self.vehicles = Vehicles(
-            [vehicle.pose for vehicle in scenario.vehicles],
-            [vehicle.speed for vehicle in scenario.vehicles],
-            [vehicle.turn_rate for vehicle in scenario.vehicles],
-            scenario.step,
-            self.targets.look,
-            self._over_at_the_end,
-        )
+        self.targets = Targets.of(self.team, setup.seed)
+        self.vehicles = trackers(scenario, self.targets, self._over_at_the_end)
         super().__init__(self._tracker, self.vehicles, setup)
         self._oracle.vehicles = [mission.vehicle for mission in self.missions]
 

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vedette.domains.tracking.models import TargetModel
 from vedette.domains.tracking.sensing import Sensor
+from vedette.missions.track.assemble import TrackTeam
+from vedette.missions.track.scenario import TrackScenario
+from vedette.outcome import Outcome
+from vedette.sim.simulation import random_streams
+from vedette.sim.vehicles import Vehicles
 
 
 class Targets:
@@ -34,6 +39,14 @@ class Targets:
         self.poses: dict[tuple[int, int], NDArray[np.float64]] = {}  # (3,) by step and vehicle
         self.seen: dict[tuple[int, int], tuple[int, ...]] = {}  # targets by step and vehicle
 
+    @classmethod
+    def of(cls, team: TrackTeam, seed: int) -> Targets:
+        """Return the targets of a mission, the same for everybody who simulates a part of it."""
+        rng = np.random.default_rng([seed, 2])
+        start = team.scenario.draw(rng)
+        streams = random_streams(seed, len(team.sensors))
+        return cls(team.prior.models, start, team.sensors, team.scenario.step, rng, streams[:-1])
+
     def look(self, i: int, pose: NDArray[np.float64], now: float) -> dict[int, NDArray[np.float64]]:
         """Return vehicle i's measurements by target at a step's end."""
         step = round(now / self._dt)
@@ -49,3 +62,18 @@ class Targets:
             moved = [m.move(self._rng, x) for m, x in zip(self._models, self.states[-1], strict=True)]
             self.states.append(np.stack(moved))
         return self.states[step]
+
+
+def trackers(
+    scenario: TrackScenario, targets: Targets, over: Callable[[float], Outcome | None] = lambda now: None
+) -> Vehicles:
+    """Return the vehicles of a tracking mission, at their starts; ``over`` as for ``Vehicles``."""
+    vehicles = scenario.vehicles
+    return Vehicles(
+        [vehicle.pose for vehicle in vehicles],
+        [vehicle.speed for vehicle in vehicles],
+        [vehicle.turn_rate for vehicle in vehicles],
+        scenario.step,
+        targets.look,
+        over,
+    )

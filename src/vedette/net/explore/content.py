@@ -1,0 +1,158 @@
+"""What an exploring robot tells the operator: its map, what it has seen itself, what it has given up."""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass
+from typing import Annotated, NamedTuple, cast
+
+import msgspec
+import numpy as np
+from msgspec import Meta
+from numpy.typing import NDArray
+
+from vedette import wire
+from vedette.agent import Agent, GroundBehaviour
+from vedette.domains.mapping.impact import ImpactCodec
+from vedette.domains.mapping.platform import GivenUp
+from vedette.maps import OCCUPIED, UNKNOWN
+from vedette.missions.explore.exploration import Exploration
+from vedette.net.gather import figures_of, path_of
+from vedette.net.report import MOST_BYTES, Condition, Count, Real, inflated
+from vedette.record.explore.log import RobotSample
+from vedette.record.explore.views import GroundFigures, RobotView, held_map, left_out
+
+MOST_CELLS = 1 << 26
+UNTOUCHED = GroundFigures().min_clearance_m  # [m]
+Grid = Annotated[bytes, Meta(max_length=MOST_BYTES)]
+
+
+class Spot(NamedTuple):
+    """A frontier that the robot has given up, as ``vedette.domains.mapping.platform.GivenUp``."""
+
+    x: Real  # [m], team frame
+    y: Real
+    unknown: Count  # cells near it
+    visited: bool
+
+
+class MapContent(msgspec.Struct, frozen=True, array_like=True, tag=1):
+    """A robot's map."""
+
+    rows: Annotated[int, Meta(ge=1, le=MOST_CELLS)]
+    cols: Annotated[int, Meta(ge=1, le=MOST_CELLS)]
+    classes: Grid  # deflated
+    seen: Grid  # bits of what its own sensor observed, deflated
+    impact: Grid | None  # of its last decision
+    given_up: Annotated[tuple[Spot, ...], Meta(max_length=1024)] = ()
+
+
+_CONTENTS: msgspec.msgpack.Decoder[MapContent] = msgspec.msgpack.Decoder(MapContent)
+_encode = msgspec.msgpack.Encoder().encode
+
+
+@dataclass(frozen=True, eq=False)
+class ExploreTeller:
+    """Tells what an agent has found out; ``vedette.net.witness.Teller``."""
+
+    agent: Agent
+
+    @property
+    def _mission(self) -> Exploration:
+        return cast(Exploration, self.agent.mission)
+
+    @property
+    def _held(self) -> NDArray[np.uint8]:
+        return held_map(self._mission.fusion.classes, self._mission.log_odds)
+
+    @property
+    def known(self) -> float:
+        """Share of the map's cells."""
+        held = self._held
+        return float(np.count_nonzero(held != UNKNOWN) / held.size)
+
+    def path(self, now: float) -> NDArray[np.float64]:
+        """Return the way that the robot wants to go."""
+        wanted = cast(GroundBehaviour, self.agent.behaviour).driver.wanted
+        return np.empty((0, 2)) if wanted is None else wanted.path
+
+    def content(self, now: float) -> bytes:
+        """Return its map."""
+        mission, decided = self._mission, self.agent.rounds.impact
+        impact = None if decided is None else mission.codec.encode(decided)
+        spots = tuple(Spot(each.x, each.y, each.unknown, each.visited) for each in mission.platform.given_up)
+        return content(self._held, mission.log_odds != 0, impact, spots[-1024:])
+
+
+def content(
+    classes: NDArray[np.uint8], seen: NDArray[np.bool_], impact: bytes | None, given_up: tuple[Spot, ...] = ()
+) -> bytes:
+    """Return a map as bytes; ``classes`` and ``seen`` are ``(R, C)``."""
+    rows, cols = classes.shape
+    packed = zlib.compress(np.ascontiguousarray(classes).tobytes(), 1)
+    bits = zlib.compress(np.packbits(seen).tobytes(), 1)
+    return _encode(MapContent(rows, cols, packed, bits, impact, given_up))
+
+
+def read_content(payload: bytes) -> MapContent:
+    """Return a robot's map; its grids are still packed.
+
+    Raises:
+        ValueError: malformed.
+    """
+    return wire.decode(_CONTENTS, payload, "report")
+
+
+def view_of(condition: Condition, payload: bytes, shape: tuple[int, int], codec: ImpactCodec) -> RobotView:
+    """Return what a robot reports, over a map of this shape.
+
+    Raises:
+        ValueError: malformed, or of another map.
+    """
+    told = read_content(payload)
+    if (told.rows, told.cols) != shape:
+        raise ValueError(f"report of a map of {told.rows} x {told.cols} cells, not {shape}")
+    path, at = path_of(condition), (condition.x, condition.y, condition.heading)
+    goal = (float(path[-1, 0]), float(path[-1, 1])) if len(path) else None
+    return RobotView(
+        sample=RobotSample(*at, condition.state, True, path, condition.name, goal),
+        classes=classes_of(told),
+        seen=seen_of(told),
+        impact=None if told.impact is None else codec.decode(told.impact),
+        figures=GroundFigures(
+            **vars(figures_of(condition)),
+            collisions=condition.collisions,
+            min_clearance_m=UNTOUCHED if condition.min_clearance is None else condition.min_clearance,
+        ),
+        left_out=left_out([GivenUp(*spot) for spot in told.given_up], condition.name),
+    )
+
+
+def classes_of(told: MapContent) -> NDArray[np.uint8]:
+    """Return ``(R, C)``: the map that was told.
+
+    Raises:
+        ValueError: not a map of that size.
+    """
+    classes = np.frombuffer(inflated(told.classes, _cells(told)), np.uint8)
+    if classes.max() > OCCUPIED:
+        raise ValueError("report: a cell is neither unknown, free nor occupied")
+    return classes.reshape(told.rows, told.cols)
+
+
+def seen_of(told: MapContent) -> NDArray[np.bool_]:
+    """Return ``(R, C)``: which cells the robot's own sensor has observed.
+
+    Raises:
+        ValueError: not of that size.
+    """
+    cells = _cells(told)
+    bits = np.frombuffer(inflated(told.seen, -(-cells // 8)), np.uint8)
+    return np.unpackbits(bits, count=cells).astype(np.bool_).reshape(told.rows, told.cols)
+
+
+def _cells(told: MapContent) -> int:
+    cells = told.rows * told.cols
+    if cells > MOST_CELLS:
+        raise ValueError(f"report: a map of {cells} cells; at most {MOST_CELLS} are taken")
+    return cells

@@ -1,0 +1,84 @@
+"""An exploring team as the operator sees it, by what its robots report."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from vedette.agent.state import State
+from vedette.domains.mapping.impact import ImpactCodec
+from vedette.net.explore.content import view_of
+from vedette.net.explore.plan import ExplorePlan
+from vedette.net.report import Condition
+from vedette.net.team import DEAD, Links
+from vedette.outcome import NO_PROGRESS, Outcome
+from vedette.record.explore.log import ExploreSnapshot, RobotSample
+from vedette.record.explore.observer import ExploreObserver, ExploreReport
+from vedette.record.explore.views import GroundFigures, RobotView
+from vedette.record.log import Sink
+from vedette.record.summary import Setting, Timing
+
+MOVED = 0.1  # a team whose way grows by less makes no progress [m]
+
+
+class ExploreWatcher:
+    """``vedette.net.team.Watcher``."""
+
+    def __init__(
+        self, plan: ExplorePlan, setting: Setting, sinks: Sequence[Sink[ExploreSnapshot]] = ()
+    ) -> None:
+        """Prepare to watch; the ``sinks`` follow the mission."""
+        self._observer = ExploreObserver(plan.world, plan.specs, plan.starts, plan.options, setting, sinks)
+        self._shape = plan.world.frame.shape
+        self._codec = ImpactCodec(self._observer.log.scene.planning.size)
+        self._views = [
+            _unheard(spec.name, start, self._shape)
+            for spec, start in zip(plan.specs, plan.starts.tolist(), strict=True)
+        ]
+        self._ways: dict[int, float] = {}  # of each robot by now [m]
+        self._moved = (0.0, 0.0)  # way of all robots [m], and when it last grew [s]
+
+    @property
+    def period(self) -> float:
+        """As the map's size allows [s]."""
+        return self._observer.period
+
+    def take(self, condition: Condition, content: bytes) -> None:
+        """Take a robot's map."""
+        self._views[condition.robot] = view_of(condition, content, self._shape, self._codec)
+        self._ways[condition.robot] = condition.travelled
+
+    def look(self, now: float, alive: Sequence[bool], links: Links) -> None:
+        """Measure the team's map."""
+        self._observer.look(now, self._seen(alive), links)
+
+    def finish(self, now: float, alive: Sequence[bool], links: Links) -> None:
+        """Measure it as it is in the end."""
+        self._observer.finish(now, self._seen(alive), links)
+
+    def over(self, now: float, heard: Sequence[Condition]) -> Outcome | None:
+        """Tell whether all are done, or nobody gets on."""
+        if heard and all(each.state == State.DONE.value for each in heard):
+            return Outcome.COMPLETE
+        way = sum(self._ways.values())
+        if way > self._moved[0] + MOVED:
+            self._moved = way, now
+        return Outcome.NO_PROGRESS if now > self._moved[1] + NO_PROGRESS else None
+
+    def report(self, outcome: Outcome, timing: Timing, now: float) -> ExploreReport:
+        """Return what ``vedette explore`` would."""
+        return self._observer.report(outcome, timing)
+
+    def _seen(self, alive: Sequence[bool]) -> list[RobotView]:
+        return [
+            view if lives else replace(view, sample=replace(view.sample, alive=False, state=DEAD))
+            for view, lives in zip(self._views, alive, strict=True)
+        ]
+
+
+def _unheard(name: str, start: Sequence[float], shape: tuple[int, int]) -> RobotView:
+    x, y, heading = start
+    sample = RobotSample(x, y, heading, "starting", True, np.empty((0, 2)), name, None)
+    return RobotView(sample, np.zeros(shape, np.uint8), np.zeros(shape, np.bool_), None, GroundFigures())

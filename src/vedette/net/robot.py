@@ -1,0 +1,19 @@
+"""One robot of any domain, put together: its agent, its body, and what it tells."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from vedette.agent import Agent
+from vedette.agent.body import Body, Shown
+from vedette.net.witness import Teller
+
+
+@dataclass(frozen=True, eq=False)
+class Robot:
+    """What a process runs."""
+
+    agent: Agent
+    body: Body
+    shown: Shown | None  # the body, where it is simulated and others are to see it
+    teller: Teller

@@ -1,0 +1,27 @@
+"""A searching vehicle, from its file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from vedette.missions.search.assemble import SearchTeam
+from vedette.missions.search.case import default_case, read_case
+from vedette.net.config import AgentConfig
+from vedette.net.flights import check_number, round_times
+from vedette.net.robot import Robot
+from vedette.net.search.content import SearchTeller
+from vedette.net.simulated import simulated_searcher
+
+
+def searcher(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robot:
+    """Return the vehicle; ``folder``: what paths in its file are relative to.
+
+    Raises:
+        InputError: the scenario cannot be used, or has no such vehicle.
+    """
+    assert config.search is not None
+    case = default_case() if config.scenario is None else read_case(folder / config.scenario)
+    check_number(config.robot, len(case.names))
+    team = SearchTeam(case, config.search, round_times(config.links, speed))
+    agent = team.assemble(config.robot - 1, boot)
+    return Robot(agent, simulated_searcher(config, case), None, SearchTeller(agent, case))

@@ -1,0 +1,27 @@
+"""A tracking vehicle, from its file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from vedette.missions.track.assemble import TrackTeam
+from vedette.missions.track.scenario import default_scenario, read_scenario
+from vedette.net.config import AgentConfig
+from vedette.net.flights import check_number, round_times
+from vedette.net.robot import Robot
+from vedette.net.simulated import simulated_tracker
+from vedette.net.track.content import TrackTeller
+
+
+def tracker(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robot:
+    """Return the vehicle; ``folder``: what paths in its file are relative to.
+
+    Raises:
+        InputError: the scenario cannot be used, or has no such vehicle.
+    """
+    assert config.track is not None
+    scenario = default_scenario() if config.scenario is None else read_scenario(folder / config.scenario)
+    check_number(config.robot, len(scenario.vehicles))
+    team = TrackTeam(scenario, config.track, round_times(config.links, speed))
+    agent = team.assemble(config.robot - 1, boot)
+    return Robot(agent, simulated_tracker(config, team), None, TrackTeller(agent, scenario))
