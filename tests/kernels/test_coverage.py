@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from vedette.domains.mapping import layers
 from vedette.kernels import coverage
-from vedette.kernels.coverage import LAYERS, Footprints
+from vedette.kernels.coverage import LAYERS, Footprints, TourProblem
 from vedette.kernels.frontier import find_frontiers
 from vedette.kernels.reference import coverage as reference
-from vedette.kernels.reference.coverage import Problem, Sparse
+from vedette.kernels.reference.coverage import Sparse
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 
 seeds = st.integers(0, 2**32 - 1)
@@ -55,7 +55,7 @@ def random_impact(rng: np.random.Generator) -> Sparse:
     return keys.astype(np.uint32), misses.astype(np.uint8)
 
 
-def random_problem(rng: np.random.Generator, most_stops: int) -> Problem:
+def random_problem(rng: np.random.Generator, most_stops: int) -> TourProblem:
     """Draw stops in a plane with overlapping footprints, and legs up to a fifth shorter than first legs."""
     stops = int(rng.integers(1, most_stops + 1))
     rows = [np.flatnonzero(rng.random(CELLS) < rng.uniform(0.05, 0.5)) for _ in range(stops)]
@@ -68,7 +68,7 @@ def random_problem(rng: np.random.Generator, most_stops: int) -> Problem:
     first_leg[unreachable] = np.inf
     legs[:, unreachable] = np.inf
     worth = [layers.rate(start=rng.uniform(1, 200)), layers.rate(), layers.plain()][rng.integers(3)]
-    return Problem(
+    return TourProblem(
         np.where(rng.random(CELLS) < 0.2, 0.0, rng.uniform(0, 3, CELLS)).astype(np.float32),
         worth.weights,
         worth.edges,
@@ -79,35 +79,12 @@ def random_problem(rng: np.random.Generator, most_stops: int) -> Problem:
     )
 
 
-def reply(problem: Problem, current: list[int], max_stops: int) -> tuple[list[int], float, float]:
-    tour, gain, present = coverage.best_tour(
-        problem.weights,
-        problem.layer_weights,
-        problem.edges,
-        problem.others,
-        problem.footprints,
-        problem.first_leg,
-        problem.legs,
-        np.array(current, np.int64),
-        max_stops,
-    )
+def reply(problem: TourProblem, current: list[int], max_stops: int) -> tuple[list[int], float, float]:
+    tour, gain, present = coverage.best_tour(problem, np.array(current, np.int64), max_stops)
     return tour.tolist(), gain, present
 
 
-def most_any_tour_adds(problem: Problem, max_stops: int) -> float:
-    return coverage.most_any_tour_adds(
-        problem.weights,
-        problem.layer_weights,
-        problem.edges,
-        problem.others,
-        problem.footprints,
-        problem.first_leg,
-        problem.legs,
-        max_stops,
-    )
-
-
-def random_tour(problem: Problem, rng: np.random.Generator, max_stops: int) -> list[int]:
+def random_tour(problem: TourProblem, rng: np.random.Generator, max_stops: int) -> list[int]:
     reachable = np.flatnonzero(np.isfinite(problem.first_leg))
     return [int(stop) for stop in rng.permutation(reachable)[: rng.integers(0, max_stops + 1)]]
 
@@ -239,7 +216,7 @@ def test_inside_a_time_layer_the_shorter_tour_wins() -> None:
     footprints = Footprints(np.array([0, 1, 2]), np.array([0, 1], np.uint32), np.array([64, 64], np.uint8))
     nothing = np.empty(0, np.uint32), np.empty(0, np.uint8)
     worth = np.array([1.0, 1.0], np.float32)
-    problem = Problem(worth, weights, edges, nothing, footprints, first_leg, legs)
+    problem = TourProblem(worth, weights, edges, nothing, footprints, first_leg, legs)
     assert reply(problem, [1, 0], 2)[0] == [0, 1]
 
 
@@ -247,7 +224,7 @@ def test_inside_a_time_layer_the_shorter_tour_wins() -> None:
 @given(seeds, st.integers(1, 4))
 def test_no_tour_adds_more_than_the_bound_and_the_bound_equals_its_twin(seed: int, max_stops: int) -> None:
     problem = random_problem(np.random.default_rng(seed), 4)
-    bound = most_any_tour_adds(problem, max_stops)
+    bound = coverage.most_any_tour_adds(problem, max_stops)
     _, optimum = reference.best_tour(problem, max_stops)
     assert bound >= optimum * (1 - 1e-5) - 1e-5
     assert bound == pytest.approx(reference.most_any_tour_adds(problem, max_stops), rel=1e-4, abs=1e-4)
@@ -269,7 +246,7 @@ def test_the_bound_holds_where_going_by_another_stop_is_the_shorter_way() -> Non
     )
     straight = sum(reference.tour_gain(problem, [stop]) for stop in (0, 1))
     assert reference.tour_gain(problem, [0, 1]) > straight
-    assert most_any_tour_adds(problem, 2) >= reference.tour_gain(problem, [0, 1])
+    assert coverage.most_any_tour_adds(problem, 2) >= reference.tour_gain(problem, [0, 1])
 
 
 def test_a_frontier_whose_middle_nobody_can_see_is_seen_by_another_of_its_cells() -> None:

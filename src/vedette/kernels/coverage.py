@@ -17,6 +17,12 @@ from vedette.kernels.misses import Keys, Misses
 
 LAYERS: int = _kernels.LAYERS
 
+_Singles = NDArray[np.float32]
+_Doubles = NDArray[np.float64]
+_Arrays = tuple[
+    _Singles, _Doubles, _Doubles, Keys, Misses, NDArray[np.int64], Keys, Misses, _Singles, _Singles
+]
+
 
 @dataclass(frozen=True, eq=False)
 class Footprints:
@@ -25,6 +31,28 @@ class Footprints:
     starts: NDArray[np.int64]  # (K + 1,) bounds of each viewpoint's entries
     cells: NDArray[np.uint32]  # (M,) planning cells, ascending in each row
     misses: Misses  # (M,) log-miss
+
+
+@dataclass(frozen=True, eq=False)
+class TourProblem:
+    """One platform's choice of a tour against the others' impact."""
+
+    weights: NDArray[np.float32]  # (N,) worth of each planning cell [nats]
+    layer_weights: NDArray[np.float64]  # (LAYERS,) weight of each time layer
+    edges: NDArray[np.float64]  # (LAYERS,) upper edge of each layer [s]; an arrival is in the first it fits
+    others: tuple[Keys, Misses]  # sparse impact
+    footprints: Footprints  # what each stop reveals
+    first_leg: NDArray[np.float32]  # (K,) travel time to each stop [s], inf where it cannot be reached
+    legs: NDArray[np.float32]  # (K, K) travel time between stops [s]
+
+    @property
+    def arrays(self) -> _Arrays:
+        """All of it, as the kernels take it."""
+        marks = self.footprints
+        return (
+            self.weights, self.layer_weights, self.edges, *self.others,
+            marks.starts, marks.cells, marks.misses, self.first_leg, self.legs,
+        )  # fmt: skip
 
 
 def viewpoints(
@@ -107,25 +135,12 @@ def marginals(
 
 
 def best_tour(
-    weights: NDArray[np.float32],
-    layer_weights: NDArray[np.float64],
-    edges: NDArray[np.float64],
-    others: tuple[Keys, Misses],
-    footprints: Footprints,
-    first_leg: NDArray[np.float32],
-    legs: NDArray[np.float32],
-    current: NDArray[np.int64],
-    max_stops: int,
-    stickiness: float = 0.0,
+    problem: TourProblem, current: NDArray[np.int64], max_stops: int, stickiness: float = 0.0
 ) -> tuple[NDArray[np.int64], float, float]:
     """The best tour found against the rest of the team, by greedy insertion and 2-opt.
 
     Args:
-        weights, layer_weights, others: as for ``marginals``.
-        edges: (LAYERS,) upper edge of each time layer [s]; an arrival belongs to the first layer it fits.
-        footprints: what each stop reveals.
-        first_leg: (K,) travel time to each stop [s], inf where it cannot be reached.
-        legs: (K, K) travel time between stops [s].
+        problem: what to choose from.
         current: stops of the present tour, in order.
         max_stops: longest tour.
         stickiness: a tour with another first stop than the present one's must gain this share more.
@@ -133,42 +148,9 @@ def best_tour(
     Returns:
         the tour, its marginal value, and the marginal value of the present tour.
     """
-    return _kernels.best_tour(
-        weights,
-        layer_weights,
-        edges,
-        *others,
-        footprints.starts,
-        footprints.cells,
-        footprints.misses,
-        first_leg,
-        legs,
-        current,
-        max_stops,
-        stickiness,
-    )
+    return _kernels.best_tour(*problem.arrays, current, max_stops, stickiness)
 
 
-def most_any_tour_adds(
-    weights: NDArray[np.float32],
-    layer_weights: NDArray[np.float64],
-    edges: NDArray[np.float64],
-    team: tuple[Keys, Misses],
-    footprints: Footprints,
-    first_leg: NDArray[np.float32],
-    legs: NDArray[np.float32],
-    max_stops: int,
-) -> float:
+def most_any_tour_adds(problem: TourProblem, max_stops: int) -> float:
     """An upper bound on what any tour adds to the team's impact.  docs/mapping.md (V26)"""
-    return _kernels.most_any_tour_adds(
-        weights,
-        layer_weights,
-        edges,
-        *team,
-        footprints.starts,
-        footprints.cells,
-        footprints.misses,
-        first_leg,
-        legs,
-        max_stops,
-    )
+    return _kernels.most_any_tour_adds(*problem.arrays, max_stops)

@@ -162,16 +162,10 @@ def count_sightings(
 
     Args:
         log_odds: ``(R, C)`` before the scan is fused; 0 is unknown.
-        resolution: cell side [m].
-        x: sensor [m].
-        y: sensor [m].
-        angles: ``(B,)`` [rad].
-        ranges: ``(B,)`` [m], finite.
-        hits: ``(B,)``, whether the range ends at an obstacle.
+        resolution, x, y, angles, ranges, hits, nudge: as for ``integrate_scan``.
         max_range: [m].
         bin_m: bin width [m].
         stride: beams from one that counts to the next.
-        nudge: endpoint of a hit beyond its range [m], as in ``integrate_scan``.
 
     Returns:
         ``(4, ceil(max_range / bin_m))``: tried and seen by distance of the crossing's middle, then tried and

@@ -52,7 +52,7 @@ def test_the_kernel_values_a_tour_as_the_objective_values_its_impact(worth: Time
     for seed in range(25):
         rng = np.random.default_rng(seed)
         others, tour = random_team(rng, platform), random_tour(rng, platform)
-        _, _, gain = coverage.best_tour(
+        problem = coverage.TourProblem(
             belief.weights,
             belief.layers.weights,
             belief.layers.edges,
@@ -60,9 +60,8 @@ def test_the_kernel_values_a_tour_as_the_objective_values_its_impact(worth: Time
             stops.footprints,
             stops.first_leg,
             stops.legs,
-            tour.stops,
-            6,
         )
+        _, _, gain = coverage.best_tour(problem, tour.stops, 6)
         team = OBJECTIVE.combine(others, platform.impact(belief, tour))
         assert gain == pytest.approx(
             OBJECTIVE.value(belief, team) - OBJECTIVE.value(belief, others), rel=1e-4

@@ -200,31 +200,19 @@ class MappingPlatform:
 
         Source: paper, eq. (30).
         """
-        assert self.stops is not None
-        order, gain, present = coverage.best_tour(
-            belief.weights,
-            belief.layers.weights,
-            belief.layers.edges,
-            others.sparse,
-            self.stops.footprints,
-            self.stops.first_leg,
-            self.stops.legs,
-            current.stops,
-            self.ahead,
-            STICKINESS,
-        )
+        problem = self._problem(belief, others)
+        order, gain, present = coverage.best_tour(problem, current.stops, self.ahead, STICKINESS)
         return self.tour(order) if gain > present * (1.0 + HYSTERESIS) else current
 
     def slack(self, belief: MapBelief, team: Impact) -> float:
         """No strategy of this robot adds more to the team's impact [nats]; docs/mapping.md (V26)."""
-        assert self.stops is not None
-        return coverage.most_any_tour_adds(
-            belief.weights,
-            belief.layers.weights,
-            belief.layers.edges,
-            team.sparse,
-            self.stops.footprints,
-            self.stops.first_leg,
-            self.stops.legs,
-            self.ahead,
+        return coverage.most_any_tour_adds(self._problem(belief, team), self.ahead)
+
+    def _problem(self, belief: MapBelief, others: Impact) -> coverage.TourProblem:
+        """Return the choice of a tour against the others' impact."""
+        stops = self.stops
+        assert stops is not None
+        worth, layers = belief.weights, belief.layers
+        return coverage.TourProblem(
+            worth, layers.weights, layers.edges, others.sparse, stops.footprints, stops.first_leg, stops.legs
         )

@@ -5,32 +5,19 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.kernels.coverage import LAYERS, Footprints
+from vedette.kernels.coverage import LAYERS, TourProblem
 from vedette.kernels.misses import CERTAIN, STEPS_PER_NAT, Keys, Misses
 from vedette.kernels.reference.lidar import crossings
 
 FREE, OCCUPIED = 1, 2
 Sparse = tuple[Keys, Misses]
 Floats = NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False)
-class Problem:
-    """One platform's choice of a tour: what the tour kernels take."""
-
-    weights: NDArray[np.float32]  # (N,) worth of each planning cell
-    layer_weights: Floats  # (LAYERS,)
-    edges: Floats  # (LAYERS,) [s]
-    others: Sparse
-    footprints: Footprints
-    first_leg: NDArray[np.float32]  # (K,) [s]
-    legs: NDArray[np.float32]  # (K, K) [s]
 
 
 # -- viewpoints and footprints ------------------------------------------------------------------------
@@ -204,7 +191,7 @@ def marginals(
 # -- tours --------------------------------------------------------------------------------------------
 
 
-def arrivals(problem: Problem, tour: Sequence[int]) -> NDArray[np.float32]:
+def arrivals(problem: TourProblem, tour: Sequence[int]) -> NDArray[np.float32]:
     """Arrival at each stop of a tour [s]."""
     legs = [problem.legs[a, b] for a, b in itertools.pairwise(tour)]
     return np.cumsum(
@@ -212,7 +199,7 @@ def arrivals(problem: Problem, tour: Sequence[int]) -> NDArray[np.float32]:
     )
 
 
-def tour_impact(problem: Problem, tour: Sequence[int]) -> Sparse:
+def tour_impact(problem: TourProblem, tour: Sequence[int]) -> Sparse:
     """Each stop's footprint, from the layer of its arrival on."""
     impact: Sparse = np.empty(0, np.uint32), np.empty(0, np.uint8)
     marks = problem.footprints
@@ -225,7 +212,7 @@ def tour_impact(problem: Problem, tour: Sequence[int]) -> Sparse:
     return impact
 
 
-def tour_gain(problem: Problem, tour: Sequence[int]) -> float:
+def tour_gain(problem: TourProblem, tour: Sequence[int]) -> float:
     """What a tour adds to the rest of the team; minus infinity if it cannot be driven."""
     if not np.isfinite(arrivals(problem, tour)).all():
         return -math.inf
@@ -234,7 +221,7 @@ def tour_gain(problem: Problem, tour: Sequence[int]) -> float:
     return value(problem.weights, problem.layer_weights, team) - rest
 
 
-def best_tour(problem: Problem, max_stops: int) -> tuple[tuple[int, ...], float]:
+def best_tour(problem: TourProblem, max_stops: int) -> tuple[tuple[int, ...], float]:
     """The best of all tours and its gain: what ``coverage.best_tour`` looks for."""
     stops = range(len(problem.first_leg))
     tours = (tour for length in range(max_stops + 1) for tour in itertools.permutations(stops, length))
@@ -243,7 +230,7 @@ def best_tour(problem: Problem, max_stops: int) -> tuple[tuple[int, ...], float]
     return best, gains[best]
 
 
-def greedy_tour(problem: Problem, max_stops: int) -> tuple[list[int], float]:
+def greedy_tour(problem: TourProblem, max_stops: int) -> tuple[list[int], float]:
     """Insert the stop that adds most where it adds most, until nothing adds."""
     tour: list[int] = []
     gain = 0.0
@@ -257,20 +244,12 @@ def greedy_tour(problem: Problem, max_stops: int) -> tuple[list[int], float]:
     return tour, gain
 
 
-def most_any_tour_adds(problem: Problem, max_stops: int) -> float:
+def most_any_tour_adds(problem: TourProblem, max_stops: int) -> float:
     """Twin of ``coverage.most_any_tour_adds``: each stop alone at its earliest arrival, the best added up."""
     earliest = problem.first_leg.copy()
     for _ in earliest:
         for start, end in itertools.permutations(range(len(earliest)), 2):
             earliest[end] = min(earliest[end], earliest[start] + problem.legs[start, end])
-    alone = Problem(
-        problem.weights,
-        problem.layer_weights,
-        problem.edges,
-        problem.others,
-        problem.footprints,
-        earliest,
-        problem.legs,
-    )
+    alone = replace(problem, first_leg=earliest)
     gains = [tour_gain(alone, [stop]) for stop in np.flatnonzero(np.isfinite(earliest)).tolist()]
     return float(sum(sorted(gains, reverse=True)[:max_stops]))
