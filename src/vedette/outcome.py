@@ -26,11 +26,11 @@ class Outcome(StrEnum):
     UNREACHED = "unreached", 1, "work is left that was given up, since nobody could reach it"
     ENCLOSED = "enclosed", 1, "work is left, but nobody who lives can move"
     NO_PROGRESS = "no_progress", 1, f"work is left, but for {NO_PROGRESS:.0f} s nobody got a new route"
-    TIME_LIMIT = "time_limit", 1, "the time allowed is over"
-    TEAM_LOST = "team_lost", 1, "nobody is alive"
+    TIME_LIMIT = "time_limit", 1, "--max-time, or the time of the scenario, is over"
+    TEAM_LOST = "team_lost", 1, "none of the team is alive"
     MAPS_DIFFER = "maps_differ", 1, "all are done, but they hold different maps"
     ORDERED = "ordered", 0, "the operator ordered the end"
-    INTERRUPTED = "interrupted", 130, "the run was interrupted"
+    INTERRUPTED = "interrupted", 130, "it was interrupted; the files hold what was done until then"
 
     @property
     def completed(self) -> bool:

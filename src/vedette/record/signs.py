@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,11 +13,11 @@ from matplotlib.legend_handler import HandlerTuple
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.transforms import ScaledTranslation
-from numpy.typing import NDArray
 
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.record import palette
 from vedette.record.links import Link
+from vedette.record.log import VehicleSample
 
 INK = palette.unit(palette.INK)
 FAINT = palette.unit(palette.FAINT)
@@ -27,58 +27,46 @@ _OTHER: Any = {"color": INK, "lw": 0.9, "alpha": 0.3}
 _ROUND = (0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000, 50_000, 100_000)
 
 
-class Placed(Protocol):
-    """What is somewhere at one moment."""
+class Disc(NamedTuple):
+    """Sizes of a vehicle's sign [pt]."""
 
-    @property
-    def x(self) -> float:
-        """[m]."""
-
-    @property
-    def y(self) -> float:
-        """[m]."""
+    size: float
+    nose: float
+    ahead: float  # of the disc's middle: the nose
+    font: float
 
 
-class Sample(Placed, Protocol):
-    """A vehicle at one moment."""
-
-    @property
-    def heading(self) -> float:
-        """[rad]."""
-
-    @property
-    def alive(self) -> bool:
-        """Whether it still flies."""
-
-    @property
-    def path(self) -> NDArray[np.float64]:
-        """``(k, 2)`` its plan [m]."""
+VEHICLE, ROBOT = Disc(10, 6.5, 6.6, 6.5), Disc(11, 7, 7.2, 7)
 
 
-def draw_vehicle(axes: Axes, index: int, vehicle: Sample) -> None:
+def draw_vehicle(axes: Axes, index: int, vehicle: VehicleSample) -> None:
     """Draw a numbered disc with a nose, and the plan ahead of it; a cross if it is lost."""
+    if vehicle.alive:
+        axes.plot(*vehicle.path.T, color="white", lw=2.4, alpha=0.8, zorder=5)
+        colour = palette.unit(palette.robot_colour(index))
+        axes.plot(*vehicle.path.T, color=colour, lw=1.4, ls=DASHES, zorder=5)
+    draw_disc(axes, index, vehicle, VEHICLE)
+
+
+def draw_disc(axes: Axes, index: int, vehicle: VehicleSample, disc: Disc) -> None:
+    """Draw a numbered disc with a nose that points where the vehicle looks; a cross if it is lost."""
     rgb = palette.robot_colour(index)
-    colour = palette.unit(rgb)
+    colour, at = palette.unit(rgb), (vehicle.x, vehicle.y)
     if not vehicle.alive:
-        axes.plot(vehicle.x, vehicle.y, "X", color=colour, mec="white", mew=0.8, ms=10, zorder=6)
+        axes.plot(*at, "X", color=colour, mec="white", mew=0.8, ms=disc.size, zorder=6)
         return
-    axes.plot(*vehicle.path.T, color="white", lw=2.4, alpha=0.8, zorder=5)
-    axes.plot(*vehicle.path.T, color=colour, lw=1.4, ls=DASHES, zorder=5)
-    ahead = np.array((math.cos(vehicle.heading), math.sin(vehicle.heading))) * 6.6 / 72
+    ahead = np.array((math.cos(vehicle.heading), math.sin(vehicle.heading))) * disc.ahead / 72
     nose = axes.transData + ScaledTranslation(ahead[0], ahead[1], axes.figure.dpi_scale_trans)
     turned = (3, 0, math.degrees(vehicle.heading) - 90)
-    axes.plot(
-        vehicle.x, vehicle.y, marker=turned, ms=6.5, color=colour, mec="white", mew=0.7, zorder=6,
-        transform=nose,
-    )  # fmt: skip
-    axes.plot(vehicle.x, vehicle.y, "o", color=colour, mec="white", mew=0.9, ms=10, zorder=7)
+    axes.plot(*at, marker=turned, ms=disc.nose, color=colour, mec="white", mew=0.7, zorder=6, transform=nose)
+    axes.plot(*at, "o", color=colour, mec="white", mew=0.9, ms=disc.size, zorder=7)
     axes.annotate(
-        str(index + 1), (vehicle.x, vehicle.y), (0, -0.3), textcoords="offset points", ha="center",
-        va="center", fontsize=6.5, fontweight="bold", color=palette.unit(palette.text_on(rgb)), zorder=8,
+        str(index + 1), at, (0, -0.3), textcoords="offset points", ha="center", va="center",
+        fontsize=disc.font, fontweight="bold", color=palette.unit(palette.text_on(rgb)), zorder=8,
     )  # fmt: skip
 
 
-def draw_links(axes: Axes, robots: Sequence[Placed], links: Sequence[Link]) -> None:
+def draw_links(axes: Axes, robots: Sequence[VehicleSample], links: Sequence[Link]) -> None:
     """Draw lines between robots, under their discs: on the tree solid, other links faint."""
     for link in sorted(links, key=lambda link: link.on_tree):
         x, y = zip(*((robots[i].x, robots[i].y) for i in (link.a, link.b)), strict=True)
@@ -125,6 +113,11 @@ def legend_line(figure: Figure, x: float, y: float, handles: Sequence[Any], labe
         frameon=False, borderpad=0, borderaxespad=0, columnspacing=1.5, handletextpad=0.6,
         handler_map={tuple: HandlerTuple(1, 0)},
     )  # fmt: skip
+
+
+def explain(figure: Figure, x: float, y: float, signs: Sequence[Line2D | Patch]) -> None:
+    """Write a line of a legend from signs that have labels."""
+    legend_line(figure, x, y, signs, [str(sign.get_label()) for sign in signs])
 
 
 def scale_bar(figure: Figure, x: float, y: float, metres: float, inches: float) -> None:
