@@ -20,7 +20,7 @@ INSTALLED := $(VENV)/.installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help explore test test-all check lint types contracts rust-lint bench fuzz missions figures api dist build ready ready-dev clean
+.PHONY: help explore test test-all check lint types contracts rust-lint bench fuzz missions figures schemas api dist build ready ready-dev clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -63,6 +63,9 @@ missions: ready-dev ## Run the table of missions beside the yardsticks (long)
 
 figures: ready-dev ## Run the missions that the documents quote; record their figures and pictures
 	@$(PY) -m bench.figures $(if $(wildcard $(MAPS)),--maps $(MAPS)) $(ARGS)
+
+schemas: ready-dev ## Write the schema of every JSON that is written into docs/schemas
+	@PYTHONPATH=. $(PY) tools/schemas.py docs/schemas
 
 api: ready-dev ## Write the API reference from the docstrings into build/api
 	@$(PY) tools/api_reference.py build/api

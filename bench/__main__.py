@@ -8,11 +8,10 @@ from pathlib import Path
 import click
 
 from bench import RESULTS, command, machine
-from bench.criteria import Criterion, Measurement, verdicts
+from bench.criteria import BenchReport, Criterion, Measurement, verdicts
 from bench.frontiers import Effort, measure_frontiers
 from bench.scale import report as scale
 from bench.speed import Run, run_mission
-from vedette.record.files import write_json
 
 SMALL, LARGE = (30.0, 20.0), (100.0, 100.0)  # of offices at 0.1 m: 200x300 and 1000x1000 cells [m]
 FULL_EFFORT = {SMALL: Effort(5, 2000, 5), LARGE: Effort(3, 500, 3)}
@@ -43,7 +42,8 @@ def bench(quick: bool, date: str | None, out: Path) -> None:
     click.echo("\n" + verdicts(measurements))
     click.echo("ratio: how many times better than asked")
     path = folder / ("bench-quick.json" if quick else "bench.json")
-    write_json(path, report(about, quick, measurements))
+    judged = tuple(each.judged() for each in measurements)
+    BenchReport(about=about, quick=quick, measurements=judged).write(path)
     click.echo(f"written: {path}\n")
     click.echo(scale.run(folder, about, quick, progress))
 
@@ -104,11 +104,6 @@ def sent(criterion: Criterion, runs: Sequence[Run], kilobytes: Callable[[Run], f
     """Judge the robot that sent most in any of the missions."""
     each = ", ".join(f"{kilobytes(run):.0f}" for run in runs)
     return Measurement(criterion, max(map(kilobytes, runs)), f"most of any robot; by seed {each} kB")
-
-
-def report(about: dict[str, str], quick: bool, measurements: Sequence[Measurement]) -> dict[str, object]:
-    """Return what is written as JSON."""
-    return about | {"quick": quick, "measurements": [each.plain() for each in measurements]}
 
 
 if __name__ == "__main__":

@@ -7,11 +7,13 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
 from vedette.errors import InputError
 from vedette.maps.world import World
+from vedette.record.summary import SCHEMA_VERSION
 from vedette.sim.explore.run import explore, prepare
 from vedette.sim.explore.simulation import ExploreSetup
 from vedette.sim.worlds import office
@@ -65,6 +67,7 @@ class Result:
     path_m: float  # of a robot, on average
     wall_s: float
     commit: str
+    schema_version: Literal[3] = SCHEMA_VERSION
 
     @property
     def key(self) -> Key:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 
 from bench.table import figure, markdown
+from vedette.record.summary import Figures
 
 
 @dataclass(frozen=True)
@@ -60,11 +62,27 @@ class Measurement:
             self.note,
         )
 
-    def plain(self) -> dict[str, object]:
-        """Return what is written as JSON; what is not a finite number becomes null."""
-        finite = self.measured is not None and math.isfinite(self.measured)
-        measured = self.measured if finite else None
-        return asdict(self.criterion) | {"measured": measured, "verdict": self.verdict, "note": self.note}
+    def judged(self) -> Judged:
+        """Return what is written as JSON."""
+        return Judged(**asdict(self.criterion), measured=self.measured, verdict=self.verdict, note=self.note)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Judged(Criterion):
+    """A criterion with its figure, as a file has it."""
+
+    measured: float | None  # None: nothing, or no finite number
+    verdict: str
+    note: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class BenchReport(Figures):
+    """The file of a bench."""
+
+    about: Mapping[str, str]  # machine, versions, commit
+    quick: bool
+    measurements: tuple[Judged, ...]
 
 
 def verdicts(measurements: list[Measurement]) -> str:

@@ -15,7 +15,7 @@ import click
 import numpy as np
 
 from bench import RESULTS, command, machine
-from bench.criteria import Criterion, Measurement, verdicts
+from bench.criteria import BenchReport, Criterion, Measurement, verdicts
 from tests.support.net_processes import (
     Chain,
     Diary,
@@ -32,7 +32,6 @@ from tests.support.net_processes import (
 from vedette.cli.team import SPEED
 from vedette.maps.world import World
 from vedette.net.launch import TeamProcesses
-from vedette.record.files import write_json
 from vedette.sim.explore.run import explore, prepare
 from vedette.sim.explore.simulation import ExploreSetup
 from vedette.sim.worlds import office
@@ -64,7 +63,8 @@ def network(quick: bool, speed: float, date: str | None, out: Path) -> None:
     about |= {"load_after": _load()}
     click.echo(f"\nload {about['load_before']} before, {about['load_after']} after\n{verdicts(measurements)}")
     path = folder / ("network-quick.json" if quick else "network.json")
-    write_json(path, about | {"quick": quick, "measurements": [each.plain() for each in measurements]})
+    judged = tuple(each.judged() for each in measurements)
+    BenchReport(about=about, quick=quick, measurements=judged).write(path)
     click.echo(f"written: {path}")
 
 

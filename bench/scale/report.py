@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import asdict
+from dataclasses import dataclass
 from pathlib import Path
 
-from bench.criteria import verdicts
+from bench.criteria import BenchReport, verdicts
 from bench.scale.picture import scale_png
-from bench.scale.series import QUICK_SIZES, SIZES, rows
+from bench.scale.series import QUICK_SIZES, SIZES, Row, rows
 from bench.scale.tables import brief, full
 from bench.scale.verdicts import judge
-from vedette.record.files import write_json, write_text
+from vedette.record.files import write_text
+
+
+@dataclass(frozen=True, kw_only=True)
+class ScaleReport(BenchReport):
+    """``scale.json``."""
+
+    rows: tuple[Row, ...]
 
 
 def run(folder: Path, about: Mapping[str, str], quick: bool, progress: Callable[[str], None]) -> str:
@@ -19,15 +26,8 @@ def run(folder: Path, about: Mapping[str, str], quick: bool, progress: Callable[
     table = list(rows(QUICK_SIZES if quick else SIZES, progress))
     judged = judge(table)
     path = folder / ("scale-quick.json" if quick else "scale.json")
-    write_json(
-        path,
-        {
-            **about,
-            "quick": quick,
-            "measurements": [each.plain() for each in judged],
-            "rows": [asdict(row) for row in table],
-        },
-    )
+    measurements = tuple(each.judged() for each in judged)
+    ScaleReport(about=about, quick=quick, measurements=measurements, rows=tuple(table)).write(path)
     write_text(path.with_suffix(".md"), f"{full(table)}\n{verdicts(judged)}")
     scale_png(table, path.with_suffix(".png"))
     return f"{brief(table)}\n{verdicts(judged)}\nwritten: {path}, and beside it .md and .png"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 from statistics import fmean, median
@@ -12,11 +12,11 @@ import click
 import numpy as np
 
 from bench import RESULTS, command, machine
-from bench.criteria import Criterion, Measurement, verdicts
+from bench.criteria import BenchReport, Criterion, Measurement, verdicts
 from bench.stonesoup.managers import ANY, BRUTE, GREEDY, LOG_DET, MANAGERS, OURS, Decision, compare
 from bench.stonesoup.scenario import scene
 from bench.table import figure, markdown
-from vedette.record.files import write_json, write_text
+from vedette.record.files import write_text
 
 RADARS, LARGE = (1, 2, 3, 4, 8, 16), 16
 QUICK_SIZE = 16  # radars x targets up to which the slow managers take part in a smoke run
@@ -43,6 +43,13 @@ class Row:
         return (str(self.radars), str(self.targets), self.manager, *numbers, *shares, str(self.scenes))
 
 
+@dataclass(frozen=True, kw_only=True)
+class StoneSoupReport(BenchReport):
+    """``stonesoup.json``."""
+
+    rows: tuple[Row, ...]
+
+
 @click.command()
 @click.option(
     "--quick", is_flag=True, help="A smoke run: one scene a size, small teams for the slow managers."
@@ -61,7 +68,10 @@ def bench(quick: bool, scenes: int, out: Path) -> None:
     click.echo("\n" + text)
     name = "stonesoup-quick" if quick else "stonesoup"
     write_text(folder / f"{name}.md", text)
-    write_json(folder / f"{name}.json", report(about, rows, judged))
+    criteria = tuple(each.judged() for each in judged)
+    StoneSoupReport(about=about, quick=quick, measurements=criteria, rows=tuple(rows)).write(
+        folder / f"{name}.json"
+    )
     click.echo(f"written: {folder / name}.json, .md")
 
 
@@ -127,14 +137,6 @@ def judge(rows: Sequence[Row]) -> list[Measurement]:
             "; ".join(f"{row.manager}, {row.targets} targets {row.of_greedy:.3f}" for row in large),
         ),
     ]
-
-
-def report(
-    about: Mapping[str, str], rows: Sequence[Row], measurements: Sequence[Measurement]
-) -> dict[str, object]:
-    """Return what is written as JSON."""
-    criteria = [each.plain() for each in measurements]
-    return {**about, "rows": [asdict(row) for row in rows], "measurements": criteria}
 
 
 if __name__ == "__main__":

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import subprocess
 import sys
 from pathlib import Path
@@ -12,6 +11,7 @@ import pytest
 
 from bench.ablation import WHOLE, carry_out_variant, variants
 from tests.support.places import ROOT
+from tests.support.schemas import valid
 from vedette.sim.explore.simulation import ExploreSetup
 from vedette.study.run import GeneratedWorld, Run
 from vedette.team import PlatformSpec
@@ -26,7 +26,8 @@ def run(module: str, *arguments: str | Path) -> str:
 
 
 def measurements(path: Path) -> list[dict[str, Any]]:
-    rows: list[dict[str, Any]] = json.loads(path.read_text(encoding="utf-8"))["measurements"]
+    schema = path.stem.removesuffix("-quick").replace("scale", "bench-scale").replace("stone", "bench-stone")
+    rows: list[dict[str, Any]] = valid(schema, path.read_bytes())["measurements"]
     return rows
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -27,6 +26,7 @@ from bench.scale.series import (
 from bench.scale.tables import brief, full
 from bench.scale.team import Lots, Team
 from bench.scale.verdicts import judge
+from tests.support.schemas import valid
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.negotiation import Tree, negotiate
 
@@ -290,8 +290,8 @@ def test_the_report_is_written_as_json_table_and_picture(
     monkeypatch.setattr(series, "DOMAINS", {"tracking": DOMAINS["tracking"]})
     text = report.run(tmp_path, {"machine": "m"}, True, lambda _: None)
     assert "tracking, fixed area: bytes, n=64 to 16" in text
-    written = json.loads((tmp_path / "scale-quick.json").read_text())
-    assert written["machine"] == "m"
+    written = valid("bench-scale", (tmp_path / "scale-quick.json").read_bytes())
+    assert written["about"] == {"machine": "m"}
     clipped, whole = len(QUICK_SIZES), sum(n <= WHOLE_UP_TO for n in QUICK_SIZES)
     assert len(written["rows"]) == 4 * clipped + 5 * (clipped + whole)
     assert [each["name"] for each in written["measurements"] if each["verdict"] == "NOT MEASURED"] == [

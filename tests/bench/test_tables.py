@@ -14,12 +14,13 @@ from bench import __main__ as speed_command
 from bench import journal
 from bench.cases import MAP_ROBOTS, Case, Result, map_cases, office_cases
 from bench.command import WholeNumbers
-from bench.criteria import Criterion, Measurement, verdicts
+from bench.criteria import BenchReport, Criterion, Measurement, verdicts
 from bench.half_known import half_known
 from bench.missions import conduct, missions
 from bench.missions_table import JUDGED, judge, missions_table
 from bench.speed import Run, run_mission
 from bench.table import figure, markdown
+from tests.support.schemas import valid
 from vedette.errors import InputError
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.sim.worlds import office
@@ -107,8 +108,9 @@ def test_what_has_no_number_is_shown_and_written_as_none(measured: float | None,
         verdict,
         "why",
     ]
-    assert json.loads(json.dumps(without.plain(), allow_nan=False))["measured"] is None
-    assert without.plain()["verdict"] == verdict
+    file = BenchReport(about={}, quick=True, measurements=(without.judged(),))
+    (written,) = valid("bench", file.to_json())["measurements"]
+    assert (written["measured"], written["verdict"]) == (None, verdict)
 
 
 def test_a_table_has_lines_of_equal_length_and_marks_the_columns_on_the_right() -> None:
@@ -156,8 +158,9 @@ def test_each_criterion_is_held_against_the_worst_mission(run: Run) -> None:
 
 def test_the_report_is_json_with_machine_figures_and_verdicts() -> None:
     measured = [Measurement(Criterion("replan", 40.0, "ms"), 80.0, "p95")]
-    written = json.loads(json.dumps(speed_command.report({"machine": "m"}, False, measured)))
-    assert written["machine"] == "m"
+    judged = tuple(each.judged() for each in measured)
+    written = valid("bench", BenchReport(about={"machine": "m"}, quick=False, measurements=judged).to_json())
+    assert written["about"] == {"machine": "m"}
     assert written["quick"] is False
     assert written["measurements"] == [
         {
@@ -260,6 +263,7 @@ def test_the_journal_gives_back_what_was_put_in_and_forgets_what_it_is_told_to(t
     other = replace(RESULT, seed=1, t99_s=None, coverage=0.1 + 0.2)
     journal.append(path, RESULT)
     journal.append(path, other)
+    assert [valid("bench-mission", line)["world"] for line in path.read_text().splitlines()]
     assert journal.read(path) == {RESULT.key: RESULT, other.key: other}
     journal.forget(path, {RESULT.key})
     assert journal.read(path) == {other.key: other}

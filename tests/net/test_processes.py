@@ -35,6 +35,7 @@ from tests.support.net_processes import (
     terminate,
 )
 from tests.support.net_team import issue, real_time, wait_until
+from tests.support.schemas import valid
 from tests.support.small_missions import TWO_ROOMS, drawn, robots, small_maze
 from vedette.agent.body import TICK
 from vedette.agent.effects import Drive, Route
@@ -285,6 +286,7 @@ def test_the_operator_is_told_who_answers_on_what_tree_and_strangers_change_noth
         after = all_of(team)
         assert set(after) == set(before) == {"robot-1", "robot-2"}
         assert after["robot-1"]["number"] == before["robot-1"]["number"]
+        assert [link["robot"] for link in after["robot-1"]["links"]] == [1]  # type: ignore[attr-defined]
         assert "overlay" in ask(team).output  # in the column of what was dropped
         os.kill(team.processes[1].pid, signal.SIGKILL)
         wait_until(lambda: size_of(ask(team, "--json", "--wait", 0.5)) == 1, START)
@@ -295,7 +297,7 @@ def test_the_operator_is_told_who_answers_on_what_tree_and_strangers_change_noth
 
 
 def json_of(result: Result) -> dict[str, dict[str, object]]:
-    told: dict[str, dict[str, object]] = json.loads(result.output)
+    told: dict[str, dict[str, object]] = valid("status", result.output)["robots"]
     return told
 
 

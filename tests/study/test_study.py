@@ -15,6 +15,7 @@ import pyarrow.parquet as pq
 import pytest
 from rich.console import Console
 
+from tests.support.schemas import valid
 from vedette.cli.study import study
 from vedette.errors import InputError
 from vedette.sim.explore.simulation import ExploreSetup
@@ -349,6 +350,20 @@ def test_a_run_is_the_same_each_time(real: tuple[list[Run], Conducted, Path]) ->
     again = carry_out(all_runs[0])
     assert replace(again, timing={}) == replace(found.results[all_runs[0]], timing={})
     assert not again.error
+
+
+def test_a_file_of_a_run_is_by_its_schema_and_no_other_version_is_read(
+    real: tuple[list[Run], Conducted, Path], tmp_path: Path
+) -> None:
+    all_runs, _, out = real
+    files = sorted((out / "runs").glob("*.json"))
+    assert len(files) == len(all_runs)
+    for file in files:
+        assert valid("study-run", file.read_bytes())["result"]["figures"]["error"] == ""
+    store = Store.open(tmp_path / "old", "abc")
+    text = files[0].read_text().replace('"schema_version":3', '"schema_version":2')
+    store.path(all_runs[0]).write_text(text)
+    assert store.read(all_runs[0]) is None
 
 
 def test_the_tables_agree_and_wall_clock_figures_are_apart(real: tuple[list[Run], Conducted, Path]) -> None:

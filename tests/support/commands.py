@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import subprocess
 import sys
@@ -13,6 +12,7 @@ import pytest
 from mcap.reader import make_reader
 from PIL import Image
 
+from tests.support.schemas import valid
 from vedette.cli import main
 from vedette.maps import read_map
 
@@ -86,7 +86,7 @@ def check_files(folder: Path, command: str) -> None:
                 image.load()
                 assert min(image.size) > 100
         elif name.endswith(".json"):
-            json.loads((folder / name).read_text())
+            valid("timing" if name == "timing.json" else f"{command}-summary", (folder / name).read_bytes())
         elif name == "map.yaml":
             read_map(folder / name)
     with (folder / "run.mcap").open("rb") as file:

@@ -13,7 +13,7 @@ from vedette.errors import InputError
 from vedette.net.access import Access
 from vedette.net.config import ADMITTED, load_config
 from vedette.net.credentials import credentials
-from vedette.net.status import ask, status_json, status_table
+from vedette.net.status import ask, status_table, team_status
 from vedette.net.transport import Operator
 from vedette.outcome import Outcome
 
@@ -47,11 +47,10 @@ def status(config_paths: tuple[Path, ...], keys: Path | None, wait: float, as_js
     with Operator(access) as session:
         told = ask(session, [config.robot - 1 for config in configs], wait)
     if as_json:
-        click.echo(status_json(told), nl=False)
+        click.echo(team_status(told).to_json(), nl=False)
     else:
         Console().print(status_table(told))
     answered = [condition for condition in told.values() if condition is not None]
     agreed = len({condition.digest for condition in answered}) <= 1
-    raise SystemExit(
-        (Outcome.COMPLETE if agreed and len(answered) == len(told) else Outcome.MAPS_DIFFER).status
-    )
+    outcome = Outcome.COMPLETE if agreed and len(answered) == len(told) else Outcome.MAPS_DIFFER
+    raise SystemExit(outcome.status)

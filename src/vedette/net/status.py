@@ -5,8 +5,8 @@ from __future__ import annotations
 import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
-import msgspec
 from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
@@ -14,7 +14,7 @@ from rich.text import Text
 from vedette.net.names import robot_name
 from vedette.net.report import Condition, LinkReport, read_condition
 from vedette.net.transport import Operator
-from vedette.record.plain import json_text
+from vedette.record.summary import Figures
 
 ANSWER = 0.5  # for which an agent may think about its answer [s]
 
@@ -33,14 +33,16 @@ def ask(operator: Operator, robots: Sequence[int], wait: float) -> dict[int, Con
     return dict(sorted(told.items()))
 
 
-def status_json(told: Mapping[int, Condition | None]) -> str:
-    """Return everything that was told, by robot's name."""
-    return json_text(
-        {
-            robot_name(robot): None if said is None else msgspec.structs.asdict(said)
-            for robot, said in told.items()
-        }
-    )
+@dataclass(frozen=True, kw_only=True)
+class TeamStatus(Figures):
+    """Everything that was told, by robot's name; None for one that did not answer."""
+
+    robots: Mapping[str, Condition | None]
+
+
+def team_status(told: Mapping[int, Condition | None]) -> TeamStatus:
+    """Return what ``vedette status --json`` prints."""
+    return TeamStatus(robots={robot_name(robot): said for robot, said in told.items()})
 
 
 def status_table(told: Mapping[int, Condition | None]) -> RenderableType:

@@ -8,15 +8,18 @@ from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from typing import Any
 
+import msgspec
 import numpy as np
 
 DIGITS = 6
 
 
 def plain(value: Any) -> Any:
-    """Return ``value`` as JSON types: floats rounded, not finite ones ``None``, dataclasses objects."""
+    """Return ``value`` as JSON types: floats rounded, not finite ones ``None``, what has fields objects."""
     if is_dataclass(value) and not isinstance(value, type):
         return {f.name: plain(getattr(value, f.name)) for f in fields(value)}
+    if isinstance(value, msgspec.Struct):
+        return plain(msgspec.structs.asdict(value))
     if isinstance(value, Mapping):
         return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Final, Literal
 
 import numpy as np
 
@@ -13,12 +13,14 @@ from vedette.outcome import Outcome
 from vedette.record.files import write_text
 from vedette.record.plain import json_text
 
+SCHEMA_VERSION: Final = 3  # of all JSON; goes up when a field changes its meaning or goes away
+
 
 @dataclass(frozen=True, kw_only=True)
 class Figures:
     """A file of figures, its fields in the order declared; ``docs/schemas`` says what may be in it."""
 
-    schema_version: Literal[3] = 3  # goes up when a field changes its meaning or goes away
+    schema_version: Literal[3] = SCHEMA_VERSION
 
     def to_json(self) -> str:
         """Return the text of the file: floats to 6 decimals."""

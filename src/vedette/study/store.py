@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Literal
 
 import msgspec
 
 from vedette.errors import InputError
 from vedette.record.files import output_directory, write_text
+from vedette.record.summary import SCHEMA_VERSION
 from vedette.study.mission import Result
 from vedette.study.run import Run
 
@@ -40,13 +42,13 @@ class Store:
     def read(self, run: Run) -> Result | None:
         """Return the result of a run, ``None`` if there is none that can be read."""
         try:
-            return msgspec.json.decode(self.path(run).read_bytes(), type=_File).result
+            return msgspec.json.decode(self.path(run).read_bytes(), type=RunFile).result
         except (OSError, msgspec.DecodeError):
             return None
 
     def write(self, run: Run, result: Result) -> None:
         """Put the result of a run in place."""
-        file = _File(run=run.columns(), result=result)
+        file = RunFile(run=run.columns(), result=result)
         write_text(self.path(run), msgspec.json.encode(file).decode() + "\n")
 
     def others(self, runs: list[Run]) -> int:
@@ -56,6 +58,9 @@ class Store:
         )
 
 
-class _File(msgspec.Struct):
+class RunFile(msgspec.Struct, kw_only=True):
+    """The file of one run."""
+
+    schema_version: Literal[3] = SCHEMA_VERSION
     run: dict[str, str | int | float | bool | None]  # for people: the key says the same
     result: Result

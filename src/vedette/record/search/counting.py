@@ -36,8 +36,8 @@ def counted(times: NDArray[np.float64], trials: Trials) -> Counted:
     found = int(np.count_nonzero(trials.steps <= steps))
     low, high = wilson(found, count)
     spent = times[np.minimum(trials.steps, steps)]
-    half = _NORMAL * float(spent.std(ddof=1)) / np.sqrt(count) if count > 1 else float("nan")
     mean = float(spent.mean())
+    half = _NORMAL * float(spent.std(ddof=1)) / math.sqrt(count) if count > 1 else None
     return Counted(
         count,
         trials.of,
@@ -45,8 +45,8 @@ def counted(times: NDArray[np.float64], trials: Trials) -> Counted:
         low,
         high,
         mean,
-        mean - half,
-        mean + half,
+        None if half is None else mean - half,
+        None if half is None else mean + half,
         dkw(count),
         trials.mistaken,
     )

@@ -45,8 +45,8 @@ class Counted:
     detection_low: float
     detection_high: float
     mean_time_s: float
-    mean_time_low_s: float
-    mean_time_high_s: float
+    mean_time_low_s: float | None  # None: of a single trial
+    mean_time_high_s: float | None
     band: float
     mistaken: int
 
