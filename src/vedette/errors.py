@@ -5,6 +5,8 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable, Mapping
 
+from vedette.number import is_number
+
 Limits = tuple[float, float, str]  # lowest, highest, unit
 
 
@@ -33,6 +35,12 @@ def check_limits(thing: object, limits: Mapping[str, Limits]) -> None:
     """Raise InputError for the first of these fields that is not within its limits, the ends included."""
     for field, (low, high, unit) in limits.items():
         value = getattr(thing, field)
-        if not low <= value <= high:
-            span = f"{low:g} to {high:g} {unit}".rstrip()
-            raise InputError(f"{field} must be {span}; got {value}")
+        if not is_number(value) or not low <= value <= high:
+            span, got = f"{low:g} to {high:g} {unit}".rstrip(), value if is_number(value) else brief(value)
+            raise InputError(f"{field} must be {span}; got {got}")
+
+
+def brief(value: object, limit: int = 120) -> str:
+    """Return what ``repr`` tells of a value, on one line, cut where it is long."""
+    text = " ".join(repr(value).split())
+    return text if len(text) <= limit else f"{text[: limit - 3]}..."

@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 import copy
-import dataclasses
 import itertools
-from collections.abc import Mapping, Sequence
-from typing import Any, cast
+from collections.abc import Callable, Sequence
+from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
-from vedette.errors import InputError
+from vedette.errors import InputError, brief
+from vedette.number import is_number
 from vedette.problem import Invertible, Objective
+from vedette.problem.alike import copied, equal
+from vedette.problem.checked import number_of, numbers_of
+from vedette.problem.door import check_belief, check_impacts, check_list
 from vedette.problem.objective import BeliefT, ImpactT
+
+ResultT = TypeVar("ResultT")
 
 MOST_IN_TRIPLES = 8  # laws of three impacts are tried on the first so many
 
@@ -32,21 +38,27 @@ def check_objective(
 
     Laws: arguments unchanged; identity; commutative; associative; value 0 at nothing; ``values`` agrees
     with ``value``; ``remove`` undoes ``combine`` where there is one; monotone and diminishing returns where
-    declared. Integers must agree exactly, floats to ``tolerance`` (relative where above 1). Impacts may be
-    arrays, numbers, collections, dataclasses, or anything with ``==``.
+    declared. Integers must agree exactly, floats to the share ``tolerance`` of the largest in the same part
+    of the examples, values to that of the largest value. Impacts may be arrays, numbers, collections,
+    dataclasses, or anything with ``==``.
 
     Args:
         objective: the plug-in.
         belief: a belief it takes.
         impacts: examples, best a handful that differ, with extremes among them.
-        tolerance: for floats.
+        tolerance: for floats, as a share.
 
     Raises:
         LawBroken: the first law that fails.
-        InputError: no impacts.
+        InputError: no impacts, or a belief or impacts that the objective refuses.
     """
+    check_belief(objective, belief)
+    check_list(impacts, "impacts", "a list of examples")
     if len(impacts) == 0:
         raise InputError("check_objective: impacts is empty; give at least one example")
+    check_impacts(objective, belief, impacts, "impacts")
+    if not is_number(tolerance) or tolerance < 0.0:
+        raise InputError(f"tolerance must be a number >= 0; got {brief(tolerance)}")
     laws = _Laws(objective, belief, list(impacts), tolerance)
     laws.leaves_arguments_alone()
     laws.monoid()
@@ -61,22 +73,32 @@ class _Laws:
     def __init__(
         self, objective: Objective[Any, Any], belief: object, impacts: list[Any], tolerance: float
     ) -> None:
+        for i, impact in enumerate(impacts):
+            if not equal(copy.deepcopy(impact), impact):
+                kind = type(impact).__name__
+                raise InputError(f"impacts[{i}] does not equal its own copy; give {kind} an __eq__ by value")
         self.objective = objective
         self.belief = belief
         self.impacts = impacts
         self.some = list(enumerate(impacts))[:MOST_IN_TRIPLES]
         self.tolerance = tolerance
         self.nothing = objective.nothing(belief)
+        self.worth = 0.0  # size of the largest value of an example
 
     def leaves_arguments_alone(self) -> None:
-        """No function changes what it is given: impacts are shared between messages."""
+        """No function changes what it is given or has returned: impacts are shared between messages."""
+        belief, last, kept_last = copied(self.belief), None, None
         for (i, a), (j, b) in itertools.product(self.some, repeat=2):
             kept = copy.deepcopy((a, b))
-            self.objective.combine(a, b)
-            self._same((a, b), kept, f"combine(impacts[{i}], impacts[{j}]) changes an argument")
+            both = self.objective.combine(a, b)
+            self._unchanged((a, b), kept, f"combine(impacts[{i}], impacts[{j}]) changes an argument")
+            self._unchanged(last, kept_last, f"combine(impacts[{i}], impacts[{j}]) changes an earlier result")
+            last, kept_last = both, copy.deepcopy(both)
             self.objective.value(self.belief, a)
             self.objective.values(self.belief, a, [b])
-            self._same((a, b), kept, f"value or values of impacts[{i}] changes an argument")
+            self._unchanged((a, b), kept, f"value or values of impacts[{i}] changes an argument")
+        if belief is not self.belief and not equal(self.belief, belief):
+            raise LawBroken("value or values changes the belief")
 
     def monoid(self) -> None:
         """``*`` has an identity, commutes and associates."""
@@ -86,87 +108,87 @@ class _Laws:
             self._same(combine(e, a), a, f"combine(nothing, impacts[{i}]) != impacts[{i}]")
         for (i, a), (j, b) in itertools.combinations(enumerate(self.impacts), 2):
             law = f"combine is not commutative: (impacts[{i}], impacts[{j}]) against the reverse"
-            self._same(combine(a, b), combine(b, a), law)
+            self._same(combine(a, b), combine(b, a), law, a, b)
         for (i, a), (j, b), (k, c) in itertools.product(self.some, repeat=3):
             law = (
                 f"combine is not associative: impacts[{i}] * impacts[{j}] * impacts[{k}], left against right"
             )
-            self._same(combine(combine(a, b), c), combine(a, combine(b, c)), law)
+            self._same(combine(combine(a, b), c), combine(a, combine(b, c)), law, a, b, c)
 
     def inverse(self) -> None:
         """``remove`` undoes ``combine``, where there is one."""
         if not isinstance(self.objective, Invertible):
             return
         for (i, a), (j, b) in itertools.product(enumerate(self.impacts), repeat=2):
-            left = self.objective.remove(self.objective.combine(a, b), b)
-            self._same(left, a, f"remove(combine(impacts[{i}], impacts[{j}]), impacts[{j}]) != impacts[{i}]")
+            both = self.objective.combine(a, b)
+            kept, removed = (
+                copy.deepcopy((both, b)),
+                f"remove(combine(impacts[{i}], impacts[{j}]), impacts[{j}])",
+            )
+            left = self.objective.remove(both, b)
+            self._unchanged((both, b), kept, f"{removed} changes an argument")
+            self._same(left, a, f"{removed} != impacts[{i}]", b)
 
     def values(self) -> None:
         """``psi`` is 0 at nothing, and ``values`` agrees with it."""
-        self._same(self.objective.value(self.belief, self.nothing), 0.0, "value(nothing) != 0")
+        self.worth = max(abs(self._value(a, f"impacts[{i}]")) for i, a in enumerate(self.impacts))
+        self._close(self._value(self.nothing, "nothing"), 0.0, "value(nothing) != 0")
         if np.shape(self.objective.values(self.belief, self.nothing, [])) != (0,):
             raise LawBroken("values of no impacts must have shape (0,)")
-        for name, others in [("nothing", self.nothing), *((f"impacts[{i}]", a) for i, a in self.some)]:
-            many = np.asarray(self.objective.values(self.belief, others, self.impacts))
-            if many.shape != (len(self.impacts),):
-                raise LawBroken(f"values has shape {many.shape} for {len(self.impacts)} impacts")
+        for name, others in self._bases():
+            many = self._values(others, name)
             for k, own in enumerate(self.impacts):
-                one = self.objective.value(self.belief, self.objective.combine(others, own))
-                self._same(float(many[k]), float(one), f"values({name}, impacts)[{k}] != value(combine(...))")
+                one = self._value(self.objective.combine(others, own), f"combine({name}, impacts[{k}])")
+                self._close(float(many[k]), one, f"values({name}, impacts)[{k}] != value(combine(...))")
 
     def returns(self) -> None:
         """More never hurts, and brings less the more there is: where declared."""
-        bases = [("nothing", self.nothing), *((f"impacts[{i}]", a) for i, a in self.some)]
-        for name, base in bases:
-            gains = self._gains(base)
-            if self.objective.monotone and (gains < -self._slack(gains)).any():
+        for name, base in self._bases():
+            gains, rounding = self._gains(base, name)
+            if self.objective.monotone and (gains < -rounding).any():
                 k = int(np.argmin(gains))
                 raise LawBroken(f"not monotone: impacts[{k}] added to {name} gains {gains[k]:.9g}")
             for j, more in self.some if self.objective.submodular else []:
-                later = self._gains(self.objective.combine(base, more))
-                if (excess := later - gains - self._slack(gains)).max() > 0.0:
+                later, its = self._gains(self.objective.combine(base, more), f"combine({name}, impacts[{j}])")
+                if (excess := later - gains).max() > max(rounding, its):
                     k = int(np.argmax(excess))
                     raise LawBroken(
                         f"returns do not diminish: impacts[{k}] added to {name} gains {gains[k]:.9g}, "
                         f"after impacts[{j}] {later[k]:.9g}"
                     )
 
-    def _gains(self, base: object) -> np.ndarray[Any, np.dtype[np.float64]]:
-        values = np.asarray(self.objective.values(self.belief, base, self.impacts), dtype=np.float64)
-        return values - self.objective.value(self.belief, base)
+    def _bases(self) -> list[tuple[str, Any]]:
+        return [("nothing", self.nothing), *((f"impacts[{i}]", a) for i, a in self.some)]
 
-    def _slack(self, gains: np.ndarray[Any, np.dtype[np.float64]]) -> float:
-        return self.tolerance * max(1.0, float(np.abs(gains).max()))
+    def _gains(self, base: object, name: str) -> tuple[NDArray[np.float64], float]:
+        """Return what each impact adds to a base, and what of it may be rounding."""
+        value, values = self._value(base, name), self._values(base, name)
+        return values - value, self.tolerance * max(self.worth, abs(value), float(np.abs(values).max()))
 
-    def _same(self, a: object, b: object, law: str) -> None:
-        if not _alike(a, b, self.tolerance):
-            raise LawBroken(f"{law}: {_brief(a)} against {_brief(b)}")
+    def _value(self, impact: object, name: str) -> float:
+        returned = self.objective.value(self.belief, impact)
+        return _law(number_of, returned, f"value({name})")
 
+    def _values(self, others: object, name: str) -> NDArray[np.float64]:
+        returned = self.objective.values(self.belief, others, self.impacts)
+        return _law(numbers_of, returned, len(self.impacts), f"values({name}, impacts)")
 
-def _alike(a: object, b: object, tolerance: float) -> bool:
-    """Tell whether two impacts are equal: integers exactly, floats to the tolerance, the rest by parts."""
-    if isinstance(a, np.ndarray | np.generic | int | float | complex):
-        one, two = np.asarray(a), np.asarray(b)
-        if one.shape != two.shape:
-            return False
-        if one.dtype.kind in "fc" or two.dtype.kind in "fc":
-            return bool(np.allclose(one, two, rtol=tolerance, atol=tolerance, equal_nan=True))
-        return bool(np.array_equal(one, two))
-    if type(a) is not type(b):
-        return False
-    if isinstance(a, Mapping):
-        other = cast("Mapping[object, object]", b)
-        return a.keys() == other.keys() and all(_alike(a[key], other[key], tolerance) for key in a)
-    if isinstance(a, list | tuple):
-        others = cast("Sequence[object]", b)
-        return len(a) == len(others) and all(map(lambda x, y: _alike(x, y, tolerance), a, others))
-    if dataclasses.is_dataclass(a):
-        names = (field.name for field in dataclasses.fields(a))
-        return all(_alike(getattr(a, name), getattr(b, name), tolerance) for name in names)
-    return bool(a == b)
+    def _close(self, x: float, y: float, law: str) -> None:
+        if abs(x - y) > self.tolerance * max(self.worth, abs(x), abs(y)):
+            raise LawBroken(f"{law}: {x} against {y}")
+
+    def _same(self, a: object, b: object, law: str, *of: object) -> None:
+        if not equal(a, b, self.tolerance, *of):
+            raise LawBroken(f"{law}: {brief(a)} against {brief(b)}")
+
+    def _unchanged(self, used: object, kept: object, law: str) -> None:
+        if not equal(used, kept):
+            raise LawBroken(f"{law}: {brief(used)} against {brief(kept)}")
 
 
-def _brief(impact: object, limit: int = 120) -> str:
-    """Return the impact on one line, cut where it is long."""
-    text = " ".join(repr(impact).split())
-    return text if len(text) <= limit else f"{text[: limit - 3]}..."
+def _law(check: Callable[..., ResultT], *of: object) -> ResultT:
+    """Return what a check returns; what it refuses breaks a law."""
+    try:
+        return check(*of)
+    except InputError as wrong:
+        raise LawBroken(str(wrong)) from None

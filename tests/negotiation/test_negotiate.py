@@ -1,15 +1,14 @@
-"""The front door: codecs, sizes, schemes, determinism and bad input."""
+"""A whole negotiation: codecs, sizes, schemes, determinism."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 import pytest
 
 from tests.support.random_teams import Float, misses
-from vedette import CountedCoverage, Coverage, InputError, Objective, Tree, counted, exhaustive, negotiate
+from vedette import Coverage, InputError, Objective, Tree, exhaustive, negotiate
 from vedette.negotiation import SCHEMES, Message, decode, encode
 from vedette.negotiation.messages import Down, Gather, Outcome, Stop, Tally, Token, Up, plain_size
 
@@ -122,38 +121,3 @@ def test_candidates_may_be_one_array(scheme: str) -> None:
     lists = negotiate(Coverage(), run[0], candidates, *run[1:])
     array = negotiate(Coverage(), run[0], np.array(candidates), *run[1:])  # type: ignore[arg-type]
     assert lists == array
-
-
-class Endless(Coverage):
-    """Forgets to guard a logarithm."""
-
-    def value(self, belief: Float, impact: Float) -> float:
-        return float("inf")
-
-
-def test_bad_input_is_one_line_that_names_it() -> None:
-    w, see, miss = np.ones(1), np.zeros(1), np.ones(1)
-    two, pair = [[see], [miss]], Tree.chain(2)
-    whole: list[tuple[Callable[[], object], str]] = [
-        (lambda: negotiate(Coverage(), w, [], pair), "team needs at least one platform"),
-        (lambda: negotiate(Coverage(), w, [[see], []], pair), r"candidates\[1\] is empty"),
-        (lambda: negotiate(Coverage(), w, two, Tree.chain(3)), "2 lists for a tree of 3"),
-        (lambda: negotiate(Coverage(), w, two, pair, "tokn"), "unknown scheme 'tokn'; did you mean 'token'"),
-        (lambda: negotiate(Coverage(), w, two, pair, start=[0]), "start has 1 indexes for 2"),
-        (lambda: negotiate(Coverage(), w, two, pair, start=[0, 1]), r"start\[1\] = 1"),
-        (lambda: negotiate(Coverage(), w, two, pair, epsilon=float("nan")), "epsilon must be"),
-        (lambda: negotiate(Coverage(), w, two, pair, max_sweeps=0), "max_sweeps must be at least 1"),
-        (lambda: negotiate(Coverage(), w, two, pair, inverse=True), "belongs to scheme 'jacobi'"),
-        (lambda: negotiate(Coverage(), w, two, pair, "jacobi", inverse=True), r"needs Coverage.remove"),
-        (
-            lambda: negotiate(
-                CountedCoverage(), w, [[counted(see)]] * 4, Tree.star(4), "jacobi", inverse=True
-            ),
-            "needs a chain",
-        ),
-        (lambda: negotiate(Endless(), w, two, pair), r"Endless.values returned inf for own\[0\]"),
-    ]
-    for call, words in whole:
-        with pytest.raises(InputError, match=words) as caught:
-            call()
-        assert "\n" not in str(caught.value)

@@ -7,7 +7,7 @@ from typing import Generic
 
 import numpy as np
 
-from vedette.problem.bound import attains, slack
+from vedette.problem.bound import attains, slack_of
 from vedette.problem.checked import value_of, values_of
 from vedette.problem.objective import BeliefT, ImpactT, Objective
 from vedette.problem.reach import Clippable, Reach
@@ -28,13 +28,24 @@ class Chooser(Generic[BeliefT, ImpactT]):
         *,
         start: int | None = None,
         epsilon: float = 1e-9,
+        base: float = 0.0,
     ) -> None:
-        """Sit down with at least one candidate; epsilon is a share of the team's present value."""
+        """Sit down with at least one candidate.
+
+        Args:
+            objective: the team's ``*`` and ``psi``.
+            belief: what the value depends on.
+            candidates: own impacts.
+            start: index of the first candidate; without it none.
+            epsilon: a share of the team's present value.
+            base: ``psi`` of nothing, if that is not 0; values are gains over it.
+        """
         self.index = start
         self._objective = objective
         self._belief = belief
         self._candidates = candidates
         self._epsilon = epsilon
+        self._base = base
 
     @property
     def strategy(self) -> int | None:
@@ -53,7 +64,7 @@ class Chooser(Generic[BeliefT, ImpactT]):
 
     def reply(self, others: ImpactT) -> bool:
         """Take up the best candidate against the rest of the team if it is strictly better; tell if so."""
-        values = values_of(self._objective, self._belief, others, self._candidates)
+        values = values_of(self._objective, self._belief, others, self._candidates) - self._base
         best = int(np.argmax(values))
         if self.index is not None and attains(values[self.index], values[best], self._epsilon):
             return False
@@ -70,11 +81,11 @@ class Chooser(Generic[BeliefT, ImpactT]):
 
     def value(self, team: ImpactT) -> float:
         """``psi(team)``."""
-        return value_of(self._objective, self._belief, team)
+        return value_of(self._objective, self._belief, team) - self._base
 
     def slack(self, base: ImpactT) -> float:
         """Most that any candidate would add to ``base``; infinite unless monotone and submodular."""
-        return slack(self._objective, self._belief, base, self._candidates)
+        return slack_of(self._objective, self._belief, base, self._candidates)
 
     def clip(self, impact: ImpactT, reach: Reach) -> ImpactT:
         """Return what of an impact can matter within ``reach``; all of it if the objective cannot tell."""

@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
-import math
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import reduce
 
 import msgspec
 
-from vedette.errors import InputError
 from vedette.negotiation import messages
 from vedette.negotiation.chooser import Chooser
+from vedette.negotiation.door import check_codec, check_round, checked_reach, remover
 from vedette.negotiation.jacobi import JacobiNode
 from vedette.negotiation.node import Negotiator, Send
 from vedette.negotiation.schemes import node_of
 from vedette.negotiation.token import TokenNode
 from vedette.negotiation.tree import Tree
-from vedette.problem.checked import check_candidates, value_of
-from vedette.problem.objective import BeliefT, Codec, ImpactT, Invertible, Objective
-from vedette.problem.reach import Clippable, Reach, behind, join
+from vedette.problem.checked import value_of
+from vedette.problem.door import check_choice, check_problem
+from vedette.problem.objective import BeliefT, Codec, ImpactT, Objective
+from vedette.problem.reach import Reach, behind, join
+from vedette.problem.trial import Trial
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ class Negotiation:
     """What a team agreed on, and what that took."""
 
     choice: tuple[int, ...]  # candidate index of each platform
-    value: float  # of the choice, in the objective's unit
+    value: float  # of the choice over nothing, in the objective's unit
     bound: float | None  # the optimum is no higher; None: the objective declares too little
     sweeps: int  # in which platforms replied
     messages: int  # sent in all
@@ -84,14 +85,22 @@ def negotiate(
             are for cannot reach: no choice changes. The token's messages only; telling the reaches counts.
 
     Raises:
-        InputError: bad arguments, or an objective whose value is not a finite number.
+        InputError: bad arguments, the line names platform, index and value; or an objective that changes what
+            it is given, has another identity than nothing, or a value that is not a finite number. What an
+            objective raises itself passes through.
     """
-    _check(candidates, tree, start, epsilon, max_sweeps)
-    _check_reach(objective, tree, scheme, reach)
-    remove = _remover(objective, tree, scheme) if inverse else None
+    check_problem(objective, belief, candidates)
+    check_round(tree, len(candidates), scheme, epsilon, max_sweeps, inverse)
+    begun = [None] * tree.n if start is None else check_choice(start, candidates, "start")
+    reach = None if reach is None else checked_reach(objective, tree, scheme, reach)
+    remove = remover(objective, tree, scheme) if inverse else None
+    if codec is not None:
+        check_codec(objective, belief, codec, candidates[0][0])
+    _try_out(objective, belief, candidates, inverse, reach)
+    base = value_of(objective, belief, objective.nothing(belief))
     seats = [
-        Chooser(objective, belief, own, start=None if start is None else start[i], epsilon=epsilon)
-        for i, own in enumerate(candidates)
+        Chooser(objective, belief, own, start=first, epsilon=epsilon, base=base)
+        for own, first in zip(candidates, begun, strict=True)
     ]
     root = next(i for i in range(tree.n) if len(tree.neighbours(i)) <= 1) if inverse else 0  # a chain's end
     parents = tree.parents(root)
@@ -120,10 +129,26 @@ def negotiate(
         sweeps=outcome.sweeps,
         messages=told + sent,
         bytes=told_size + size,
-        history=(Step(0, None, value_of(objective, belief, before)), *_steps(nodes)),
+        history=(Step(0, None, seats[0].value(before)), *_steps(nodes)),
         converged=outcome.converged,
         cycle=outcome.cycle,
     )
+
+
+def _try_out(
+    objective: Objective[BeliefT, ImpactT],
+    belief: BeliefT,
+    candidates: Sequence[Sequence[ImpactT]],
+    inverse: bool,
+    reach: Sequence[Reach] | None,
+) -> None:
+    """Raise ``InputError`` for an objective that two of the candidates show not to be believed."""
+    trial = Trial(objective, belief, candidates)
+    trial.laws()
+    if inverse:
+        trial.inverse()
+    if reach is not None:
+        trial.clip(reach[0])
 
 
 def _deliver(nodes: Sequence[Negotiator[ImpactT]], codec: Codec[ImpactT] | None) -> tuple[int, int]:
@@ -187,60 +212,3 @@ def _steps(nodes: Sequence[TokenNode[ImpactT] | JacobiNode[ImpactT]]) -> list[St
         else:  # only the root has any
             iterates.extend(Step(sweep, None, value) for sweep, value in enumerate(node.values) if sweep > 0)
     return iterates + [Step(-(-k // n), i, value) for k, i, value in sorted(turns)]
-
-
-def _remover(
-    objective: Objective[BeliefT, ImpactT], tree: Tree, scheme: str
-) -> Callable[[ImpactT, ImpactT], ImpactT]:
-    """Return ``objective.remove`` for the paper's own sweep; ``InputError`` where that cannot run."""
-    if scheme != "jacobi":
-        raise InputError(f"inverse=True belongs to scheme 'jacobi'; got {scheme!r}")
-    if not tree.is_chain:
-        raise InputError("inverse=True needs a chain; use Tree.chain(n), or leave inverse out on other trees")
-    if not isinstance(objective, Invertible):
-        raise InputError(
-            f"inverse=True needs {type(objective).__name__}.remove(total, own); leave inverse out"
-        )
-    return objective.remove
-
-
-def _check_reach(
-    objective: Objective[BeliefT, ImpactT], tree: Tree, scheme: str, reach: Sequence[Reach] | None
-) -> None:
-    """Raise ``InputError`` if messages cannot be clipped."""
-    if reach is None:
-        return
-    if scheme != "token":
-        raise InputError(f"reach belongs to scheme 'token'; got {scheme!r}; leave reach out")
-    if not isinstance(objective, Clippable):
-        raise InputError(f"reach needs {type(objective).__name__}.clip(belief, impact, reach); leave it out")
-    if len(reach) != tree.n:
-        raise InputError(f"reach has {len(reach)} entries for {tree.n} platforms; give one each")
-    for i, boxes in enumerate(reach):
-        for box in boxes:
-            if len(box) != 4 or not (box[0] <= box[2] and box[1] <= box[3]):
-                raise InputError(f"reach[{i}] has {box}; a box is lowest x, lowest y, highest x, highest y")
-
-
-def _check(
-    candidates: Sequence[Sequence[ImpactT]],
-    tree: Tree,
-    start: Sequence[int] | None,
-    epsilon: float,
-    max_sweeps: int,
-) -> None:
-    """Raise ``InputError`` for arguments that cannot be negotiated."""
-    check_candidates(candidates)
-    if len(candidates) != tree.n:
-        raise InputError(f"candidates has {len(candidates)} lists for a tree of {tree.n}; give one each")
-    if start is not None and len(start) != tree.n:
-        raise InputError(f"start has {len(start)} indexes for {tree.n} platforms; give one each, or None")
-    for i, k in enumerate(start or ()):
-        if not 0 <= k < len(candidates[i]):
-            raise InputError(
-                f"start[{i}] = {k}, but platform {i} has candidates 0 to {len(candidates[i]) - 1}"
-            )
-    if not (math.isfinite(epsilon) and epsilon >= 0.0):
-        raise InputError(f"epsilon must be a number >= 0; got {epsilon}")
-    if max_sweeps < 1:
-        raise InputError(f"max_sweeps must be at least 1; got {max_sweeps}")

@@ -7,8 +7,10 @@ from collections.abc import Sequence
 from functools import reduce
 
 from vedette.errors import InputError
-from vedette.problem.checked import check_candidates, value_of, values_of
+from vedette.problem.checked import value_of, values_of
+from vedette.problem.door import check_belief, check_choice, check_own, check_problem
 from vedette.problem.objective import BeliefT, ImpactT, Objective
+from vedette.problem.trial import Trial
 
 
 def slack(
@@ -18,7 +20,21 @@ def slack(
 
     Infinite unless the objective declares itself monotone and submodular: then nothing is promised.
     Source: docs/theory.md (V12).
+
+    Raises:
+        InputError: bad arguments, or an objective whose value is not a finite number.
     """
+    check_belief(objective, belief)
+    check_own(objective, belief, own, "own", "the platform")
+    if (wrong := objective.wrong_impact(belief, [base])) is not None:
+        raise InputError(f"base: {wrong[1]}")
+    return slack_of(objective, belief, base, own)
+
+
+def slack_of(
+    objective: Objective[BeliefT, ImpactT], belief: BeliefT, base: ImpactT, own: Sequence[ImpactT]
+) -> float:
+    """Return `slack` of what has been checked."""
     if not (objective.monotone and objective.submodular):
         return math.inf
     gain = float(values_of(objective, belief, base, own).max()) - value_of(objective, belief, base)
@@ -37,20 +53,17 @@ def bound(
     ``None`` unless the objective is monotone and submodular. Source: docs/theory.md (V12).
 
     Raises:
-        InputError: no platform, a platform without candidates, a choice that is not one index per platform.
+        InputError: as `negotiate`, or a choice that is not one index per platform.
     """
-    check_candidates(candidates)
-    if len(choice) != len(candidates):
-        raise InputError(f"choice has {len(choice)} indexes for {len(candidates)} platforms; give one each")
-    for i, (k, own) in enumerate(zip(choice, candidates, strict=True)):
-        if not 0 <= k < len(own):
-            raise InputError(f"choice[{i}] = {k}, but platform {i} has candidates 0 to {len(own) - 1}")
+    check_problem(objective, belief, candidates)
+    choice = check_choice(choice, candidates, "choice")
+    Trial(objective, belief, candidates).laws()
     nobody = objective.nothing(belief)
     chosen = [own[k] for k, own in zip(choice, candidates, strict=True)]
     team = reduce(objective.combine, chosen, nobody)
-    value = value_of(objective, belief, team)
-    ceiling = sum(slack(objective, belief, nobody, own) for own in candidates)
-    above = value + sum(slack(objective, belief, team, own) for own in candidates)
+    value = value_of(objective, belief, team) - value_of(objective, belief, nobody)
+    ceiling = sum(slack_of(objective, belief, nobody, own) for own in candidates)
+    above = value + sum(slack_of(objective, belief, team, own) for own in candidates)
     return tightest(value, ceiling, above)
 
 

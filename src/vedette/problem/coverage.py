@@ -8,9 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.errors import InputError
+from vedette.problem.arrays import LARGEST, first_misfit, misfit
 from vedette.problem.objective import Objective
 
 _UNIT = 2.0**-32  # of a counted log-miss [nat]: fine enough to be invisible, coarse enough never to overflow
+_MOST = 2**42  # of an impact: the log-miss of the least float, 2^41.5 units, is below
+_MISSES = "miss probabilities"
 
 
 class Coverage(Objective[NDArray[np.float64], NDArray[np.float64]]):
@@ -45,6 +48,16 @@ class Coverage(Objective[NDArray[np.float64], NDArray[np.float64]]):
         gains = np.array([np.vdot(left, 1.0 - k) for k in own], dtype=np.float64)
         return self.value(belief, others) + gains
 
+    def wrong_belief(self, belief: NDArray[np.float64]) -> str | None:
+        """Weights are finite and not negative."""
+        return misfit(belief, "weights", within=(0.0, LARGEST))
+
+    def wrong_impact(
+        self, belief: NDArray[np.float64], own: Sequence[NDArray[np.float64]]
+    ) -> tuple[int, str] | None:
+        """Miss probabilities are in [0, 1], one a weight."""
+        return first_misfit(own, _MISSES, belief.shape, (0.0, 1.0))
+
 
 class CountedCoverage(Objective[NDArray[np.float64], NDArray[np.int64]]):
     """``Coverage`` over a group: certain sightings are counted and log-misses added, so both can be removed.
@@ -74,16 +87,25 @@ class CountedCoverage(Objective[NDArray[np.float64], NDArray[np.int64]]):
         """Return ``sum w (1 - m)``."""
         return float(np.vdot(belief, seen(impact)))
 
+    def wrong_belief(self, belief: NDArray[np.float64]) -> str | None:
+        """Weights are finite and not negative."""
+        return misfit(belief, "weights", within=(0.0, LARGEST))
+
+    def wrong_impact(
+        self, belief: NDArray[np.float64], own: Sequence[NDArray[np.int64]]
+    ) -> tuple[int, str] | None:
+        """Impacts are as ``counted`` makes them."""
+        return first_misfit(own, "impacts by counted()", (2, *belief.shape), (0, _MOST), np.int64)
+
 
 def counted(miss: NDArray[np.float64]) -> NDArray[np.int64]:
     """Return miss probabilities of shape (...) as ``CountedCoverage`` takes them: int64 of shape (2, ...).
 
     Raises:
-        InputError: a probability is outside [0, 1].
+        InputError: no array, or a probability outside [0, 1].
     """
-    if not np.all((miss >= 0.0) & (miss <= 1.0)):
-        wrong = float(miss[~((miss >= 0.0) & (miss <= 1.0))][0])
-        raise InputError(f"counted: miss probabilities must be in [0, 1]; got {wrong}")
+    if (wrong := misfit(miss, _MISSES, within=(0.0, 1.0))) is not None:
+        raise InputError(f"counted: {wrong}")
     zeros = miss == 0.0
     log_miss = np.rint(-np.log(np.where(zeros, 1.0, miss)) / _UNIT)
     return np.stack((zeros.astype(np.int64), log_miss.astype(np.int64)))

@@ -5,13 +5,15 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from vedette.errors import InputError
-from vedette.problem.checked import check_candidates, values_of
+from vedette.problem.checked import value_of, values_of
+from vedette.problem.door import check_problem
 from vedette.problem.objective import BeliefT, ImpactT, Objective
+from vedette.problem.trial import Trial
 
 MOST_COMBINATIONS = 2_000_000  # about a minute of Python
 
@@ -21,7 +23,7 @@ class Exhaustive:
     """The best joint choice, the lexicographically first among equals."""
 
     choice: tuple[int, ...]  # candidate index of each platform
-    value: float  # in the objective's unit
+    value: float  # over nothing, in the objective's unit
 
 
 def exhaustive(
@@ -35,25 +37,27 @@ def exhaustive(
         candidates: ``candidates[i]`` is the list of platform i's impacts.
 
     Raises:
-        InputError: no platform, a platform without candidates, more than two million combinations.
+        InputError: as `negotiate`, or more than two million combinations.
     """
-    check_candidates(candidates)
+    check_problem(objective, belief, candidates)
     combinations = math.prod(len(own) for own in candidates)
     if combinations > MOST_COMBINATIONS:
         raise InputError(
             f"exhaustive: {combinations} combinations, at most {MOST_COMBINATIONS}; shorten the lists"
         )
+    Trial(objective, belief, candidates).laws()
     best = Exhaustive((), -math.inf)
     before: tuple[int, ...] = ()
     partial = [objective.nothing(belief)]  # partial[i]: platforms 0..i-1 combined
-    for head in itertools.product(*(range(len(own)) for own in candidates[:-1])):
+    *first, last = candidates
+    for head in itertools.product(*(range(len(own)) for own in first)):
         shared = next((i for i, (a, b) in enumerate(zip(before, head, strict=False)) if a != b), len(before))
         del partial[shared + 1 :]
         for i in range(shared, len(head)):
-            partial.append(objective.combine(partial[-1], candidates[i][head[i]]))
-        values = values_of(objective, belief, partial[-1], candidates[-1])
-        last = int(np.argmax(values))
-        if values[last] > best.value:
-            best = Exhaustive((*head, last), float(values[last]))
+            partial.append(objective.combine(partial[-1], first[i][head[i]]))
+        values = values_of(objective, belief, partial[-1], last)
+        k = int(np.argmax(values))
+        if values[k] > best.value:
+            best = Exhaustive((*head, k), float(values[k]))
         before = head
-    return best
+    return replace(best, value=best.value - value_of(objective, belief, partial[0]))

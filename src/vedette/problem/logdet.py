@@ -8,7 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.errors import InputError
+from vedette.problem.arrays import first_misfit, misfit
 from vedette.problem.objective import Objective
+
+_ROUNDING = 1e-9  # of a matrix, as a share of its largest number
 
 
 class LogDet(Objective[NDArray[np.float64], NDArray[np.float64]]):
@@ -46,6 +49,49 @@ class LogDet(Objective[NDArray[np.float64], NDArray[np.float64]]):
         if len(own) == 0:
             return np.empty(0)
         return _half_log_det(belief + others + np.stack(own)) - _half_log_det(belief)
+
+    def wrong_belief(self, belief: NDArray[np.float64]) -> str | None:
+        """The prior is square, symmetric and positive definite."""
+        if (wrong := misfit(belief, "information", dtype=np.float64)) is not None:
+            return wrong
+        if belief.ndim != 2 or belief.shape[0] != belief.shape[1] or belief.size == 0:
+            return f"information must be a square matrix; got shape {belief.shape}"
+        if _skewed(belief):
+            return _skew(belief)
+        try:
+            np.linalg.cholesky(belief)
+        except np.linalg.LinAlgError:
+            least = np.linalg.eigvalsh(belief)[0]
+            return f"information must be positive definite; its least eigenvalue is {least:.6g}"
+        return None
+
+    def wrong_impact(
+        self, belief: NDArray[np.float64], own: Sequence[NDArray[np.float64]]
+    ) -> tuple[int, str] | None:
+        """Information is symmetric, positive semi-definite but for rounding, and of the prior's size."""
+        if (wrong := first_misfit(own, "information", belief.shape, dtype=np.float64)) is not None:
+            return wrong
+        stacked = np.stack(own)
+        for k in np.flatnonzero(_skewed(stacked))[:1]:
+            return int(k), _skew(stacked[k])
+        eigenvalues = np.linalg.eigvalsh(stacked)  # (K, d), ascending
+        for k in np.flatnonzero(eigenvalues[:, 0] < -_ROUNDING * np.abs(eigenvalues[:, -1]))[:1]:
+            least = eigenvalues[k, 0]
+            return int(k), f"information must be positive semi-definite; its least eigenvalue is {least:.6g}"
+        return None
+
+
+def _skewed(matrices: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Return for one or a stack of square matrices whether it is not symmetric but for rounding."""
+    apart = np.abs(matrices - np.swapaxes(matrices, -1, -2)).max(axis=(-2, -1))
+    return np.asarray(apart > _ROUNDING * np.abs(matrices).max(axis=(-2, -1)))
+
+
+def _skew(matrix: NDArray[np.float64]) -> str:
+    """Return where a square matrix is least symmetric."""
+    worst = int(np.argmax(np.abs(np.triu(matrix) - np.tril(matrix).T)))
+    i, j = divmod(worst, len(matrix))
+    return f"information must be symmetric; got {matrix[i, j]} at [{i}, {j}] and {matrix[j, i]} at [{j}, {i}]"
 
 
 def _half_log_det(information: NDArray[np.float64]) -> NDArray[np.float64]:

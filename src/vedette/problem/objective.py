@@ -43,6 +43,14 @@ class Objective(ABC, Generic[BeliefT, ImpactT]):
         """Return ``value(others * own[k])`` for every k, shape (K,); override where one pass can do all."""
         return np.array([self.value(belief, self.combine(others, k)) for k in own], dtype=np.float64)
 
+    def wrong_belief(self, belief: BeliefT) -> str | None:
+        """Return what is wrong with a belief that ``value`` is not made for; asked once a negotiation."""
+        return None
+
+    def wrong_impact(self, belief: BeliefT, own: Sequence[ImpactT]) -> tuple[int, str] | None:
+        """Return the first k for which ``own[k]`` is no impact, and why; asked once for each platform."""
+        return None
+
 
 @runtime_checkable
 class Invertible(Protocol[ImpactT]):

@@ -1,0 +1,22 @@
+"""What counts as a number where a caller may give anything."""
+
+from __future__ import annotations
+
+import math
+from numbers import Integral, Real
+from typing import TypeGuard
+
+
+def is_number(value: object) -> TypeGuard[float]:
+    """Tell whether a value is a finite real number, one of NumPy's or not; True and False are none."""
+    if isinstance(value, bool) or not isinstance(value, Real):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # an int beyond all floats
+        return False
+
+
+def is_whole(value: object) -> TypeGuard[int]:
+    """Tell whether a value is an integer by type, one of NumPy's or not; True and False are none."""
+    return isinstance(value, Integral) and not isinstance(value, bool)
