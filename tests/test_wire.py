@@ -15,6 +15,7 @@ from vedette.fusion.gaussian import wire as tracks
 from vedette.fusion.steps import wire as steps
 from vedette.negotiation import messages as negotiation
 from vedette.net import report
+from vedette.net.explore import content
 from vedette.overlay import hello, packet
 from vedette.sim import shown
 
@@ -82,7 +83,7 @@ def test_a_hello_is_too_short_to_nest_anything() -> None:
 
 def test_a_report_of_a_small_packet_never_becomes_a_large_grid() -> None:
     side = 1 << 26
-    huge = report.Report(None, side, side, b"", b"", None)  # type: ignore[arg-type]
-    for read in (report.classes_of, report.seen_of):
+    huge = content.MapContent(side, side, b"", b"", None)
+    for read in (content.classes_of, content.seen_of):
         with pytest.raises(ValueError, match=rf"a map of {side**2} cells; at most"):
             read(huge)
