@@ -23,7 +23,7 @@ from vedette.record.flights import team_figures
 from vedette.record.log import Floats, Sink
 from vedette.record.search.curves import Curves, Looks, missed
 from vedette.record.search.log import SearchLog, SearchSample, SearchScene, SearchSnapshot
-from vedette.record.search.summary import Best, SearchSummary
+from vedette.record.search.summary import IdealSearch, SearchSummary
 from vedette.record.summary import Setting, Timing
 
 
@@ -122,8 +122,8 @@ class SearchObserver:
             error_m=None if at is None else float(np.hypot(*np.subtract(at, last.target))),
             detection_then=last.detection,
             duration_s=float(curves.times[-1]),
-            bound=Best.of(curves.times, curves.bound),
-            koopman=Best.of(curves.times, curves.koopman),
+            bound=IdealSearch.of(curves.times, curves.bound),
+            koopman=IdealSearch.of(curves.times, curves.koopman),
             **vars(self._setting),
             **structs.asdict(self._team.options),
             **vars(team_figures(scene, self._views)),

@@ -52,14 +52,14 @@ class Counted:
 
 
 @dataclass(frozen=True)
-class Best:
+class IdealSearch:
     """A search that is ideal in some sense."""
 
     detection: float
     mean_time_s: float
 
     @classmethod
-    def of(cls, times: NDArray[np.float64], detection: NDArray[np.float64]) -> Best:
+    def of(cls, times: NDArray[np.float64], detection: NDArray[np.float64]) -> IdealSearch:
         """Return the figures of a curve, as of a search's."""
         quality = SearchQuality.of(times, detection)
         return cls(quality.detection, quality.mean_time_s)
@@ -90,8 +90,8 @@ class SearchSummary(MissionSummary):
     t90_s: float | None = None
     mean_time_s: float | None = None
     counted: Counted | None = None
-    bound: Best
-    koopman: Best
+    bound: IdealSearch
+    koopman: IdealSearch
     path_m: Mapping[str, float]
     rounds: int
     sweeps: int
