@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -116,3 +117,21 @@ def test_a_missing_file_a_folder_and_a_binary_are_bad_input(tmp_path: Path) -> N
 def test_a_spec_made_in_code_is_checked_too() -> None:
     with pytest.raises(InputError, match="radius must be"):
         replace(PlatformSpec(), radius=float("nan"))
+
+
+@pytest.mark.parametrize(
+    ("field", "line"),
+    [
+        ({"speed": "fast"}, "speed must be 0.01 to 10 m/s; got 'fast'"),
+        ({"speed": True}, "speed must be 0.01 to 10 m/s; got True"),
+        ({"range": float("nan")}, "range must be 0.2 to 200 m; got nan"),
+        ({"beams": 9.5}, "beams must be a whole number; got 9.5"),
+        ({"name": 7}, "name must be letters, digits, '-', '_' or '.', at most 64; got 7"),
+        ({"start": 7}, "start must be [x, y] or [x, y, heading in deg]; got 7"),
+        ({"start": (1.0, "2")}, "start must be [x, y] or [x, y, heading in deg]; got [1.0, '2']"),
+    ],
+)
+def test_a_platform_made_in_python_is_checked_too(field: dict[str, Any], line: str) -> None:
+    with pytest.raises(InputError) as refused:
+        PlatformSpec(**field)
+    assert str(refused.value) == line

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
 from vedette.number import is_number
 
@@ -29,6 +29,12 @@ def nearest_name(name: str, known: Iterable[str]) -> str:
     known = list(known)
     close = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
     return f"did you mean {close[0]!r}?" if close else f"known: {', '.join(known)}"
+
+
+def check_word(what: str, word: str, known: Collection[str]) -> None:
+    """Raise InputError for a word that is none of those known."""
+    if not isinstance(word, str) or word not in known:
+        raise InputError(f"unknown {what} {brief(word)}; {nearest_name(str(word), known)}")
 
 
 def check_limits(thing: object, limits: Mapping[str, Limits]) -> None:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from reprlib import repr as repr_short
 
 from vedette.errors import InputError, check_limits
+from vedette.number import is_number, is_whole
 from vedette.scenario import as_scenario
 from vedette.yaml_file import read_yaml
 
@@ -33,7 +33,7 @@ class PlatformSpec:
     """One robot: a disc that drives and turns in place, with a planar lidar at its centre.
 
     Raises:
-        InputError: a field is out of its range; the line names field, value and range.
+        InputError: a field has the wrong type or is out of its range; the line names field, value and range.
     """
 
     name: str = "robot-1"  # letters, digits, '-', '_' and '.', for it becomes part of file and topic names
@@ -50,13 +50,36 @@ class PlatformSpec:
     pose_std_heading: float = 0.0  # and of the heading [deg]
 
     def __post_init__(self) -> None:
-        if not _NAME.fullmatch(self.name):
+        if not isinstance(self.name, str) or not _NAME.fullmatch(self.name):
             raise InputError(
                 f"name must be letters, digits, '-', '_' or '.', at most 64; got {repr_short(self.name)}"
             )
         check_limits(self, _LIMITS)
-        if self.start is not None and not (len(self.start) in (2, 3) and all(map(math.isfinite, self.start))):
-            raise InputError(f"start must be [x, y] or [x, y, heading in deg]; got {list(self.start)}")
+        if not is_whole(self.beams):
+            raise InputError(f"beams must be a whole number; got {self.beams}")
+        if self.start is not None and not _is_start(self.start):
+            got = list(self.start) if isinstance(self.start, tuple) else self.start
+            raise InputError(f"start must be [x, y] or [x, y, heading in deg]; got {repr_short(got)}")
+
+
+def _is_start(start: object) -> bool:
+    return isinstance(start, tuple) and len(start) in (2, 3) and all(map(is_number, start))
+
+
+def check_team(specs: Iterable[PlatformSpec]) -> tuple[PlatformSpec, ...]:
+    """Return a team's platforms; InputError for nobody, what is no platform, or two of one name."""
+    if not isinstance(specs, Iterable):
+        raise InputError(f"the team is {repr_short(specs)}; give a list of PlatformSpec")
+    team, names = tuple(specs), set[str]()
+    if not team:
+        raise InputError("the team is empty; give at least one PlatformSpec")
+    for i, spec in enumerate(team):
+        if not isinstance(spec, PlatformSpec):
+            raise InputError(f"platform {i} is {repr_short(spec)}; give a PlatformSpec")
+        if spec.name in names:
+            raise InputError(f"platform {i}: the name {spec.name!r} is used twice; names must differ")
+        names.add(spec.name)
+    return team
 
 
 @dataclass(frozen=True)

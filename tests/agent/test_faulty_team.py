@@ -17,7 +17,7 @@ from vedette.outcome import Outcome
 from vedette.sim.datagrams import Datagrams
 from vedette.sim.faults import Schedule
 from vedette.sim.faults.kinds import Crash, Freeze, Heal, Partition
-from vedette.sim.simulation import Setup
+from vedette.sim.setup import Setup
 
 SCHEDULES, BATCH = 200, 20
 ALL, SLOW_BATCH = 5000, 50

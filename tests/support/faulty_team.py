@@ -22,7 +22,7 @@ from vedette.outcome import Outcome
 from vedette.sim.datagrams import Datagrams
 from vedette.sim.faults import Schedule, faults_from_seed
 from vedette.sim.network import Act
-from vedette.sim.simulation import Setup
+from vedette.sim.setup import Setup
 
 FAULTY = 12.0  # then everything that can heal is healed [s]
 LEASES = (2.0, 5.0)  # [s]: frozen robots are missed before they are cut from a round, or after it

@@ -19,7 +19,8 @@ from vedette.negotiation import Chooser
 from vedette.outcome import Outcome
 from vedette.problem import Coverage
 from vedette.sim.planted import PlantedTree
-from vedette.sim.simulation import Setup, Simulation
+from vedette.sim.setup import Setup
+from vedette.sim.simulation import Simulation
 from vedette.sim.vehicles import Vehicles
 from vedette.team import PlatformSpec
 from vedette.vehicle import drive, turn_sequences

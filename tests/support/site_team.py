@@ -22,7 +22,8 @@ from vedette.sim.datagrams import Datagrams, linked
 from vedette.sim.faults import Timeline
 from vedette.sim.network import Network, Spawn
 from vedette.sim.overlaid import OverlaidNetwork
-from vedette.sim.simulation import Setup, Simulation
+from vedette.sim.setup import Setup
+from vedette.sim.simulation import Simulation
 from vedette.team import PlatformSpec
 
 PACE = Pace(interval=0.5, period=2.0)

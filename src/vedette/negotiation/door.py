@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from vedette.errors import InputError, brief
-from vedette.negotiation.schemes import check_scheme
+from vedette.errors import InputError, brief, check_word
+from vedette.negotiation.schemes import SCHEMES
 from vedette.negotiation.tree import Tree
 from vedette.number import is_number, is_whole
 from vedette.problem.door import check_list
@@ -24,7 +24,7 @@ def check_round(
     if platforms != tree.n:
         raise InputError(f"candidates has {platforms} lists for a tree of {tree.n}; give one each")
 
-    check_scheme(scheme)
+    check_word("scheme", scheme, SCHEMES)
     if not is_number(epsilon) or epsilon < 0.0:
         raise InputError(f"epsilon must be a number >= 0; got {brief(epsilon)}")
     if not is_whole(max_sweeps):

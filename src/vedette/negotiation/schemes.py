@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from vedette.errors import InputError, brief, nearest_name
+from vedette.errors import check_word
 from vedette.negotiation.jacobi import JacobiNode
 from vedette.negotiation.node import Claims, Participant
 from vedette.negotiation.token import TokenNode
@@ -12,12 +12,6 @@ from vedette.problem.objective import ImpactT
 from vedette.problem.reach import Reach
 
 SCHEMES = ("token", "jacobi")
-
-
-def check_scheme(scheme: str) -> None:
-    """Raise ``InputError`` for a scheme that there is not."""
-    if not isinstance(scheme, str) or scheme not in SCHEMES:
-        raise InputError(f"unknown scheme {brief(scheme)}; {nearest_name(str(scheme), SCHEMES)}")
 
 
 def node_of(
@@ -36,7 +30,7 @@ def node_of(
 
     ``reaches`` are for ``token`` alone, ``remove`` is for ``jacobi`` alone; all else as the nodes take it.
     """
-    check_scheme(scheme)
+    check_word("scheme", scheme, SCHEMES)
     if scheme == "token":
         return TokenNode(
             neighbours, parent, own, epsilon=epsilon, max_sweeps=max_sweeps, reaches=reaches, claims=claims

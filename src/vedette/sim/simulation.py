@@ -9,7 +9,6 @@ from __future__ import annotations
 import heapq
 import itertools
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -24,41 +23,17 @@ from vedette.maps.world import World
 from vedette.outcome import Outcome
 from vedette.record.clock import Clock
 from vedette.sim.datagrams import Datagrams
-from vedette.sim.faults import Schedule, Timeline
+from vedette.sim.faults import Timeline
 from vedette.sim.field import Field
 from vedette.sim.links import Links
 from vedette.sim.network import Act, Network, Spawn
 from vedette.sim.overlaid import OverlaidNetwork
 from vedette.sim.planted import PlantedTree
 from vedette.sim.radio import Radio
+from vedette.sim.setup import Setup
 
 OPEN = World(GridFrame(1.0, 1, 1), np.zeros((1, 1), np.bool_), "open")  # no walls at all
 JOB_TIME = 0.03  # charged for preparing a round [s]
-
-
-@dataclass(frozen=True)
-class Setup:
-    """What all simulated missions share, beside the world and the team."""
-
-    scheme: str = "token"
-    seed: int = 0
-    max_time: float = 3600.0  # [s]
-    link_delay: float = 0.02  # [s]
-    link_loss: float = 0.0
-    kills: tuple[tuple[int, float], ...] = ()  # robot index, time [s]
-    radio: Radio | None = None  # None: everybody reaches everybody
-    faults: Schedule | None = None
-    faults_from: str | None = None  # the schedule's file or seed
-
-    @property
-    def ideal(self) -> bool:
-        """Links neither fail nor lose anything, so that nobody has to look after them."""
-        return self.radio is None and self.faults is None and self.link_loss == 0.0
-
-    @property
-    def apart(self) -> bool:
-        """Nobody tells anybody anything: each robot is a team of one."""
-        return False
 
 
 def random_streams(seed: int, robots: int) -> list[np.random.Generator]:
@@ -70,7 +45,12 @@ class Simulation:
     """One mission; ``run`` steps it to its end."""
 
     def __init__(self, spawn: Spawn, field: Field, setup: Setup, walls: World | None = None) -> None:
-        """Bring the robots of the field to life; ``walls``: what weakens their radios."""
+        """Bring the robots of the field to life; ``walls``: what weakens their radios.
+
+        Raises:
+            InputError: something is to befall robots that the field has not.
+        """
+        setup.check_team(len(field.alive))
         self.field, self.setup = field, setup
         self.network: Network = self._planted(spawn) if setup.ideal else self._overlaid(spawn, walls)
         self.clock = Clock()

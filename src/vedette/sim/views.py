@@ -10,7 +10,8 @@ from vedette.agent import FlightBehaviour
 from vedette.agent.flight import Flight
 from vedette.record.figures import RobotFigures, RoundFigures, traffic_of
 from vedette.record.summary import Setting
-from vedette.sim.simulation import Setup, Simulation
+from vedette.sim.setup import Setup
+from vedette.sim.simulation import Simulation
 
 DEAD = "dead"
 NOWHERE = np.empty((0, 2))  # the path of one that goes nowhere

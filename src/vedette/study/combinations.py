@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from vedette.domains.mapping.planners import planner
-from vedette.errors import InputError, check_limits, nearest_name
+from vedette.errors import InputError, check_limits, check_word
 from vedette.missions.explore.assemble import FUSIONS
-from vedette.negotiation import SCHEMES
 from vedette.scenario import as_scenario
 from vedette.sim.explore.simulation import ExploreSetup
 from vedette.sim.faults import Schedule, load_faults
@@ -23,7 +22,6 @@ from vedette.study.spec import Spec
 from vedette.team import PlatformSpec
 
 MOST_RUNS = 100_000
-_WORDS: Mapping[str, Sequence[str]] = {"scheme": tuple(SCHEMES), "fusion": tuple(FUSIONS)}
 _LIMITS = {"link_loss": (0.0, 0.9, ""), "link_delay": (0.0, 0.3, "s"), "max_time": (1.0, math.inf, "s")}
 
 
@@ -97,11 +95,8 @@ def _setup(fields: Mapping[str, Any], path: Path, robots: int) -> ExploreSetup:
     where = f"{path}: setup"
     written = {name: value for name, value in fields.items() if name not in _READ}
     setup = as_scenario(written, ExploreSetup, where, OF_SETUP)
-    for name, words in _WORDS.items():
-        value = getattr(setup, name)
-        if value not in words:
-            raise InputError(f"{where}: unknown {name} {value!r}; {nearest_name(value, words)}")
     try:
+        check_word("fusion", setup.fusion, FUSIONS)
         check_limits(setup, _LIMITS)
         read = {name: _READ[name](fields[name], path, robots) for name in _READ if name in fields}
     except InputError as error:

@@ -8,7 +8,7 @@ from vedette.agent import Agent, GroundBehaviour
 from vedette.agent.driving import Driver
 from vedette.domains.mapping.planners import planner
 from vedette.domains.mapping.sightings import BINS
-from vedette.errors import InputError, nearest_name
+from vedette.errors import check_word
 from vedette.fusion import ChannelFilter, Fusion, ReplicatedEvidence
 from vedette.maps import GridFrame
 from vedette.missions.explore.exploration import Exploration
@@ -47,8 +47,7 @@ def assemble(
     Raises:
         InputError: the planner or the way of fusing is unknown, or cannot serve such a team.
     """
-    if options.fusion not in FUSIONS:
-        raise InputError(f"unknown fusion {options.fusion!r}; {nearest_name(options.fusion, FUSIONS)}")
+    check_word("fusion", options.fusion, FUSIONS)
     fusion: Fusion = FUSIONS[options.fusion](robot, boot, frame.shape, 4 * BINS)
     mission = Exploration(frame, spec, planner(options.planner, robots), fusion, most=most)
     behaviour = GroundBehaviour(mission, Driver(robot, spec, frame), options.return_home, waits_for)

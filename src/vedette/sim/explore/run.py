@@ -15,15 +15,18 @@ from vedette.record.log import Sink
 from vedette.sim.explore.simulation import ExploreSetup, ExploreSimulation
 from vedette.sim.starts import choose_starts
 from vedette.sim.views import NOWHERE, figures, setting, state
-from vedette.team import PlatformSpec
+from vedette.team import PlatformSpec, check_team
 
 
 def prepare(world: World, specs: Sequence[PlatformSpec], setup: ExploreSetup) -> ExploreSimulation:
     """Put a team at its starts, those that are not given chosen by the seed.
 
     Raises:
-        InputError: a start is not possible, the team does not fit, or the planner is unknown.
+        InputError: nobody is in the team, or two of one name; a start is not possible, the team does not fit;
+            the planner or the fusion is unknown; or a robot is to die that there is not.
     """
+    specs = check_team(specs)
+    setup.check_team(len(specs))
     starts = choose_starts(world, specs, np.random.default_rng([setup.seed, 1]))
     return ExploreSimulation(world, specs, starts, setup)
 

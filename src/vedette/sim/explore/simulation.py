@@ -17,7 +17,8 @@ from vedette.missions.explore.assemble import assemble
 from vedette.missions.explore.exploration import Exploration
 from vedette.missions.explore.options import ExploreOptions
 from vedette.sim.robots import Robots
-from vedette.sim.simulation import Setup, Simulation, random_streams
+from vedette.sim.setup import Setup
+from vedette.sim.simulation import Simulation, random_streams
 from vedette.team import Most, PlatformSpec
 
 

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from math import floor
 from typing import cast
 
+from vedette.errors import check_word
 from vedette.missions.search.assemble import SearchTeam
 from vedette.missions.search.case import SearchCase
-from vedette.missions.search.options import SearchOptions
+from vedette.missions.search.options import COORDINATIONS, FUSIONS, SearchOptions
 from vedette.missions.search.searching import Declared, Searching
 from vedette.outcome import Outcome
 from vedette.record.search.observer import first_declared
@@ -23,6 +24,11 @@ class SearchSetup(FlightSetup):
 
     fusion: str = "replicated"
     blind: bool = False  # nobody ever reports anything: the run that plans are made for
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_word("coordination", self.coordination, COORDINATIONS)
+        check_word("fusion", self.fusion, FUSIONS)
 
     @property
     def options(self) -> SearchOptions:

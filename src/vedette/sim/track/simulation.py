@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import cast
 
 from vedette.agent import Agent
-from vedette.errors import InputError
+from vedette.errors import InputError, check_word
 from vedette.missions.track.assemble import TrackTeam
-from vedette.missions.track.options import TrackOptions
+from vedette.missions.track.options import COORDINATIONS, TrackOptions
 from vedette.missions.track.scenario import TrackScenario
 from vedette.missions.track.tracking import Tracking
 from vedette.outcome import Outcome
@@ -25,6 +25,10 @@ class TrackSetup(FlightSetup):
     fusion: str = "replicated"
     objective: str | None = None  # None: the scenario's
     continuous: bool = False
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_word("coordination", self.coordination, COORDINATIONS)
 
     @property
     def options(self) -> TrackOptions:
