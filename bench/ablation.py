@@ -22,7 +22,7 @@ from vedette.study.bootstrap import Interval
 from vedette.study.compare import difference, mean
 from vedette.study.conduct import conduct
 from vedette.study.metrics import AUC, TIMES, TOTAL
-from vedette.study.mission import Result, carry_out
+from vedette.study.mission import RunResult, carry_out
 from vedette.study.provenance import fingerprint
 from vedette.study.rows import Row, figure_rows
 from vedette.study.run import GeneratedWorld, Run
@@ -70,7 +70,7 @@ def cases(seeds: Sequence[int], robots: int, names: Sequence[str]) -> list[Run]:
     ]
 
 
-def carry_out_variant(run: Run) -> Result:
+def carry_out_variant(run: Run) -> RunResult:
     """Carry out a run whose planner may be a variant, in whatever process this is."""
     planners.PLANNERS.update(variants())  # through its module: a worker gets copies of this one's own names
     return carry_out(run)

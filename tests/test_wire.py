@@ -10,7 +10,7 @@ import pytest
 
 from vedette import wire
 from vedette.agent import messages as agent
-from vedette.domains.mapping.impact import ImpactCodec
+from vedette.domains.mapping.impact import MapImpactCodec
 from vedette.fusion.gaussian import wire as tracks
 from vedette.fusion.steps import wire as steps
 from vedette.negotiation import messages as negotiation
@@ -22,7 +22,7 @@ from vedette.sim import shown
 DECODERS: dict[str, Callable[[bytes], object]] = {
     "agent message": agent.decode,
     "packet": packet.decode,
-    "negotiation message": lambda data: negotiation.decode(data, ImpactCodec(9)),
+    "negotiation message": lambda data: negotiation.decode(data, MapImpactCodec(9)),
     "step evidence": steps.decode,
     "track payload": tracks.decode,
     "body report": shown.decode,

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from bench.scale.team import Lots, Team
 from vedette.domains.mapping.belief import MapBelief, freeze, frontier_limits, longest_frontier
-from vedette.domains.mapping.impact import NOTHING, Impact, ImpactCodec
+from vedette.domains.mapping.impact import NOTHING, Impact, MapImpactCodec
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.planners import planner
 from vedette.domains.mapping.platform import MappingPlatform
@@ -18,7 +18,7 @@ from vedette.kernels.coverage import LAYERS
 from vedette.kernels.frontier import find_frontiers
 from vedette.kernels.lidar import cast_rays, integrate_scan
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
-from vedette.missions.explore.exploration import CLAMP, GAIN_HIT, GAIN_MISS, NUDGE
+from vedette.missions.explore.exploring import CLAMP, GAIN_HIT, GAIN_MISS, NUDGE
 from vedette.problem import Reach
 from vedette.team import PlatformSpec
 
@@ -79,7 +79,7 @@ def _team(solid: NDArray[np.bool_], seen: NDArray[np.float64], places: NDArray[n
         counts=empty_counts(),
     )
     candidates = [_tours(belief, x, y) for x, y in places.tolist()]
-    codec = ImpactCodec(belief.planning.size)
+    codec = MapImpactCodec(belief.planning.size)
     reaches = [_reach(belief, own) for own in candidates]
     return Team(MappingObjective(), belief, places, candidates, reaches, codec, codec.bound)
 

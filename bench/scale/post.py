@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.scale.team import Team
-from vedette.negotiation import Chooser, Outcome, Send, TokenNode, Tree, messages
+from vedette.negotiation import Chooser, Outgoing, RoundOutcome, TokenNode, Tree, messages
 from vedette.negotiation.negotiate import tell_reaches
 from vedette.problem.reach import Reach, behind
 
@@ -23,7 +23,7 @@ ROOT = 0
 class Tally:
     """What each of n platforms did in one round of the token."""
 
-    outcome: Outcome
+    outcome: RoundOutcome
     turns: int  # taken by all together
     choice: tuple[int | None, ...]  # candidate of each platform
     seconds: NDArray[np.float64]  # (n,) CPU time, coding of messages included
@@ -68,7 +68,7 @@ class Post:
             self._send(receiver, nodes[receiver].receive(sender, message))
             self.seconds[receiver] += time.thread_time() - began
 
-    def _send(self, sender: int, sends: list[Send[Any]]) -> None:
+    def _send(self, sender: int, sends: list[Outgoing[Any]]) -> None:
         for send in sends:
             data = messages.encode(send.message, self._team.codec)
             self._waiting.append((sender, send.to, data))

@@ -11,7 +11,7 @@ from bench.scale.team import Lots, Team
 from vedette.domains.search import worth
 from vedette.domains.search.belief import SearchBelief, TargetPdf, freeze
 from vedette.domains.search.detectors import DefiniteRange
-from vedette.domains.search.impact import Impact, ImpactCodec
+from vedette.domains.search.impact import Impact, SearchImpactCodec
 from vedette.domains.search.objective import SearchObjective
 from vedette.domains.search.platform import SearchPlatform
 from vedette.maps import GridFrame
@@ -68,5 +68,5 @@ def _team(frame: GridFrame, places: NDArray[np.float64], rng: np.random.Generato
         platform.prepare(belief)
         candidates.append(Flights(platform, belief))
         reaches.append(platform.reach())
-    codec = ImpactCodec(frame.size, belief.layers)
+    codec = SearchImpactCodec(frame.size, belief.layers)
     return Team(LocalSearch(), belief, places, candidates, reaches, codec, codec.bound)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from bench.scale.team import Lots, Team
 from vedette.domains.tracking.belief import Tracks, tracks
-from vedette.domains.tracking.codec import ImpactCodec
+from vedette.domains.tracking.codec import TrackImpactCodec
 from vedette.domains.tracking.models import constant_velocity
 from vedette.domains.tracking.objective import TrackingObjective
 from vedette.domains.tracking.platform import TrackingPlatform
@@ -53,5 +53,5 @@ def _team(belief: Tracks, places: NDArray[np.float64], sensor: Sensor, rng: np.r
         assert platform.candidates is not None
         candidates.append(platform.candidates)
         reaches.append(platform.reach(belief))
-    codec = ImpactCodec(len(belief), belief.horizon)
+    codec = TrackImpactCodec(len(belief), belief.horizon)
     return Team(TrackingObjective(), belief, places, candidates, reaches, codec, codec.bound)

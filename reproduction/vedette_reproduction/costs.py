@@ -10,7 +10,7 @@ from vedette.negotiation import Tree
 from vedette.problem import Coverage
 from vedette_reproduction import teams
 from vedette_reproduction.post import Recording, SparseCodec, record
-from vedette_reproduction.run import Run
+from vedette_reproduction.run import ReproductionRun
 
 TREES = ("chain", "star", "random")
 SCHEMES = {"jacobi": "the paper's", "token": "token"}
@@ -43,7 +43,7 @@ class Cost:
         return self.total / (self.sweeps + 1)
 
 
-def measure(run: Run, scheme: str, area: str, tree: str, n: int) -> Cost:
+def measure(run: ReproductionRun, scheme: str, area: str, tree: str, n: int) -> Cost:
     """Record one negotiation and count."""
     run.tell(f"{SCHEMES[scheme]} scheme, area {area}: {tree} of {n}")
     rng = run.rng(104, n)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from vedette.negotiation import Chooser, Tree
-from vedette.negotiation.node import Links
+from vedette.negotiation.node import TreeLinks
 from vedette.problem import Objective
 
 
@@ -16,7 +16,7 @@ class Member:
     """A platform: its chooser and its ends of the links."""
 
     seat: Chooser[Any, Any]
-    links: Links[Any]
+    links: TreeLinks[Any]
 
 
 def members_of(
@@ -34,7 +34,7 @@ def members_of(
     members = []
     for own, near, first in zip(candidates, neighbours, start, strict=True):
         seat = Chooser(objective, belief, own, start=first)
-        links = Links(seat, near)
+        links = TreeLinks(seat, near)
         for k in near:
             links.receive(k, objective.nothing(belief))
         links.changed()

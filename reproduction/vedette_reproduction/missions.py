@@ -31,7 +31,7 @@ class Case:
 
 
 @dataclass(frozen=True, eq=False)
-class Mission:
+class ReproducedMission:
     """A case and how it went."""
 
     case: Case
@@ -49,9 +49,9 @@ class Missions:
     """Missions by case; a mission that was interrupted is not kept."""
 
     tell: Callable[[str], None]
-    _done: dict[Case, Mission] = field(default_factory=dict)
+    _done: dict[Case, ReproducedMission] = field(default_factory=dict)
 
-    def get(self, case: Case) -> Mission:
+    def get(self, case: Case) -> ReproducedMission:
         """Return the mission, run now unless it has been.
 
         Raises:
@@ -63,7 +63,7 @@ class Missions:
             report = explore(simulation, [_Ticker(case, self.tell)])
             if report.summary.outcome is Outcome.INTERRUPTED:
                 raise KeyboardInterrupt
-            self._done[case] = Mission(case, world, report)
+            self._done[case] = ReproducedMission(case, world, report)
         return self._done[case]
 
 

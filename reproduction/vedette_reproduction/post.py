@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.negotiation import Chooser, Negotiator, Outcome, Send, Tree, messages, node_of
+from vedette.negotiation import Chooser, Negotiator, Outgoing, RoundOutcome, Tree, messages, node_of
 from vedette.negotiation.messages import Message
 from vedette.problem import Invertible, Objective
 
@@ -43,7 +43,7 @@ class Recording:
 
     letters: tuple[Letter, ...]  # in the order in which they were sent
     choice: tuple[int | None, ...]
-    outcome: Outcome
+    outcome: RoundOutcome
     replies: tuple[tuple[int, ...], ...]  # each platform's candidate after each of its replies
     combinations: NDArray[np.int64]  # (n,) applications of ``*`` by each platform
     seconds: Float  # (n,) CPU time of each platform
@@ -156,7 +156,7 @@ def _carry(
     seconds = np.zeros(len(nodes))
     waiting: list[Letter] = []
 
-    def post(sender: int, sends: Sequence[Send[Any]]) -> None:
+    def post(sender: int, sends: Sequence[Outgoing[Any]]) -> None:
         for send in sends:
             data = messages.size(send.message) if codec is None else len(messages.encode(send.message, codec))
             letters.append(Letter(sender, send.to, send.message, data))

@@ -28,9 +28,9 @@ from vedette_reproduction.figures.figure_4 import figure_4
 from vedette_reproduction.figures.figure_6 import figure_6
 from vedette_reproduction.missions import Missions
 from vedette_reproduction.report import About, report_html
-from vedette_reproduction.run import Run, Scale
+from vedette_reproduction.run import ReproductionRun, RunScale
 
-Made = Callable[[Run], Section | list[Section]]
+Made = Callable[[ReproductionRun], Section | list[Section]]
 
 CONTENTS: dict[str, Made] = {
     "Figure 1": figure_1,
@@ -52,7 +52,7 @@ CONTENTS: dict[str, Made] = {
 REPORT, FIGURES, DATA, TIMING = "report.html", "figures", "data", "timing"
 
 
-class Progress(Protocol):
+class ReproductionProgress(Protocol):
     """What the caller shows of how far it is."""
 
     def begin(self, number: int, of: int, name: str) -> None:
@@ -66,7 +66,7 @@ class Progress(Protocol):
 
 
 @dataclass(frozen=True)
-class Result:
+class Reproduction:
     """What a reproduction has come to."""
 
     sections: tuple[Section, ...]
@@ -81,12 +81,12 @@ class Result:
 
 def reproduce(
     folder: Path,
-    scale: Scale,
+    scale: RunScale,
     seed: int,
     source: Provenance,
-    progress: Progress,
+    progress: ReproductionProgress,
     contents: dict[str, Made] | None = None,
-) -> Result:
+) -> Reproduction:
     """Run all parts and leave ``report.html``, ``figures``, ``data`` and ``timing`` in an existing folder.
 
     Ctrl-C ends it in good order: what is done is written, and what is not is named in the report. Files are
@@ -102,17 +102,19 @@ def reproduce(
     """
     parts = contents or CONTENTS
     with _workshop(folder) as workshop:
-        run = Run(scale, seed, workshop / FIGURES, Missions(progress.tell), progress.tell)
+        run = ReproductionRun(scale, seed, workshop / FIGURES, Missions(progress.tell), progress.tell)
         run.figures.mkdir()
         sections, seconds = _make(run, parts, progress)
         missing = tuple(list(parts)[len(seconds) :])
         about = About(source, seed, sum(seconds), missing)
         _write(workshop, sections, list(zip(parts, seconds, strict=False)), about)
         _move(workshop, folder)
-    return Result(tuple(sections), missing, folder / REPORT)
+    return Reproduction(tuple(sections), missing, folder / REPORT)
 
 
-def _make(run: Run, parts: dict[str, Made], progress: Progress) -> tuple[list[Section], list[float]]:
+def _make(
+    run: ReproductionRun, parts: dict[str, Made], progress: ReproductionProgress
+) -> tuple[list[Section], list[float]]:
     """Run the parts one after the other; stop at Ctrl-C with those that are done."""
     sections: list[Section] = []
     seconds: list[float] = []

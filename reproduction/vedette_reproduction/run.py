@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from vedette_reproduction.missions import PAPERS, Case, Mission, Missions
+from vedette_reproduction.missions import PAPERS, Case, Missions, ReproducedMission
 
 
 @dataclass(frozen=True)
-class Scale:
+class RunScale:
     """How much is computed."""
 
     teams: tuple[int, ...]  # team sizes
@@ -31,7 +31,7 @@ class Scale:
         return tuple(n for n in self.teams if n <= self.largest_dense)
 
 
-FULL = Scale(
+FULL = RunScale(
     teams=(2, 4, 8, 16, 32, 64, 128),
     largest_dense=64,
     trials=40,
@@ -42,7 +42,7 @@ FULL = Scale(
     targets=100_000,
     office=(30.0, 20.0),
 )
-QUICK = Scale(
+QUICK = RunScale(
     teams=(2, 4, 8, 16, 32),
     largest_dense=32,
     trials=12,
@@ -56,10 +56,10 @@ QUICK = Scale(
 
 
 @dataclass(frozen=True, eq=False)
-class Run:
+class ReproductionRun:
     """One reproduction."""
 
-    scale: Scale
+    scale: RunScale
     seed: int
     figures: Path  # folder for the pictures
     missions: Missions
@@ -69,7 +69,7 @@ class Run:
         """Return a stream of chance of its own for a part; the same whatever else was computed."""
         return np.random.default_rng([self.seed, *key])
 
-    def mission(self, planner: str = PAPERS, seed: int | None = None) -> Mission:
+    def mission(self, planner: str = PAPERS, seed: int | None = None) -> ReproducedMission:
         """Return the mission of a planner, that of Fig. 6 unless the office's seed says otherwise."""
         seed = self.scale.mission_seeds[0] if seed is None else seed
         return self.missions.get(Case(planner, seed, *self.scale.office))

@@ -11,7 +11,7 @@ from vedette.domains.mapping.sightings import BIN, BINS, empty_counts
 from vedette.kernels.lidar import cast_rays, count_sightings, integrate_scan
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.maps.world import World
-from vedette.missions.explore.exploration import CLAMP, GAIN_HIT, GAIN_MISS, NUDGE
+from vedette.missions.explore.exploring import CLAMP, GAIN_HIT, GAIN_MISS, NUDGE
 from vedette.team import PlatformSpec
 
 EVERY_BEAM = 1

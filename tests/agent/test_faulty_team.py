@@ -16,7 +16,7 @@ from vedette.fusion import ReplicatedEvidence
 from vedette.outcome import Outcome
 from vedette.sim.datagrams import Datagrams
 from vedette.sim.faults import Schedule
-from vedette.sim.faults.kinds import Crash, Freeze, Heal, Partition
+from vedette.sim.faults.kinds import Crash, FreezeFault, Heal, Partition
 from vedette.sim.setup import Setup
 
 SCHEDULES, BATCH = 200, 20
@@ -77,7 +77,7 @@ def test_what_a_crashed_robot_has_told_is_kept_and_what_only_it_could_reach_is_l
 
 
 def test_a_robot_that_freezes_for_long_takes_up_its_work_again() -> None:
-    freeze = Schedule((Freeze(at=3.0, robot=1, lasts=9.5),))
+    freeze = Schedule((FreezeFault(at=3.0, robot=1, lasts=9.5),))
     team = two(freeze, before=[-1, 0, 1], allowed=[[True] * 3, [False] * 3])
     assert team.run(lambda: None) is Outcome.COMPLETE
     team.check_end()

@@ -9,15 +9,15 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from vedette.agent import Pace
-from vedette.agent.flight import Flight, FlightPlan, start_step
+from vedette.agent.flight import FlightPlan, Itinerary, start_step
 from vedette.errors import InputError
 
 times = st.integers(0, 300).map(lambda tenths: tenths * 0.1)
 
 
-def random_flight(rng: np.random.Generator) -> Flight:
+def random_flight(rng: np.random.Generator) -> Itinerary:
     """A flight that a few plans joined one after another, some late, some overlapping, with gaps."""
-    flight, now = Flight(0.4), 0.0
+    flight, now = Itinerary(0.4), 0.0
     for _ in range(int(rng.integers(0, 5))):
         now += float(rng.integers(0, 40)) * 0.1
         start = round(max(now + float(rng.uniform(-2.0, 3.0)), 0.0), 1)
@@ -27,7 +27,7 @@ def random_flight(rng: np.random.Generator) -> Flight:
 
 
 def integrated(
-    flight: Flight, pose: NDArray[np.float64], speed: float, begin: float, end: float
+    flight: Itinerary, pose: NDArray[np.float64], speed: float, begin: float, end: float
 ) -> NDArray[np.float64]:
     """The same by small steps of the differential equation, the rate looked up at the middle of each."""
     steps = max(round((end - begin) / 1e-2), 0)
@@ -84,18 +84,18 @@ def test_a_plan_holds_from_its_start_or_from_when_it_came_and_nothing_changes_be
 
 
 def test_without_a_plan_a_vehicle_stays_on_a_circle() -> None:
-    flight, pose = Flight(0.5), (3.0, 4.0, 0.0)
+    flight, pose = Itinerary(0.5), (3.0, 4.0, 0.0)
     radius = 10.0 / 0.5
     away = [np.hypot(*(flight.fly(pose, 10.0, 0.0, t)[:2] - (3.0, 4.0 + radius))) for t in range(1, 40)]
     np.testing.assert_allclose(away, radius, rtol=1e-9)
 
 
 def test_a_flight_to_a_time_that_has_passed_leads_nowhere() -> None:
-    assert Flight(0.5).fly((1.0, 2.0, 3.0), 10.0, 5.0, 4.0).tolist() == [1.0, 2.0, 3.0]
+    assert Itinerary(0.5).fly((1.0, 2.0, 3.0), 10.0, 5.0, 4.0).tolist() == [1.0, 2.0, 3.0]
 
 
 def test_a_flight_forgets_plans_that_are_over() -> None:
-    flight = Flight(0.5)
+    flight = Itinerary(0.5)
     for now in range(100):
         flight = flight.joined(FlightPlan(now + 1.0, 1.0, np.zeros(3)), float(now))
     assert len(flight.plans) <= 3

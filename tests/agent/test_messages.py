@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from tests.support.agent_team import Team, nested_kind, toy, toy_team
 from vedette import Tree
 from vedette.agent import messages
-from vedette.agent.effects import Traffic
+from vedette.agent.effects import TrafficKind
 from vedette.agent.events import Message, Pose, Scan, Sensed
 from vedette.agent.mates import MOST_MATES
 from vedette.agent.messages import Beacon
@@ -135,7 +135,7 @@ def test_a_robot_that_is_no_neighbour_is_ignored() -> None:
         team.tell(0, Message(2, messages.encode(message)))
     assert agent.dropped == 0
     assert agent.rounds.stamp == before[1]
-    assert [p for p in team.log[before[0] :] if p.traffic is not Traffic.BEACONS and p.sender == 0] == []
+    assert [p for p in team.log[before[0] :] if p.traffic is not TrafficKind.BEACONS and p.sender == 0] == []
 
 
 @pytest.mark.parametrize("message", [messages.Begin(1, 99, 1), messages.Freeze(1, 1, 0, 0, 2)])
@@ -212,7 +212,7 @@ def test_a_robot_maps_only_when_its_mates_have_been_heard_or_after_a_while() -> 
     assert toy(heard.agents[0]).observed == 0
     heard.run(0.3)
     assert toy(heard.agents[0]).observed == 1  # the held scan
-    deaf, _, _ = toy_team(Tree.chain(2), lose=lambda post: post.traffic is Traffic.BEACONS)
+    deaf, _, _ = toy_team(Tree.chain(2), lose=lambda post: post.traffic is TrafficKind.BEACONS)
     for _ in range(40):
         deaf.tell(0, Pose(1.0, 1.0, 0.0), scan)
         deaf.run(0.1)

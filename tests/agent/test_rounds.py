@@ -11,7 +11,7 @@ from tests.fuzz.fingerprint import fingerprint
 from tests.support.agent_team import Post, Team, nested_kind, toy, toy_team
 from vedette import Tree, negotiate
 from vedette.agent import Pace, messages
-from vedette.agent.effects import Traffic
+from vedette.agent.effects import TrafficKind
 from vedette.agent.events import Message, Stuck
 from vedette.negotiation import Chooser
 from vedette.problem import Coverage
@@ -135,14 +135,14 @@ def test_without_a_new_tree_a_silent_child_is_cut_and_those_behind_it_keep_their
 def test_messages_of_an_old_epoch_are_void() -> None:
     team, _, _ = toy_team(Tree.chain(3))
     team.run_round()
-    old = [post for post in team.log if post.to == 1 and post.traffic is Traffic.NEGOTIATION]
+    old = [post for post in team.log if post.to == 1 and post.traffic is TrafficKind.NEGOTIATION]
     team.plant(Tree.chain(3), [0, 1, 2])
     agent = team.agents[1]
     decisions, stamp = agent.rounds.decisions, agent.rounds.stamp
     before = len(team.log)
     for post in old:
         team.tell(1, Message(post.sender, messages.encode(post.message)))
-    said = [post for post in team.log[before:] if post.traffic is Traffic.NEGOTIATION]
+    said = [post for post in team.log[before:] if post.traffic is TrafficKind.NEGOTIATION]
     assert [type(post.message) for post in said if not isinstance(post.message, messages.Call)] == []
     assert (agent.rounds.decisions, agent.rounds.stamp, agent.dropped) == (decisions, stamp, 0)
 

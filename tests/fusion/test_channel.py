@@ -20,7 +20,7 @@ from tests.support.fusion_network import (
     sparse_evidence,
 )
 from vedette.fusion import ChannelFilter
-from vedette.fusion.codec import Codec
+from vedette.fusion.codec import EvidenceCodec
 from vedette.fusion.link import Payload
 from vedette.fusion.packing import WordPacking, join_word, split_word
 from vedette.fusion.snapshots import Delta
@@ -39,7 +39,7 @@ from vedette.fusion.tiles import (
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 
 TILING = Tiling(*SHAPE)
-CODEC = Codec(TILING, COUNTS + 1, WordPacking())
+CODEC = EvidenceCodec(TILING, COUNTS + 1, WordPacking())
 
 
 def robot(index: int, boot: int = 7) -> ChannelFilter:

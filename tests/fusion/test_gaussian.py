@@ -17,9 +17,9 @@ from vedette.fusion.gaussian import (
     GaussianChannel,
     Information,
     Likelihoods,
-    Motion,
-    Packing,
     TrackFusion,
+    TrackMotion,
+    TrackPacking,
     intersect,
     track_fusion,
 )
@@ -39,7 +39,7 @@ MANY = 3.3 * np.sqrt(2.0 / TARGETS)  # half the 99.9 % band of a mean chi-square
 class Scene:
     """Targets that move as the filter believes, seen by linear sensors with position noise."""
 
-    motion: Motion
+    motion: TrackMotion
     prior: Information
     noise: float = 2.0  # of a sensor, standard deviation [m]
 
@@ -86,7 +86,7 @@ def scene(targets: int, transition: Floats, noise: Floats, covariance: Floats) -
         return np.repeat(m[None], targets, axis=0)
 
     mean = 50.0 * np.arange(len(covariance)) * np.ones((targets, 1))
-    return Scene(Motion(each(transition), each(noise)), Information.from_moments(mean, each(covariance)))
+    return Scene(TrackMotion(each(transition), each(noise)), Information.from_moments(mean, each(covariance)))
 
 
 class Central:
@@ -394,9 +394,9 @@ def test_bad_input_is_told_in_one_line() -> None:
     with pytest.raises(InputError, match=r"\(T, d, d\)"):
         Information(np.zeros((1, 2, 3)), np.zeros((1, 2)))
     with pytest.raises(InputError, match="positive semidefinite"):
-        Motion(np.eye(2)[None], -np.eye(2)[None])
+        TrackMotion(np.eye(2)[None], -np.eye(2)[None])
     with pytest.raises(InputError, match="F F' "):
-        Motion(np.zeros((1, 2, 2)), np.zeros((1, 2, 2)))
+        TrackMotion(np.zeros((1, 2, 2)), np.zeros((1, 2, 2)))
     for way in WAYS:
         robot = fusion(way, of, 0)
         with pytest.raises(InputError, match="likelihood has shape"):
@@ -427,7 +427,7 @@ def test_damaged_track_payloads_raise_value_error_and_change_nothing(way: str) -
 @given(seed=st.integers(0, 10**6), robots=st.integers(1, 60), scale=st.floats(1e-6, 1.0))
 def test_no_sum_of_real_likelihoods_is_refused(seed: int, robots: int, scale: float) -> None:
     """However near to singular: each sees a line or two through the targets' states."""
-    rng, kinds = np.random.default_rng(seed), Likelihoods(Packing(3, 4), 1.0, 1e4)
+    rng, kinds = np.random.default_rng(seed), Likelihoods(TrackPacking(3, 4), 1.0, 1e4)
     total = kinds.elements.zero()
     for _ in range(robots):
         lines = rng.normal(size=(3, int(rng.integers(1, 3)), 4)) * (rng.random((3, 1, 1)) < 0.6)
@@ -441,7 +441,7 @@ def test_no_sum_of_real_likelihoods_is_refused(seed: int, robots: int, scale: fl
 
 def evidence(*elements: Sparse, robot: int = 7, steps: int = 1) -> bytes:
     """What a robot tells that holds these elements, one after another, of the first steps."""
-    encode = Likelihoods(Packing(2, 4), 1.0, 1e4).elements.encode
+    encode = Likelihoods(TrackPacking(2, 4), 1.0, 1e4).elements.encode
     entries = b"".join(pack(k % steps, encode(element)) for k, element in enumerate(elements))
     return encode_steps(Payload(3, sections=[((robot, 3), Entries(0, len(elements), entries))]))
 
@@ -501,7 +501,7 @@ def test_tracks_that_rounding_would_ruin_are_refused_and_change_nothing(way: str
     robot = fusion(way, of, 1)
     robot.set_neighbours([0])
     nonce = 3 << 24 if way == "channel" else 3
-    data = Packing(2, 4).encode(EXTREME[kind](of.prior))
+    data = TrackPacking(2, 4).encode(EXTREME[kind](of.prior))
     for sent, step in enumerate((0, 5), start=1):
         with pytest.raises(ValueError, match="track payload"):
             robot.receive(0, encode_tracks(TrackMessage(nonce, -1, sent, 0, 0, step, data)), 0.0)

@@ -20,15 +20,15 @@ from tests.support.fusion_network import (
     sparse_evidence,
 )
 from vedette.fusion import FIRM, ReplicatedEvidence
-from vedette.fusion.codec import Codec
-from vedette.fusion.link import Greeting, Link, Payload
+from vedette.fusion.codec import EvidenceCodec
+from vedette.fusion.link import EvidenceLink, Greeting, Payload
 from vedette.fusion.packing import CodePacking
 from vedette.fusion.snapshots import Delta, Snapshot
 from vedette.fusion.tiles import CELLS, LEVELS, Tiling, codes_of
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 
 TILING = Tiling(*SHAPE)
-CODEC = Codec(TILING, COUNTS, CodePacking())
+CODEC = EvidenceCodec(TILING, COUNTS, CodePacking())
 
 
 def robot(index: int, boot: int = 7, shape: tuple[int, int] = SHAPE) -> ReplicatedEvidence:
@@ -198,7 +198,7 @@ def test_a_payload_of_a_neighbours_earlier_start_come_late_does_not_hide_what_th
 
 
 def test_a_greeting_is_repeated_until_it_is_answered() -> None:
-    link: Link[Delta[np.uint8]] = Link(0, 5, resend_after=2.0)
+    link: EvidenceLink[Delta[np.uint8]] = EvidenceLink(0, 5, resend_after=2.0)
     assert link.greeting(0.0) == Greeting(-1, True)
     assert link.greeting(1.0) is None
     link.hear(Payload(9, Greeting(-1, False)), 1.5)  # theirs, not an answer
@@ -379,7 +379,7 @@ def test_more_tiles_than_a_payload_may_hold_are_refused() -> None:
 
 
 def test_a_deflate_bomb_is_refused() -> None:
-    huge = Codec(Tiling(4000, 4000), COUNTS, CodePacking())
+    huge = EvidenceCodec(Tiling(4000, 4000), COUNTS, CodePacking())
     tiles = np.arange(huge.tiling.count)
     delta = Delta(0, 1, tiles, np.ones((len(tiles), CELLS), np.bool_), np.zeros(len(tiles) * CELLS, np.uint8))
     with pytest.raises(ValueError, match="fusion payload"):

@@ -20,7 +20,7 @@ from tests.support.small_missions import small_maze
 from tests.support.track_scenes import scenario
 from vedette.agent import Agent, step
 from vedette.agent import messages as wire
-from vedette.agent.effects import Drive, Effect, Fly, Job, Send, Traffic
+from vedette.agent.effects import Drive, Effect, Fly, Job, Send, TrafficKind
 from vedette.agent.events import Event, JobDone, Message, Pose, TreeChanged
 from vedette.sim.explore.run import prepare
 from vedette.sim.explore.simulation import ExploreSetup
@@ -69,7 +69,7 @@ def _stage(make: Callable[[], Simulation]) -> Stage:
                     robots.carry_out(i, effect, now)
 
     def catch(i: int, message: Message, now: float) -> None:
-        post = Post(now, message.sender, i, Traffic.BEACONS, wire.decode(message.payload))
+        post = Post(now, message.sender, i, TrafficKind.BEACONS, wire.decode(message.payload))
         kind = i, nested_kind(post), message.sender
         met[kind] += now >= BEGIN
         if i in CAUGHT and 0 < met[kind] <= MOST_SCENES:

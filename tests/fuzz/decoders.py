@@ -15,12 +15,12 @@ from tests.fuzz.mutation import mutate_message
 from tests.fuzz.target import Broken, Target
 from vedette.agent import messages as agent_messages
 from vedette.domains.mapping.impact import Impact as Misses
-from vedette.domains.mapping.impact import ImpactCodec as MappingCodec
-from vedette.domains.search.impact import ImpactCodec as SearchCodec
-from vedette.domains.tracking.codec import ImpactCodec as TrackingCodec
+from vedette.domains.mapping.impact import MapImpactCodec as MappingCodec
+from vedette.domains.search.impact import SearchImpactCodec as SearchCodec
+from vedette.domains.tracking.codec import TrackImpactCodec as TrackingCodec
 from vedette.domains.tracking.impact import impact_of
-from vedette.fusion.codec import Codec as FusionCodec
-from vedette.fusion.gaussian import Information, Packing
+from vedette.fusion.codec import EvidenceCodec as FusionCodec
+from vedette.fusion.gaussian import Information, TrackPacking
 from vedette.fusion.gaussian import wire as track_wire
 from vedette.fusion.link import Greeting, Payload
 from vedette.fusion.packing import CodePacking, WordPacking
@@ -30,7 +30,7 @@ from vedette.fusion.steps import wire as step_wire
 from vedette.fusion.tiles import CELLS, Tiling
 from vedette.maps import GridFrame
 from vedette.negotiation import messages as negotiation_messages
-from vedette.negotiation.messages import Down, Gather, Outcome, Stop, Tally, Token, Up
+from vedette.negotiation.messages import Down, Gather, RoundOutcome, Stop, Tally, Token, Up
 from vedette.net import report
 from vedette.net.explore import content as map_content
 from vedette.net.gather import status_of
@@ -109,7 +109,7 @@ def _information() -> list[Any]:
 def _negotiation(codec: MappingCodec) -> list[Any]:
     mu = _misses(codec)[1]
     tally = Tally(3, 1, 12.5, 0.25, 4, 99.0)
-    outcome = Outcome(12.5, 13.0, 2, True)
+    outcome = RoundOutcome(12.5, 13.0, 2, True)
     return [
         Gather(mu, 2, 40.0, 12.0),
         Token(None, tally),
@@ -175,7 +175,8 @@ def conditions() -> list[Any]:
     return [
         report.Condition(
             0, 99, "robot-1", 20.0, 1.5, "driving", 1.0, 2.0, 0.5, (1.0, 2.0, 1.5, 2.0),
-            *place, (link,), 1 << 60, 0.5, *figures, report.Spread(7, 30.0, 50.0, 80.0), None, None, 0.5,
+            *place, (link,), 1 << 60, 0.5, *figures,
+            report.SpreadReport(7, 30.0, 50.0, 80.0), None, None, 0.5,
         )
     ]  # fmt: skip
 
@@ -205,7 +206,7 @@ def _read_report(data: bytes) -> None:
 def decoders() -> list[Target]:
     """Return them all."""
     mapping, searching = MappingCodec(CELLS_PLANNED), SearchCodec(CELLS_PLANNED, LAYERS)
-    tracking, vectors, packing = TrackingCodec(TARGETS, HORIZON), SparseIntegers(300), Packing(3, 4)
+    tracking, vectors, packing = TrackingCodec(TARGETS, HORIZON), SparseIntegers(300), TrackPacking(3, 4)
     say = partial(negotiation_messages.encode, codec=mapping)
     hear = partial(negotiation_messages.decode, codec=mapping)
     codes, words = _map_codec(words=False), _map_codec(words=True)

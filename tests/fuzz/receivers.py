@@ -13,7 +13,7 @@ from tests.fuzz.scripts import Script, Stage, Told, scripted
 from tests.fuzz.target import Target
 from tests.support.step_network import Exchange
 from vedette.fusion import ChannelFilter, ReplicatedEvidence
-from vedette.fusion.gaussian import WAYS, Information, Motion, TrackFusion, track_fusion
+from vedette.fusion.gaussian import WAYS, Information, TrackFusion, TrackMotion, track_fusion
 from vedette.fusion.steps import ReplicatedSteps, Sparse, SparseIntegers, StepSums
 from vedette.overlay import Overlay, ReliableLink
 
@@ -92,7 +92,15 @@ class TrackRobot:
         noise = np.tile(np.diag([0.2, 0.2, 0.1, 0.1]), (2, 1, 1))
         prior = Information(np.tile(np.diag([0.01, 0.01, 0.2, 0.2]), (2, 1, 1)), np.zeros((2, 4)))
         self.share: TrackFusion = track_fusion(
-            way, robot, 1, prior, Motion(transition, noise), 0, most_matrix=1.0, most_vector=1e3, window=6
+            way,
+            robot,
+            1,
+            prior,
+            TrackMotion(transition, noise),
+            0,
+            most_matrix=1.0,
+            most_vector=1e3,
+            window=6,
         )
 
     def see(self, step: int, rng: np.random.Generator) -> None:

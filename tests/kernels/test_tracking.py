@@ -10,18 +10,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from vedette.kernels.reference import tracking as reference
-from vedette.kernels.tracking import Measure, Motion, Sparse, chain_gradient, chain_values
+from vedette.kernels.tracking import ChainMotion, Measure, Sparse, chain_gradient, chain_values
 
 MEASURES: tuple[Measure, ...] = get_args(Measure)
 seeds = st.integers(0, 2**32 - 1)
 measures = st.sampled_from(MEASURES)
 
 
-def random_motion(rng: np.random.Generator, targets: int) -> Motion:
+def random_motion(rng: np.random.Generator, targets: int) -> ChainMotion:
     """Any covariances and motions; the disturbance has rank 2."""
     root, push = rng.normal(size=(targets, 4, 4)), rng.normal(size=(targets, 4, 2))
     transitions = np.eye(4) + 0.3 * rng.normal(size=(targets, 4, 4))
-    return Motion(
+    return ChainMotion(
         root @ root.swapaxes(1, 2) + 0.01 * np.eye(4), transitions, push @ push.swapaxes(1, 2) * rng.random()
     )
 
@@ -78,7 +78,7 @@ def test_the_gradient_agrees_with_central_differences_of_the_value(measure: Meas
 @pytest.mark.parametrize("strength", [1e-12, 1e-6, 1.0, 1e6, 1e12])
 def test_information_of_any_strength_keeps_its_digits(strength: float) -> None:
     covariance = np.diag([4.0, 9.0, 1.0, 1.0])
-    motion = Motion(covariance[None], np.eye(4)[None], np.zeros((1, 4, 4)))
+    motion = ChainMotion(covariance[None], np.eye(4)[None], np.zeros((1, 4, 4)))
     nobody = (np.empty(0, np.int64), np.empty((0, 1, 3)))
     own = (np.zeros(1, np.int64), strength * np.array([[[1.0, 0.0, 1.0]]]))
     [value] = chain_values(motion, "trajectory", nobody, np.array([0, 1]), own)

@@ -36,7 +36,7 @@ from vedette.kernels.misses import SparseMisses
 from vedette.maps import GridFrame
 from vedette.maps.swept import most_cells_swept
 from vedette.negotiation import Chooser, Claims, JacobiNode, TokenNode, decode
-from vedette.negotiation.messages import Gather, Outcome, Stop, Tally, Token, Up
+from vedette.negotiation.messages import Gather, RoundOutcome, Stop, Tally, Token, Up
 from vedette.team import Most, PlatformSpec
 
 SEEDS = st.integers(0, 100_000)
@@ -245,8 +245,8 @@ def test_values_that_are_no_numbers_do_not_pass(wrong: float) -> None:
     bad: list[Any] = [
         Gather(None, 1, 0.0, wrong),
         Token(None, msgspec.structs.replace(tally, value=wrong)),
-        Stop(Outcome(wrong, None, 1, True)),
-        Stop(Outcome(1.0, wrong, 1, True)),
+        Stop(RoundOutcome(wrong, None, 1, True)),
+        Stop(RoundOutcome(1.0, wrong, 1, True)),
     ]
     if not wrong > 0.0:  # what is not known is infinite
         bad += [
@@ -276,7 +276,7 @@ def test_any_bytes_are_a_message_or_an_input_error(data: bytes) -> None:
         decode(data, FloatCodec())
 
 
-@pytest.mark.parametrize("codec", [mapping.ImpactCodec(2000), search.ImpactCodec(2000, 10)])
+@pytest.mark.parametrize("codec", [mapping.MapImpactCodec(2000), search.SearchImpactCodec(2000, 10)])
 def test_what_inflates_without_end_is_refused_at_the_size_of_the_map(codec: Any) -> None:
     bomb = zlib.compressobj(9, wbits=-15)
     data = b"".join(bomb.compress(bytes(1_000_000)) for _ in range(50)) + bomb.flush()

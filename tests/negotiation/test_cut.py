@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from tests.support.random_teams import Float, Longest, Node, misses
 from vedette import Coverage, InputError, Tree, exhaustive
-from vedette.negotiation import Chooser, JacobiNode, Message, Outcome, Send, TokenNode
+from vedette.negotiation import Chooser, JacobiNode, Message, Outgoing, RoundOutcome, TokenNode
 from vedette.negotiation.messages import Gather, Stop, Tally, Token, Up
 from vedette.problem import Reach
 from vedette.problem.reach import behind
@@ -66,7 +66,7 @@ class Round:
             self.cut_at = len(self.log)
         self._post(parent, self.nodes[parent].cut(child))
 
-    def _post(self, sender: int, sends: Sequence[Send[Float]]) -> None:
+    def _post(self, sender: int, sends: Sequence[Outgoing[Float]]) -> None:
         for send in sends:
             self._links.setdefault((sender, send.to), []).append(send.message)
 
@@ -81,7 +81,7 @@ class Round:
             if k in self.dead and k != parents[i]
         ]
 
-    def finish(self) -> Outcome:
+    def finish(self) -> RoundOutcome:
         """Deliver everything, cut whoever is dead and waited for, until the root is through."""
         while True:
             if self.happen():
@@ -169,7 +169,7 @@ def joined(run: Round) -> set[int]:
     return found
 
 
-def play(run: Round) -> Outcome:
+def play(run: Round) -> RoundOutcome:
     """Let some platforms fall silent at any message, some of them later; return how the round ends."""
     rng, n = run.rng, run.tree.n
     dying = rng.permutation(np.arange(1, n))[: rng.integers(1, n)].tolist()
@@ -277,7 +277,7 @@ def test_what_a_cut_child_still_says_is_dropped_without_a_word(scheme: type[Node
         Gather(mu, 1, 0.0, 0.0),
         Token(mu, tally),
         Up(mu, 0.0, 0.0, ()),
-        Stop(Outcome(9.0, None, 1, True)),
+        Stop(RoundOutcome(9.0, None, 1, True)),
     ]
     assert [node.receive(1, message) for message in late] == [[]] * len(late)
     assert node.finished is None

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tests.support.random_teams import Float, Longest, deliver, informations, misses
 from vedette import CountedCoverage, Coverage, InputError, LogDet, Tree, bound, counted, exhaustive, negotiate
 from vedette.negotiation import Chooser, JacobiNode, Message
-from vedette.negotiation.messages import Down, Outcome, Stop, Up
+from vedette.negotiation.messages import Down, RoundOutcome, Stop, Up
 
 A, B = np.array([0.0, 1.0]), np.array([1.0, 0.0])  # two frontiers, each surely seen by who goes there
 WORTH = np.array([3.0, 2.0])
@@ -150,7 +150,7 @@ def test_messages_out_of_turn_are_refused() -> None:
     def node() -> JacobiNode[Float]:
         return JacobiNode([1, 2], 1, Chooser(Coverage(), WORTH, [A, B]))
 
-    stop = Stop(Outcome(0.0, None, 1, True), iterate=4)
+    stop = Stop(RoundOutcome(0.0, None, 1, True), iterate=4)
     cases: list[tuple[int, Message[Float], str]] = [
         (7, Down(A), "7, who is not a neighbour"),
         (1, Up(A, 0.0, 0.0, ()), "Up from 1 is out of turn"),

@@ -10,7 +10,7 @@ import pytest
 from tests.support.random_teams import Float, misses
 from vedette import Coverage, InputError, Objective, Tree, exhaustive, negotiate
 from vedette.negotiation import SCHEMES, Message, decode, encode
-from vedette.negotiation.messages import Down, Gather, Outcome, Stop, Tally, Token, Up, plain_size
+from vedette.negotiation.messages import Down, Gather, RoundOutcome, Stop, Tally, Token, Up, plain_size
 
 
 class Plain:
@@ -57,7 +57,7 @@ def test_any_commutative_monoid_will_do_even_sets(scheme: str) -> None:
 
 
 def test_a_message_survives_its_bytes() -> None:
-    tally, outcome = Tally(3, 2, 1.5, float("inf"), 9, 4.0), Outcome(1.0, None, 2, True, 0)
+    tally, outcome = Tally(3, 2, 1.5, float("inf"), 9, 4.0), RoundOutcome(1.0, None, 2, True, 0)
     mu = np.array([0.5, 0.0])
     sent: list[Message[Float]] = [
         Gather(mu, 4, 2.0, 1.5),
@@ -80,7 +80,7 @@ def test_a_message_without_its_impact_takes_at_most_sixty_bytes() -> None:
     tally = Tally(most, most, 1e300, 1e300, most, 1e300)
     assert len(encode(Token(None, tally), Plain())) <= 60
     assert len(encode(Gather(None, most, 1e300, 1e300), Plain())) <= 60
-    assert len(encode(Stop(Outcome(1e300, 1e300, most, False, most), most), Plain())) <= 60
+    assert len(encode(Stop(RoundOutcome(1e300, 1e300, most, False, most), most), Plain())) <= 60
 
 
 def test_malformed_bytes_are_refused() -> None:

@@ -18,7 +18,17 @@ import zenoh
 
 from tests.support.net_team import TEAM, Ports, issue, real_time, wait_until
 from vedette.errors import InputError
-from vedette.net import Access, Datagram, Inbox, Operator, PeerGone, PeerSeen, Published, Topic, Transport
+from vedette.net import (
+    Access,
+    Inbox,
+    Operator,
+    PeerGone,
+    PeerSeen,
+    Published,
+    ReceivedDatagram,
+    Topic,
+    Transport,
+)
 from vedette.net.access import MOST_PAYLOAD, settings
 from vedette.net.credentials import credentials
 from vedette.net.endpoints import Endpoint, free_port, parse_endpoint
@@ -51,7 +61,7 @@ def datagrams(inbox: Inbox, wait: float = QUIET) -> list[tuple[int, bytes]]:
     """Take everything that comes until nothing has come for a while."""
     found = []
     while (event := inbox.get(wait)) is not None:
-        if isinstance(event, Datagram):
+        if isinstance(event, ReceivedDatagram):
             found.append((event.robot, event.payload))
     return found
 
@@ -87,7 +97,7 @@ def test_datagrams_go_both_ways_whole_and_in_order_with_their_sender_and_time(po
         sent = [bytes([k]) * size for k, size in enumerate((0, 1, 1000, 60_000, 300_000))]
         assert_delivered(b, a, sent)
         assert_delivered(a, b, sent)
-        wait_until(lambda: b.send(0, b"now") or a.inbox.get(0.1) == Datagram(1, b"now", 7.0))
+        wait_until(lambda: b.send(0, b"now") or a.inbox.get(0.1) == ReceivedDatagram(1, b"now", 7.0))
 
 
 def test_the_neighbour_of_a_neighbour_hears_and_sees_nothing(ports: Ports) -> None:
@@ -231,12 +241,12 @@ def test_the_operator_sees_everybody_hears_reports_and_asks_for_statuses(ports: 
 def test_a_full_inbox_drops_datagrams_and_keeps_the_latest_news_of_peers() -> None:
     inbox = Inbox(most_events=3, most_bytes=100)
     for k in range(5):
-        inbox.put(Datagram(k, b"", 0.0))
+        inbox.put(ReceivedDatagram(k, b"", 0.0))
     inbox.put(PeerGone(0, 1.0))
     assert inbox.dropped == 3
     assert [inbox.get(0) for _ in range(4)] == [
-        Datagram(1, b"", 0.0),
-        Datagram(2, b"", 0.0),
+        ReceivedDatagram(1, b"", 0.0),
+        ReceivedDatagram(2, b"", 0.0),
         PeerGone(0, 1.0),
         None,
     ]
@@ -245,10 +255,10 @@ def test_a_full_inbox_drops_datagrams_and_keeps_the_latest_news_of_peers() -> No
 def test_an_inbox_holds_no_more_bytes_than_it_may() -> None:
     inbox = Inbox(most_events=100, most_bytes=100)
     for _ in range(3):
-        inbox.put(Datagram(0, bytes(60), 0.0))
+        inbox.put(ReceivedDatagram(0, bytes(60), 0.0))
     assert inbox.dropped == 2
     assert inbox.get(0) is not None
-    inbox.put(Datagram(0, bytes(100), 0.0))
+    inbox.put(ReceivedDatagram(0, bytes(100), 0.0))
     assert inbox.dropped == 2
 
 

@@ -32,14 +32,14 @@ from vedette_reproduction.quadratic import (
     steps_to_optimum,
     token_step,
 )
-from vedette_reproduction.run import QUICK, Run
+from vedette_reproduction.run import QUICK, ReproductionRun
 
 
 @pytest.fixture
-def run(tmp_path: Path) -> Run:
+def run(tmp_path: Path) -> ReproductionRun:
     """A very small reproduction."""
     scale = dataclasses.replace(QUICK, teams=(2, 4, 8), largest_dense=8, trials=3, targets=4000)
-    return Run(scale, 7, tmp_path, Missions(silent), silent)
+    return ReproductionRun(scale, 7, tmp_path, Missions(silent), silent)
 
 
 def numbers(table: Table, column: str) -> list[float]:
@@ -67,7 +67,7 @@ def test_joint_observations_multiply_with_the_platforms() -> None:
     assert [outcomes([range(4 * i, 4 * i + 4) for i in range(n)]) for n in (1, 2, 3)] == [5, 25, 125]
 
 
-def test_definition_claims_hold(run: Run) -> None:
+def test_definition_claims_hold(run: ReproductionRun) -> None:
     assert c1(run).verdict is Verdict.HOLDS
     section = c2(run)
     assert section.verdict is Verdict.HOLDS
@@ -83,7 +83,9 @@ def test_two_robots_cycle_between_the_values_of_the_two_frontiers() -> None:
     assert two_robots("token").value == pytest.approx(1.8)
 
 
-def test_all_that_begin_at_the_same_of_equal_lists_cycle_and_get_the_best_place_only(run: Run) -> None:
+def test_all_that_begin_at_the_same_of_equal_lists_cycle_and_get_the_best_place_only(
+    run: ReproductionRun,
+) -> None:
     section = c3(run)
     assert section.verdict is Verdict.IN_PART
     cycles = named(section, "c3_cycles")
@@ -111,7 +113,7 @@ def test_random_hessians_are_dominant_where_they_are_meant_to_be() -> None:
         assert np.linalg.eigvalsh(q)[0] > 0.0
 
 
-def test_a_separable_problem_takes_one_sweep_and_dense_coupling_diverges(run: Run) -> None:
+def test_a_separable_problem_takes_one_sweep_and_dense_coupling_diverges(run: ReproductionRun) -> None:
     section = c8(run)
     sweeps = named(section, "c8_sweeps")
     assert {row[3] for row in sweeps.rows if row[0] == "separable"} == {1.0}
@@ -132,7 +134,7 @@ def test_messages_are_twice_the_links_a_sweep(scheme: str) -> None:
         assert recording.sent(n).sum() == len(recording.letters)
 
 
-def test_cost_claims_have_their_verdicts_and_their_counts(run: Run) -> None:
+def test_cost_claims_have_their_verdicts_and_their_counts(run: ReproductionRun) -> None:
     sections = c4_to_c7(run)
     assert [section.verdict for section in sections] == [
         Verdict.HOLDS, Verdict.HOLDS, Verdict.IN_PART, Verdict.HOLDS,
@@ -154,7 +156,9 @@ def test_only_touched_cells_travel_and_come_back_as_they_were() -> None:
     np.testing.assert_array_equal(codec.decode(codec.encode(impact)), impact)
 
 
-def test_asynchronous_delivery_changes_nothing_and_a_ring_counts_again_and_again(run: Run) -> None:
+def test_asynchronous_delivery_changes_nothing_and_a_ring_counts_again_and_again(
+    run: ReproductionRun,
+) -> None:
     section = c9(run)
     order = named(section, "c9_order").rows[0]
     assert order[1] == order[2] == order[3]
@@ -175,7 +179,7 @@ def test_a_sweep_of_news_takes_one_message_each_way_on_every_link() -> None:
     np.testing.assert_allclose(members[0].links.others(), rest)
 
 
-def test_fusion_by_the_code_of_control_equals_the_central_filter(run: Run) -> None:
+def test_fusion_by_the_code_of_control_equals_the_central_filter(run: ReproductionRun) -> None:
     section = c10(run)
     assert section.verdict is Verdict.HOLDS
     assert {row[2] for row in named(section, "c10_form").rows} == {2 * 5}
@@ -197,7 +201,7 @@ def test_the_central_filter_is_the_conditional_of_the_joint_gaussian() -> None:
     assert gain == pytest.approx(0.5 * np.log(joint[0, 0] / look.noise[0, 0]))
 
 
-def test_search_value_is_the_share_of_drawn_targets_detected(run: Run) -> None:
+def test_search_value_is_the_share_of_drawn_targets_detected(run: ReproductionRun) -> None:
     section = c13(run)
     assert section.verdict is Verdict.HOLDS
     for value, drawn in zip(

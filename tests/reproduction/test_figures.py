@@ -20,13 +20,13 @@ from vedette_reproduction.figures.figure_3 import analytic, figure_3
 from vedette_reproduction.figures.figure_4 import figure_4
 from vedette_reproduction.figures.figure_6 import figure_6
 from vedette_reproduction.missions import Missions
-from vedette_reproduction.run import Run
+from vedette_reproduction.run import ReproductionRun
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
+def run(tmp_path_factory: pytest.TempPathFactory) -> ReproductionRun:
     """A reproduction in a very small office; its missions are run once."""
-    return Run(SMALL, 0, tmp_path_factory.mktemp("figures"), Missions(silent), silent)
+    return ReproductionRun(SMALL, 0, tmp_path_factory.mktemp("figures"), Missions(silent), silent)
 
 
 def is_picture(path: Path) -> bool:
@@ -35,7 +35,7 @@ def is_picture(path: Path) -> bool:
         return image.format == "PNG" and min(image.size) > 300 and bool(np.ptp(np.asarray(image)) > 0)
 
 
-def test_figure_1_shows_what_the_paper_says_each_message_holds(run: Run) -> None:
+def test_figure_1_shows_what_the_paper_says_each_message_holds(run: ReproductionRun) -> None:
     section = figure_1(run)
     rows = named(section, "figure_1_messages").rows
     steps = [(row[2], row[3], row[5]) for row in rows]
@@ -48,7 +48,7 @@ def test_figure_1_shows_what_the_paper_says_each_message_holds(run: Run) -> None
     assert is_picture(run.figures / section.pictures[0])
 
 
-def test_figure_2_has_three_posteriors_or_one_for_every_count_of_reports(run: Run) -> None:
+def test_figure_2_has_three_posteriors_or_one_for_every_count_of_reports(run: ReproductionRun) -> None:
     for n in range(1, MOST + 1):
         assert posteriors(PERFECT, n) == pytest.approx([0.0, PRIOR, 1.0])
         odds = {
@@ -62,7 +62,7 @@ def test_figure_2_has_three_posteriors_or_one_for_every_count_of_reports(run: Ru
     assert is_picture(run.figures / section.pictures[0])
 
 
-def test_figure_3_sees_far_more_than_the_grid_predicts_and_counts_it(run: Run) -> None:
+def test_figure_3_sees_far_more_than_the_grid_predicts_and_counts_it(run: ReproductionRun) -> None:
     assert analytic(np.array([0.1, 1.0])) == pytest.approx([0.5, 2.0**-10])
     section = figure_3(run)
     rows = named(section, "figure_3").rows
@@ -76,7 +76,7 @@ def test_figure_3_sees_far_more_than_the_grid_predicts_and_counts_it(run: Run) -
     assert is_picture(run.figures / section.pictures[0])
 
 
-def test_figure_4_compares_with_the_optimum_over_all_joint_choices(run: Run) -> None:
+def test_figure_4_compares_with_the_optimum_over_all_joint_choices(run: ReproductionRun) -> None:
     section = figure_4(run)
     rows = named(section, "figure_4_schemes").rows
     assert max(float(row[3] or 0) for row in rows) <= 1.0 + 1e-6
@@ -91,7 +91,7 @@ def test_figure_4_compares_with_the_optimum_over_all_joint_choices(run: Run) -> 
     assert is_picture(run.figures / section.pictures[0])
 
 
-def test_figure_6_shows_growing_coverage_and_both_planners(run: Run) -> None:
+def test_figure_6_shows_growing_coverage_and_both_planners(run: ReproductionRun) -> None:
     section = figure_6(run)
     assert [row[0] for row in named(section, "figure_6_missions").rows] == ["rate", DEFAULT]
     log = run.mission().report.log
@@ -101,7 +101,7 @@ def test_figure_6_shows_growing_coverage_and_both_planners(run: Run) -> None:
     assert is_picture(run.figures / section.pictures[0])
 
 
-def test_missions_end_and_leave_little(run: Run) -> None:
+def test_missions_end_and_leave_little(run: ReproductionRun) -> None:
     section = c12(run)
     assert section.verdict is Verdict.HOLDS
     assert all(float(row[4] or 0) > 0.99 for row in section.tables[0].rows)

@@ -12,8 +12,8 @@ import pytest
 from tests.support.reproductions import SMALL, SOURCE, Quiet, interrupted, some_section
 from vedette_reproduction.content import Section, table, write_csv
 from vedette_reproduction.report import About, report_html
-from vedette_reproduction.reproduce import Made, Result, reproduce, verdicts
-from vedette_reproduction.run import FULL, QUICK, Run
+from vedette_reproduction.reproduce import Made, Reproduction, reproduce, verdicts
+from vedette_reproduction.run import FULL, QUICK, ReproductionRun
 
 
 def test_csv_has_what_the_table_has(tmp_path: Path) -> None:
@@ -26,7 +26,7 @@ def test_csv_has_what_the_table_has(tmp_path: Path) -> None:
         ]  # fmt: skip
 
 
-def folder_of(path: Path, contents: dict[str, Made], seed: int = 0) -> Result:
+def folder_of(path: Path, contents: dict[str, Made], seed: int = 0) -> Reproduction:
     """Reproduce some parts in a new folder."""
     path.mkdir()
     return reproduce(path, SMALL, seed, SOURCE, Quiet(), contents)
@@ -90,7 +90,7 @@ def test_an_interrupted_run_keeps_what_is_done_and_names_the_rest(tmp_path: Path
 
 
 def test_a_failed_run_leaves_nothing_behind(tmp_path: Path) -> None:
-    def broken(run: Run) -> Section:
+    def broken(run: ReproductionRun) -> Section:
         raise RuntimeError("broken")
 
     with pytest.raises(RuntimeError, match="broken"):

@@ -16,7 +16,7 @@ from vedette.maps.world import World, reachable_poses, standable
 from vedette.sim.components import components, largest
 from vedette.sim.worlds import GENERATORS, cave, maze, office
 from vedette.sim.worlds.floor_plan import draw_plan
-from vedette.sim.worlds.size import Scale
+from vedette.sim.worlds.size import WorldScale
 
 SIZES = [(30.0, 20.0, 0.1), (20.0, 30.0, 0.1), (10.0, 10.0, 0.1), (40.0, 30.0, 0.2), (12.0, 11.0, 0.05)]
 
@@ -64,7 +64,7 @@ def test_the_same_seed_gives_the_same_world_and_others_differ(kind: str) -> None
 @pytest.mark.parametrize("seed", range(6))
 def test_an_office_has_twelve_rooms_that_a_disc_of_a_quarter_metre_reaches(seed: int) -> None:
     made = office(np.random.default_rng(seed))
-    plan = draw_plan(np.random.default_rng(seed), 200, 300, Scale(0.1))
+    plan = draw_plan(np.random.default_rng(seed), 200, 300, WorldScale(0.1))
     standing = standable(made, 0.25)
     assert len(plan.rooms) >= 12
     assert in_one_piece(standing)
@@ -81,7 +81,7 @@ def test_an_office_has_twelve_rooms_that_a_disc_of_a_quarter_metre_reaches(seed:
 @pytest.mark.parametrize("seed", range(6))
 def test_every_office_door_is_nine_tenths_of_a_metre_wide_between_walls_at_most_two_thick(seed: int) -> None:
     made = office(np.random.default_rng(seed))
-    plan = draw_plan(np.random.default_rng(seed), 200, 300, Scale(0.1))
+    plan = draw_plan(np.random.default_rng(seed), 200, 300, WorldScale(0.1))
     assert len(plan.doors) >= 10
     for door in plan.doors:
         solid = made.solid if door.height > door.width else made.solid.T

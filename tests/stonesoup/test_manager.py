@@ -37,7 +37,13 @@ from stonesoup.updater.kalman import ExtendedKalmanUpdater
 from bench.stonesoup.managers import BRUTE, GREEDY, LOG_DET, OURS, Decision
 from bench.stonesoup.scenario import START, THEN, Scene, scene
 from vedette import InputError, exhaustive
-from vedette.stonesoup import LogDetReward, TrackReward, Tracks, UncertaintyReward, VedetteSensorManager
+from vedette.stonesoup import (
+    LogDetReward,
+    StoneSoupTracks,
+    TrackReward,
+    UncertaintyReward,
+    VedetteSensorManager,
+)
 from vedette.stonesoup.candidates import Menu, joint_actions, menus
 from vedette.stonesoup.forecast import forecast
 from vedette.stonesoup.information import measured
@@ -51,9 +57,9 @@ def small(radars: int, targets: int, seed: int) -> Scene:
     return scene(radars, targets, np.random.default_rng(seed))
 
 
-def menus_of(made: Scene) -> tuple[Tracks, list[Menu]]:
+def menus_of(made: Scene) -> tuple[StoneSoupTracks, list[Menu]]:
     ahead = forecast(made.tracks, made.predictor, THEN)
-    return Tracks.of(ahead.covariances), menus(made.sensors, [], ahead, 1000)[0]
+    return StoneSoupTracks.of(ahead.covariances), menus(made.sensors, [], ahead, 1000)[0]
 
 
 def radar(kind: Any = RadarRotatingBearingRange, noise: Any = None, **changed: Any) -> Any:
@@ -86,7 +92,7 @@ def test_the_rewards_keep_the_laws_of_an_objective(reward: TrackReward) -> None:
     rows = rng.normal(size=(7, 3, 2, 4)) * (rng.random((7, 3, 1, 1)) < 0.6)
     impacts = [np.swapaxes(each, 1, 2) @ each for each in rows]
     spread = rng.normal(size=(3, 4, 4))
-    check_objective(reward, Tracks.of(spread @ np.swapaxes(spread, 1, 2) + np.eye(4)), impacts)
+    check_objective(reward, StoneSoupTracks.of(spread @ np.swapaxes(spread, 1, 2) + np.eye(4)), impacts)
 
 
 def test_the_uncertainty_reward_does_not_diminish_so_that_it_can_have_no_bound() -> None:
@@ -95,7 +101,7 @@ def test_the_uncertainty_reward_does_not_diminish_so_that_it_can_have_no_bound()
 
     one, other = (np.diag(diagonal)[None] for diagonal in ([10.0, 0.0], [0.0, 10.0]))
     with pytest.raises(LawBroken, match="returns do not diminish"):
-        check_objective(Bold(), Tracks.of(np.eye(2)[None]), [one, other])
+        check_objective(Bold(), StoneSoupTracks.of(np.eye(2)[None]), [one, other])
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -106,8 +112,8 @@ def test_the_rewards_are_entropy_and_norm_taken_off_the_covariances(seed: int) -
     after = np.linalg.inv(np.linalg.inv(before) + told)
     entropy = 0.5 * np.log(np.linalg.det(before) / np.linalg.det(after)).sum()
     norm = sum(np.linalg.norm(p) - np.linalg.norm(q) for p, q in zip(before, after, strict=True))
-    assert REWARDS["logdet"].value(Tracks.of(before), told) == pytest.approx(entropy)
-    assert REWARDS["uncertainty"].value(Tracks.of(before), told) == pytest.approx(norm)
+    assert REWARDS["logdet"].value(StoneSoupTracks.of(before), told) == pytest.approx(entropy)
+    assert REWARDS["uncertainty"].value(StoneSoupTracks.of(before), told) == pytest.approx(norm)
 
 
 # -- what sensors tell ------------------------------------------------------------------------------

@@ -14,7 +14,7 @@ from vedette.study.compare import by_draw, difference, mean
 from vedette.study.curves import CurvesOf, at, averaged, lowest, time_axis
 from vedette.study.facets import AXES, Facet, cells, margins, overview, panels
 from vedette.study.metrics import AUC, TIMES, TOTAL
-from vedette.study.mission import Result
+from vedette.study.mission import RunResult
 from vedette.study.rows import Row
 from vedette.study.tables import difference_rows, mean_rows
 
@@ -195,9 +195,9 @@ def test_curves_are_averaged_within_draws_and_runs_that_broke_are_left_out() -> 
     rows = [row("a", seed=0), row("a", seed=0, starts="together"), row("a", seed=1), row("a", seed=2)]
     ends = {rows[0]["case"]: 0.0, rows[1]["case"]: 0.2, rows[2]["case"]: 0.5}
     curves: CurvesOf = {
-        (each["case"], "a"): Result({}, {}, (1.0,), (ends[each["case"]],), (0.0, 1.0), (0.9, 0.0))
+        (each["case"], "a"): RunResult({}, {}, (1.0,), (ends[each["case"]],), (0.0, 1.0), (0.9, 0.0))
         if each["case"] in ends
-        else Result({}, {}, (), (), (), ())
+        else RunResult({}, {}, (), (), (), ())
         for each in rows
     }
     times = np.array([0.0, 2.0])

@@ -23,7 +23,7 @@ from vedette.sim.worlds import maze
 from vedette.study import backends
 from vedette.study.combinations import runs_of
 from vedette.study.conduct import Conducted, conduct
-from vedette.study.mission import Result, broken, carry_out, prepared
+from vedette.study.mission import RunResult, broken, carry_out, prepared
 from vedette.study.outputs import write_outputs
 from vedette.study.progress import StudyProgress, in_words
 from vedette.study.provenance import Provenance, commit_of, fingerprint
@@ -60,7 +60,7 @@ def quiet() -> Console:
     return Console(file=StringIO())
 
 
-def made_up(run: Run) -> Result:
+def made_up(run: Run) -> RunResult:
     """A result without a mission."""
     time = 10.0 * run.robots + run.setup.seed + len(run.setup.planner)
     figures: dict[str, Value] = {
@@ -74,7 +74,7 @@ def made_up(run: Run) -> Result:
     bounds = {f"bound_{name}": 1.0 for name in ("t50_s", "t90_s", "t95_s", "t99_s", "s", "auc_s")}
     costs = dict.fromkeys(("path_m", "path_max_m", "overlap", "seen_std_m2", "bytes_fusion"), 1.0)
     known = {**figures, **levels, **bounds, **costs}
-    return Result(known, {"wall_s": 1.0}, (0.0, time), (1.0, 0.0), (0.0, 1.0), (0.5, 0.0))
+    return RunResult(known, {"wall_s": 1.0}, (0.0, time), (1.0, 0.0), (0.0, 1.0), (0.5, 0.0))
 
 
 class Counting:
@@ -84,7 +84,7 @@ class Counting:
         self.done: list[Run] = []
         self._stop_after, self._breaking = stop_after, breaking
 
-    def __call__(self, run: Run) -> Result:
+    def __call__(self, run: Run) -> RunResult:
         """Make a result up."""
         if len(self.done) == self._stop_after:
             raise KeyboardInterrupt
@@ -272,7 +272,7 @@ class Fragile(Workers):
 
     fatal: Run | None = None
 
-    def _parallel(self, jobs: int, runs: Iterable[Run]) -> Iterator[tuple[Run, Result]]:
+    def _parallel(self, jobs: int, runs: Iterable[Run]) -> Iterator[tuple[Run, RunResult]]:
         given: list[Run] = []
         for run in runs:
             given.append(run)
@@ -300,7 +300,7 @@ def test_a_process_that_dies_costs_its_own_run_only(tmp_path: Path) -> None:
     all_runs = runs(tmp_path)
     dying = all_runs[1]
 
-    def work(run: Run) -> Result:
+    def work(run: Run) -> RunResult:
         if run == dying:
             os._exit(1)
         return made_up(run)

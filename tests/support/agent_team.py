@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from vedette import Tree
 from vedette.agent import Agent, GroundBehaviour, State, messages, step
 from vedette.agent.driving import Driver
-from vedette.agent.effects import Drive, Job, Route, Send, Traffic
+from vedette.agent.effects import Drive, Job, Route, Send, TrafficKind
 from vedette.agent.events import Event, JobDone, Message, Pose, Scan, TreeChanged
 from vedette.agent.mates import Mate
 from vedette.agent.messages import Wire
@@ -184,7 +184,7 @@ class Post:
     time: float
     sender: int
     to: int
-    traffic: Traffic
+    traffic: TrafficKind
     message: Wire
 
 
@@ -287,7 +287,7 @@ class Team:
 
     def negotiation(self, since: float = 0.0) -> list[Post]:
         """Negotiation messages sent since a time."""
-        return [p for p in self.log if p.traffic is Traffic.NEGOTIATION and p.time >= since]
+        return [p for p in self.log if p.traffic is TrafficKind.NEGOTIATION and p.time >= since]
 
 
 def toy_team(

@@ -14,7 +14,7 @@ from tests.support.faulty_world import Belief, Impact, Life, SiteMission, Sites,
 from vedette.agent import Agent, GroundBehaviour, State
 from vedette.agent.round import Round as RoundSeen
 from vedette.fusion.tiles import WORDS, classes_of, codes_of
-from vedette.negotiation import Outcome, TokenNode
+from vedette.negotiation import RoundOutcome, TokenNode
 
 ROUNDING = 1e-9
 
@@ -72,8 +72,8 @@ class RoundLaw:
     rounds: int = 0  # decided by a whole team, its value checked
     cut: set[Stamp] = field(default_factory=set)  # rounds from which somebody was cut
     _exact: defaultdict[Stamp, set[int]] = field(default_factory=lambda: defaultdict(set))  # digests
-    _decided: defaultdict[Stamp, dict[Life, Outcome]] = field(default_factory=lambda: defaultdict(dict))
-    _ended: dict[Stamp, list[tuple[Outcome, Impact]]] = field(default_factory=dict)  # and with what team
+    _decided: defaultdict[Stamp, dict[Life, RoundOutcome]] = field(default_factory=lambda: defaultdict(dict))
+    _ended: dict[Stamp, list[tuple[RoundOutcome, Impact]]] = field(default_factory=dict)  # and with what team
     _turns: defaultdict[Stamp, list[tuple[int, float]]] = field(default_factory=lambda: defaultdict(list))
 
     def decided(self, mission: SiteMission, seen: RoundSeen) -> None:
@@ -99,7 +99,7 @@ class RoundLaw:
             values = [value for _, value in sorted(self._turns[stamp])]
             check(all(b >= a - ROUNDING for a, b in pairwise(values)), "the value falls", values)
 
-    def _check_team(self, mission: SiteMission, belief: Belief, outcome: Outcome) -> None:
+    def _check_team(self, mission: SiteMission, belief: Belief, outcome: RoundOutcome) -> None:
         """When the last one of a team has decided: its choice is worth what the round says."""
         stamp, decided = belief.stamp, self._decided[belief.stamp]
         endings = self._ended.setdefault(stamp, [])

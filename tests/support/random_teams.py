@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette import Objective
-from vedette.negotiation import Chooser, JacobiNode, Message, Send, TokenNode, Tree
+from vedette.negotiation import Chooser, JacobiNode, Message, Outgoing, TokenNode, Tree
 
 Float = NDArray[np.float64]
 Node = TokenNode[Float] | JacobiNode[Float]
@@ -77,7 +77,7 @@ def deliver(nodes: Sequence[Node], rng: np.random.Generator) -> list[tuple[int, 
     links: dict[tuple[int, int], list[Message[Float]]] = {}
     log: list[tuple[int, int, Message[Float]]] = []
 
-    def post(sender: int, sends: list[Send[Float]]) -> None:
+    def post(sender: int, sends: list[Outgoing[Float]]) -> None:
         for send in sends:
             links.setdefault((sender, send.to), []).append(send.message)
 

@@ -8,7 +8,7 @@ from PIL import Image
 
 from vedette.study.provenance import Provenance
 from vedette_reproduction.content import Section, Table, Verdict, table, wall_table
-from vedette_reproduction.run import QUICK, Run
+from vedette_reproduction.run import QUICK, ReproductionRun
 
 SMALL = dataclasses.replace(
     QUICK, teams=(2, 4), largest_dense=4, trials=2, scan_offices=2, scans=4, office=(10.0, 10.0), targets=1000
@@ -21,7 +21,7 @@ def silent(text: str) -> None:
 
 
 class Quiet:
-    """Shows nothing; ``vedette_reproduction.reproduce.Progress``."""
+    """Shows nothing; ``vedette_reproduction.reproduce.ReproductionProgress``."""
 
     def begin(self, number: int, of: int, name: str) -> None:
         """Show nothing."""
@@ -38,7 +38,7 @@ def named(section: Section, name: str) -> Table:
     return next(table for table in section.tables if table.name == name)
 
 
-def some_section(run: Run) -> Section:
+def some_section(run: ReproductionRun) -> Section:
     """A claim with a picture and tables, at once."""
     Image.new("RGB", (4, 4)).save(run.figures / "some.png")
     chance = [("<b>", float(run.rng(1).random()))]
@@ -46,6 +46,6 @@ def some_section(run: Run) -> Section:
     return Section("c1", "C1: a < b", "said", ("found",), Verdict.IN_PART, "1 & 2", tables, ("some.png",))
 
 
-def interrupted(run: Run) -> Section:
+def interrupted(run: ReproductionRun) -> Section:
     """Be interrupted."""
     raise KeyboardInterrupt

@@ -13,14 +13,14 @@ from vedette.problem import CountedCoverage, Coverage, counted
 from vedette_reproduction.content import Section, Table, Verdict, table
 from vedette_reproduction.links import Member, members_of, team_on, tell
 from vedette_reproduction.post import record
-from vedette_reproduction.run import Run
+from vedette_reproduction.run import ReproductionRun
 from vedette_reproduction.teams import constant_density, fixed_area
 
 Float = NDArray[np.float64]
 LAPS = 40  # of news around a ring
 
 
-def c9(run: Run) -> Section:
+def c9(run: ReproductionRun) -> Section:
     """Deliver in any order on any tree; let everybody reply whenever they like; close a ring."""
     order = _orders(run)
     stale = _stale(run)
@@ -52,7 +52,7 @@ def c9(run: Run) -> Section:
     )
 
 
-def _orders(run: Run) -> Table:
+def _orders(run: ReproductionRun) -> Table:
     """Compare shuffled with ordered delivery, and what everybody holds in the end with brute force."""
     same = exact = 0
     trials = 2 * run.scale.trials
@@ -92,7 +92,7 @@ def leave_one_out_is_exact(n: int, tree: Tree, rng: np.random.Generator) -> bool
     return all(np.array_equal(member.links.others(), rest[i]) for i, member in enumerate(members))
 
 
-def _stale(run: Run) -> Table:
+def _stale(run: ReproductionRun) -> Table:
     """Let platforms reply and links carry news at random: how often does a change lower the value?"""
     objective = Coverage()
     changes = falls = settled = 0

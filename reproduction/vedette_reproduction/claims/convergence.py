@@ -19,7 +19,7 @@ from vedette_reproduction.quadratic import (
     spectral_radius,
     steps_to_optimum,
 )
-from vedette_reproduction.run import Run
+from vedette_reproduction.run import ReproductionRun
 from vedette_reproduction.teams import Kind
 
 OBJECTIVE = Coverage()
@@ -27,7 +27,7 @@ MAX_SWEEPS = 60
 PICTURE = "claim-3.png"
 
 
-def c3(run: Run) -> Section:
+def c3(run: ReproductionRun) -> Section:
     """A 2-cycle of two robots; how often teams cycle; and the condition where it means something."""
     duel = two_robots()
     iterates = table(
@@ -77,7 +77,7 @@ def two_robots(scheme: str = "jacobi") -> Negotiation:
     return negotiate(OBJECTIVE, np.array([1.0, 0.8]), [misses, misses], Tree.chain(2), scheme, max_sweeps=6)
 
 
-def _cycling(run: Run) -> Table:
+def _cycling(run: ReproductionRun) -> Table:
     """How often the paper's scheme cycles, and what its last and best iterates are worth, by team."""
     rows = []
     kinds: list[tuple[str, Kind]] = [
@@ -109,7 +109,7 @@ def _cycling(run: Run) -> Table:
     )
 
 
-def _quadratic(run: Run) -> Table:
+def _quadratic(run: ReproductionRun) -> Table:
     """``J = b'u - u'Qu/2``: does ``u <- D^-1 (b - (Q - D) u)`` reach ``Q^-1 b``?"""
     kinds = {"diagonally dominant": (0.3, 0.99), "concave, not dominant": (1.01, 3.0)}
     rows = []
@@ -148,7 +148,7 @@ def _draw_duel(axes: Axes) -> None:
     axes.legend(frameon=False, loc="center right", fontsize=8.5, bbox_to_anchor=(1.0, 0.22))
 
 
-def _draw_shares(axes: Axes, shares: Table, run: Run) -> None:
+def _draw_shares(axes: Axes, shares: Table, run: ReproductionRun) -> None:
     for k, (name, own) in enumerate(shares.groups().items()):
         axes.plot(
             column(own, 1),

@@ -11,14 +11,14 @@ from vedette_reproduction import teams
 from vedette_reproduction.content import Section, Value, Verdict, table, wall_table
 from vedette_reproduction.costs import FIXED, GROWING, SCHEMES, TREES, Cost, measure
 from vedette_reproduction.plots import colour, label_axes, log_scale, over_team_size
-from vedette_reproduction.run import Run
+from vedette_reproduction.run import ReproductionRun
 
 PICTURE = "claims-4-to-7.png"
 MOST_ON_A_CHAIN = 6.0  # combinations of a platform with two neighbours, an iterate
 FEW_BYTES = 32  # of counters, by which messages may differ
 
 
-def c4_to_c7(run: Run) -> list[Section]:
+def c4_to_c7(run: ReproductionRun) -> list[Section]:
     """Record negotiations of growing teams once, and read four claims off them."""
     costs = [
         measure(run, scheme, area, tree, n)
@@ -193,7 +193,7 @@ def _pair(costs: list[Cost], tree: str) -> tuple[Cost, Cost]:
     return own[0], own[-1]
 
 
-def _draw(costs: list[Cost], run: Run) -> None:
+def _draw(costs: list[Cost], run: ReproductionRun) -> None:
     figure = Figure(figsize=(10.4, 6.4), dpi=DPI)
     panels = figure.subplots(2, 2)
     papers = [cost for cost in costs if cost.scheme == SCHEMES["jacobi"]]

@@ -13,14 +13,14 @@ from vedette.negotiation import Tree
 from vedette.problem import CountedCoverage, counted
 from vedette_reproduction.content import Section, Verdict, table
 from vedette_reproduction.links import sweep, team_on
-from vedette_reproduction.run import Run
+from vedette_reproduction.run import ReproductionRun
 from vedette_reproduction.teams import fixed_area
 
 LN2 = float(np.log(2.0))
 Ray = Sequence[int]  # cells in the order in which a beam crosses them
 
 
-def c1(run: Run) -> Section:
+def c1(run: ReproductionRun) -> Section:
     """Two teams of equal combined impact and unequal J: in general the impacts do not tell J."""
     near, far = [0, 1, 2, 6], [5, 4, 3, 6]  # two ways to look at cell 6, through three unknown cells each
     teams = {"through the same cells": [near, near], "from opposite sides": [near, far]}
@@ -106,7 +106,7 @@ def _joint(rays: Sequence[Ray], occupied: Sequence[bool]) -> tuple[tuple[int, bo
     return tuple((cell, occupied[cell]) for cell in sorted(seen))
 
 
-def c2(run: Run) -> Section:
+def c2(run: ReproductionRun) -> Section:
     """Replace all team-mates by one platform of the same combined impact: nobody can tell."""
     objective = CountedCoverage()
     trials = 5 * run.scale.trials

@@ -14,14 +14,14 @@ from vedette.problem import LogDet, Objective
 from vedette_reproduction.content import Section, Verdict, table
 from vedette_reproduction.links import sweep, team_on
 from vedette_reproduction.post import record
-from vedette_reproduction.run import Run
+from vedette_reproduction.run import ReproductionRun
 
 Float = NDArray[np.float64]
 SENSORS = 6  # platforms in the Gaussian example
 D = 4  # its state: x, y, vx, vy
 
 
-def c10(run: Run) -> Section:
+def c10(run: ReproductionRun) -> Section:
     """Let the same code carry information for control and for fusion, and compare with one central filter."""
     rows, worst, wrong_z, predicted = _fusion(run)
     prior_loss = _unequal_priors(run)
@@ -129,7 +129,7 @@ def central_update(
     return mean, covariance
 
 
-def _fusion(run: Run) -> tuple[list[tuple[str, int, int, int]], float, float, float]:
+def _fusion(run: ReproductionRun) -> tuple[list[tuple[str, int, int, int]], float, float, float]:
     """Return the table's rows, the worst error, that of eq. (21) as printed, that of predicted entropy."""
     worst = predicted = 0.0
     printed = []
@@ -176,7 +176,7 @@ def _fusion(run: Run) -> tuple[list[tuple[str, int, int, int]], float, float, fl
     return rows, worst, float(np.sqrt(np.mean(printed))), predicted
 
 
-def _unequal_priors(run: Run) -> float:
+def _unequal_priors(run: ReproductionRun) -> float:
     """Return the mean share of the value that is lost if everybody plans on a prior of its own."""
     losses = []
     objective = LogDet()

@@ -16,7 +16,7 @@ from vedette_reproduction import teams
 from vedette_reproduction.content import Section, Table, Verdict, column, table
 from vedette_reproduction.plots import colour, label_axes, log_scale, over_team_size
 from vedette_reproduction.quadratic import jacobi_step, spectral_radius, steps_to_optimum, token_step
-from vedette_reproduction.run import Run
+from vedette_reproduction.run import ReproductionRun
 from vedette_reproduction.teams import Kind
 
 OBJECTIVE = Coverage()
@@ -26,7 +26,7 @@ COUPLING = 0.122  # of every two platforms in the quadratic example
 Float = NDArray[np.float64]
 
 
-def c8(run: Run) -> Section:
+def c8(run: ReproductionRun) -> Section:
     """Count iterations against the team's size: separable, at constant density, in a fixed area."""
     sweeps = _sweeps(run)
     coupled = _coupled(run)
@@ -69,7 +69,7 @@ def c8(run: Run) -> Section:
     )
 
 
-def _sweeps(run: Run) -> Table:
+def _sweeps(run: ReproductionRun) -> Table:
     kinds: dict[str, Kind] = {
         "separable": teams.separable,
         "constant density": teams.constant_density,
@@ -110,7 +110,7 @@ def _sweeps(run: Run) -> Table:
     )  # fmt: skip
 
 
-def _coupled(run: Run) -> Table:
+def _coupled(run: ReproductionRun) -> Table:
     """Iterations on quadratics in which everybody is coupled, or each to two neighbours."""
     rows = []
     for name in ("all pairs", "two neighbours"):
@@ -136,7 +136,7 @@ def _pattern(name: str, n: int) -> Float:
     return np.asarray(np.eye(n, k=1) + np.eye(n, k=-1))
 
 
-def _draw_sweeps(axes: Axes, sweeps: Table, run: Run) -> None:
+def _draw_sweeps(axes: Axes, sweeps: Table, run: ReproductionRun) -> None:
     for k, (name, own) in enumerate(sweeps.groups().items()):
         axes.plot(column(own, 1), column(own, 3), "o-", color=colour(k), lw=1.6, label=name)
     label_axes(axes, "sweeps of the token, mean", "", "sweeps")
@@ -145,7 +145,7 @@ def _draw_sweeps(axes: Axes, sweeps: Table, run: Run) -> None:
     axes.legend(frameon=False, fontsize=8.5)
 
 
-def _draw_coupled(axes: Axes, coupled: Table, run: Run) -> None:
+def _draw_coupled(axes: Axes, coupled: Table, run: ReproductionRun) -> None:
     styles = {"all pairs": 1, "two neighbours": 0}
     for name, own in coupled.groups().items():
         for place, style, label in ((3, "o-", "all at once"), (4, "s--", "in turn")):

@@ -10,8 +10,8 @@ from vedette.domains.mapping.sightings import empty_counts
 from vedette_reproduction.content import Section, Value, Verdict, table
 from vedette_reproduction.figures.figure_2 import MOST, NOISY, PERFECT, posteriors
 from vedette_reproduction.frontiers import frozen, reachable, robot_at
-from vedette_reproduction.missions import Mission, specs
-from vedette_reproduction.run import Run
+from vedette_reproduction.missions import ReproducedMission, specs
+from vedette_reproduction.run import ReproductionRun
 from vedette_reproduction.scans import scan, spaced
 
 NAT = 0.2  # of a unit of a robot's log-odds
@@ -23,7 +23,7 @@ HOW = {
 Float = NDArray[np.float64]
 
 
-def c11(run: Run) -> Section:
+def c11(run: ReproductionRun) -> Section:
     """Count posteriors of ideal sensors, and ask how near a real grid's cells come to the three."""
     ideal = {len(posteriors(PERFECT, n)) for n in range(1, MOST + 1)}
     noisy = [len(posteriors(NOISY, n)) for n in range(1, MOST + 1)]
@@ -67,7 +67,7 @@ def _entropy(p: Float) -> Float:
     return np.asarray(-p * np.log(p) - (1.0 - p) * np.log1p(-p))
 
 
-def c12(run: Run) -> Section:
+def c12(run: ReproductionRun) -> Section:
     """Run missions to their end, look for anything worth doing that is left, and for work done twice."""
     rows: list[tuple[Value, ...]] = []
     for seed in run.scale.mission_seeds:
@@ -135,7 +135,7 @@ def c12(run: Run) -> Section:
     )  # fmt: skip
 
 
-def left_to_do(mission: Mission) -> tuple[int, int]:
+def left_to_do(mission: ReproducedMission) -> tuple[int, int]:
     """Count the frontiers of the final map, and those that any robot could go to and see 0.08 m^2 from."""
     spec = specs()[0]
     belief = frozen(mission.report.classes, mission.world.frame, spec, plain_layers(), empty_counts())

@@ -22,7 +22,7 @@ from vedette.maps import GridFrame
 from vedette.negotiation import Tree, negotiate
 from vedette.testing import LawBroken, check_objective
 from vedette_reproduction.content import Section, Value, Verdict, table
-from vedette_reproduction.run import Run
+from vedette_reproduction.run import ReproductionRun
 
 SEA = GridFrame(20.0, 60, 70, -300.0, 100.0)  # 1400 m x 1200 m
 HORIZON, DT = 8, 2.0  # steps, and the length of one [s]
@@ -30,7 +30,7 @@ VEHICLES = 3
 Float = NDArray[np.float64]
 
 
-def c13(run: Run) -> Section:
+def c13(run: ReproductionRun) -> Section:
     """Try the laws on search, and compare the value of combined impacts with draws of targets that move."""
     rows: list[tuple[Value, ...]] = []
     lawful = True
@@ -111,7 +111,7 @@ def detected_share(
     platforms: Sequence[SearchPlatform],
     turn_rates: Sequence[Float],
     motion: TargetMotion,
-    run: Run,
+    run: ReproductionRun,
 ) -> tuple[float, float]:
     """Return the mean probability that looks along the flights detect a drawn target, and its deviation.
 

@@ -20,7 +20,7 @@ from vedette.record.signs import FAINT, INK
 from vedette_reproduction.content import Section, Table, table
 from vedette_reproduction.plots import colour
 from vedette_reproduction.post import Letter, Recording, record
-from vedette_reproduction.run import Run
+from vedette_reproduction.run import ReproductionRun
 
 N, CELLS = 3, 8
 OBJECTIVE = CountedCoverage()
@@ -30,7 +30,7 @@ _STRIP = 1.3, 0.22  # size of a strip of cells in the picture
 Counted = NDArray[np.int64]
 
 
-def figure_1(run: Run) -> Section:
+def figure_1(run: ReproductionRun) -> Section:
     """Record an iterate of the paper's scheme, with the inverse and without, and draw its messages."""
     impacts = _impacts()
     ways = {

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from vedette.record.canvas import DPI, picture, save
 from vedette_reproduction.content import Section, Table, table
 from vedette_reproduction.plots import colour, label_axes
-from vedette_reproduction.run import Run
+from vedette_reproduction.run import ReproductionRun
 
 PRIOR = 0.35  # P(occupied), away from 1/2 so that the prior is seen to stay
 MOST = 6  # sensors
@@ -22,18 +22,18 @@ Float = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Sensor:
+class FigureSensor:
     """``P(z | x)`` for z in OCC, EMP, UNO and x in OCC, EMP."""
 
     name: str
     likelihood: Float  # (3, 2), columns sum to 1
 
 
-PERFECT = Sensor("deterministic", np.array([(0.7, 0.0), (0.0, 0.7), (0.3, 0.3)]))
-NOISY = Sensor("noisy", np.array([(0.6, 0.15), (0.1, 0.55), (0.3, 0.3)]))
+PERFECT = FigureSensor("deterministic", np.array([(0.7, 0.0), (0.0, 0.7), (0.3, 0.3)]))
+NOISY = FigureSensor("noisy", np.array([(0.6, 0.15), (0.1, 0.55), (0.3, 0.3)]))
 
 
-def figure_2(run: Run) -> Section:
+def figure_2(run: ReproductionRun) -> Section:
     """Enumerate all joint observations by Bayes' rule and draw the posteriors that are possible."""
     sets = {sensor: [posteriors(sensor, n) for n in range(1, MOST + 1)] for sensor in (PERFECT, NOISY)}
     rows = [
@@ -76,7 +76,7 @@ def figure_2(run: Run) -> Section:
     )
 
 
-def posteriors(sensor: Sensor, n: int) -> Float:
+def posteriors(sensor: FigureSensor, n: int) -> Float:
     """Return ``P(x = OCC | z_1 ... z_n)`` for all z of positive probability (paper, eq. (3))."""
     found = set()
     for reports in itertools.combinations_with_replacement(range(3), n):  # the order does not matter
@@ -96,7 +96,7 @@ def counts_table() -> Table:
     return table("figure_2_counts", "How many posteriors are possible", columns, rows)
 
 
-def _panel(axes: Axes, sensor: Sensor, found: list[Float], index: int) -> None:
+def _panel(axes: Axes, sensor: FigureSensor, found: list[Float], index: int) -> None:
     axes.axhline(PRIOR, color=colour(6), lw=0.9, ls=(0, (4, 2)), zorder=1)
     for n, values in enumerate(found, start=1):
         axes.plot(

@@ -19,7 +19,7 @@ from vedette.sim.worlds import office
 from vedette_reproduction.content import Section, table
 from vedette_reproduction.missions import specs
 from vedette_reproduction.plots import colour, label_axes
-from vedette_reproduction.run import Run
+from vedette_reproduction.run import ReproductionRun
 from vedette_reproduction.scans import scan, spaced
 
 RANGE = 8.0  # of the figure and the sensor [m]
@@ -52,7 +52,7 @@ class Measured:
         return np.nanmin(shares, axis=0), np.nanmax(shares, axis=0)
 
 
-def figure_3(run: Run) -> Section:
+def figure_3(run: ReproductionRun) -> Section:
     """Scan unknown offices, count, and set the counts against the occupancy grid's own prediction."""
     at: Float = (np.arange(USED, dtype=np.float64) + 0.5) * BIN
     exact = analytic(at)
@@ -143,7 +143,7 @@ def _beam_model(bins: int) -> Float:
     return np.asarray(np.divide(total, number, out=np.ones(bins), where=number > 0))
 
 
-def _fresh(run: Run) -> Measured:
+def _fresh(run: ReproductionRun) -> Measured:
     """First scans from anywhere a robot can stand in offices that no mission uses."""
     spec = specs()[0]
     tried, seen = [], []
@@ -160,7 +160,7 @@ def _fresh(run: Run) -> Measured:
     return Measured(np.array(tried), np.array(seen))
 
 
-def _underway(run: Run) -> tuple[Measured, Float]:
+def _underway(run: ReproductionRun) -> tuple[Measured, Float]:
     """What the scans of a mission tried of what was still unknown; and the curve learned from that (V25)."""
     mission = run.mission()
     poses = mission.report.log.poses  # all robots' scans in order of time, on one map

@@ -24,21 +24,21 @@ from vedette_reproduction.content import Section, Table, Value, table
 from vedette_reproduction.contest import (
     MOMENTS,
     OBJECTIVE,
-    Scene,
+    ContestScene,
     make_scenes,
     selfish_choice,
     share_of_selfish,
 )
 from vedette_reproduction.missions import specs
 from vedette_reproduction.plots import colour
-from vedette_reproduction.run import Run
+from vedette_reproduction.run import ReproductionRun
 
 PICTURE = "figure-4.png"
 _WIDEST, _HIGHEST, _NARROWEST, _GAP = 5.1, 5.4, 9.6, 0.12  # panels, figure, between panels [inch]
 _RED = palette.unit((214, 39, 40))
 
 
-def figure_4(run: Run) -> Section:
+def figure_4(run: ReproductionRun) -> Section:
     """Let two platforms negotiate by the paper's objective on a half-known map, and draw it."""
     scenes = list(make_scenes(run))
     scene = min(scenes, key=share_of_selfish)
@@ -76,7 +76,7 @@ def figure_4(run: Run) -> Section:
     )
 
 
-def _schemes(scene: Scene) -> list[tuple[Value, ...]]:
+def _schemes(scene: ContestScene) -> list[tuple[Value, ...]]:
     """Compare ways of deciding on the same candidates: value, share of the optimum, sweeps, choices."""
     best = exhaustive(OBJECTIVE, scene.belief, scene.candidates)
     alone, selfish = selfish_choice(scene)
@@ -114,7 +114,7 @@ def _words(rows: Sequence[tuple[Value, ...]]) -> str:
 _JACOBI = "the paper's: all at once, best iterate"
 
 
-def _candidate_table(scene: Scene, agreed: Negotiation) -> Table:
+def _candidate_table(scene: ContestScene, agreed: Negotiation) -> Table:
     rows: list[tuple[Value, ...]] = []
     for i, (platform, stops) in enumerate(zip(scene.platforms, scene.stops, strict=True)):
         assert platform.stops is not None
@@ -128,7 +128,7 @@ def _candidate_table(scene: Scene, agreed: Negotiation) -> Table:
     return table("figure_4_candidates", "Frontiers that each could go to", columns, rows, shown=False)
 
 
-def _draw(scene: Scene, agreed: Negotiation, run: Run) -> None:
+def _draw(scene: ContestScene, agreed: Negotiation, run: ReproductionRun) -> None:
     frame = scene.mission.world.frame
     window = known_window(frame, scene.classes, margin=1.0)
     part = scene.classes[window.rows, window.cols]
@@ -165,7 +165,7 @@ def _canvas(width: float, height: float) -> tuple[Figure, list[Axes]]:
     return figure, [figure.add_axes((x / whole[0], y / whole[1], *size)) for x, y in boxes]
 
 
-def _strategies(axes: Axes, scene: Scene, agreed: Negotiation) -> None:
+def _strategies(axes: Axes, scene: ContestScene, agreed: Negotiation) -> None:
     for i, (platform, stops) in enumerate(zip(scene.platforms, scene.stops, strict=True)):
         assert platform.stops is not None
         assert platform.ground is not None
@@ -185,14 +185,14 @@ def _strategies(axes: Axes, scene: Scene, agreed: Negotiation) -> None:
         )  # fmt: skip
 
 
-def _team_impact(scene: Scene, agreed: Negotiation) -> NDArray[np.float32]:
+def _team_impact(scene: ContestScene, agreed: Negotiation) -> NDArray[np.float32]:
     """Return the probability that the team observes each planning cell's unknown part, (r, c)."""
     team = OBJECTIVE.combine(*(own[k] for own, k in zip(scene.candidates, agreed.choice, strict=True)))
     planning = scene.belief.planning
     return (1.0 - final_miss(team, planning.size)).reshape(planning.shape)
 
 
-def _planning_extent(scene: Scene) -> tuple[float, float, float, float]:
+def _planning_extent(scene: ContestScene) -> tuple[float, float, float, float]:
     return scene.belief.planning.extent
 
 

@@ -16,14 +16,14 @@ from vedette.record.explore.log import ExploreSnapshot
 from vedette.record.explore.raster import Window, enlarge, paint
 from vedette.record.signs import FAINT, badge, draw_vehicle, legend_line, map_signs, scale_bar
 from vedette_reproduction.content import Section, Table, Value, table
-from vedette_reproduction.missions import PAPERS, Mission
-from vedette_reproduction.run import Run
+from vedette_reproduction.missions import PAPERS, ReproducedMission
+from vedette_reproduction.run import ReproductionRun
 
 PICTURE = "figure-6.png"
 _PANEL, _GAP, _MARGIN = 3.9, 0.12, 0.15  # [inch]
 
 
-def figure_6(run: Run) -> Section:
+def figure_6(run: ReproductionRun) -> Section:
     """Run the mission with both planners, and draw the group's map with what it is about to see."""
     size = run.scale.office
     seed = run.scale.mission_seeds[0]
@@ -49,7 +49,7 @@ def figure_6(run: Run) -> Section:
     )
 
 
-def _compare(missions: Sequence[Mission]) -> str:
+def _compare(missions: Sequence[ReproducedMission]) -> str:
     papers, default = (mission.report.summary for mission in missions)
 
     def moment(value: float | None) -> str:
@@ -63,7 +63,7 @@ def _compare(missions: Sequence[Mission]) -> str:
     )
 
 
-def _summary(missions: Sequence[Mission]) -> Table:
+def _summary(missions: Sequence[ReproducedMission]) -> Table:
     rows: list[tuple[Value, ...]] = []
     for mission in missions:
         s = mission.report.summary
@@ -88,7 +88,7 @@ def _summary(missions: Sequence[Mission]) -> Table:
     )  # fmt: skip
 
 
-def _curve(mission: Mission) -> Table:
+def _curve(mission: ReproducedMission) -> Table:
     log = mission.report.log
     rows = [
         (float(t), float(share), float(entropy), *map(float, way))
@@ -98,7 +98,7 @@ def _curve(mission: Mission) -> Table:
     return table(f"figure_6_{mission.case.planner}", "The mission by the second", columns, rows, shown=False)
 
 
-def _draw(missions: Sequence[Mission], run: Run) -> None:
+def _draw(missions: Sequence[ReproducedMission], run: ReproductionRun) -> None:
     frame = missions[0].world.frame
     height = _PANEL * frame.rows / frame.cols
     width = 3 * _PANEL + 2 * _GAP + 2 * _MARGIN
@@ -130,7 +130,7 @@ def _draw(missions: Sequence[Mission], run: Run) -> None:
 
 
 def _panel(
-    axes: Axes, mission: Mission, stage: ExploreSnapshot, window: Window, pixels: tuple[int, int]
+    axes: Axes, mission: ReproducedMission, stage: ExploreSnapshot, window: Window, pixels: tuple[int, int]
 ) -> None:
     log = mission.report.log
     colours = paint(stage, log.scene.planning, window, pixels[::-1])
@@ -146,7 +146,7 @@ def _panel(
             axes.plot(*robot.goal, "s", color="white", mec=tint, mew=1.6, ms=6, zorder=5)
 
 
-def _legend(figure: Figure, mission: Mission, width: float) -> None:
+def _legend(figure: Figure, mission: ReproducedMission, width: float) -> None:
     """Explain robots, ways and colours in one line under the panels."""
     names = list(mission.report.log.scene.vehicles)
     signs = [

@@ -13,7 +13,7 @@ from math import ceil
 import numpy as np
 
 from vedette.agent import messages
-from vedette.agent.effects import Effect, Send, Traffic
+from vedette.agent.effects import Effect, Send, TrafficKind
 from vedette.agent.events import Arrived, Event, JobDone, Message, Pose, Scan, Sensed, Stuck, TreeChanged
 from vedette.agent.messages import Beacon
 from vedette.agent.state import Agent
@@ -135,4 +135,4 @@ def _beacon(agent: Agent, pose: Pose) -> list[Effect]:
 
 def _beacon_to(agent: Agent, beacon: Beacon, neighbours: Iterable[int]) -> list[Effect]:
     payload = messages.encode(beacon)
-    return [Send(neighbour, Traffic.BEACONS, payload) for neighbour in neighbours]
+    return [Send(neighbour, TrafficKind.BEACONS, payload) for neighbour in neighbours]

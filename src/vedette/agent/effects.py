@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from vedette.agent.flight import FlightPlan
 
 
-class Traffic(Enum):
+class TrafficKind(Enum):
     """What a message is for; traffic is counted by kind."""
 
     NEGOTIATION = "negotiation"
@@ -27,7 +27,7 @@ class Send:
     """Send bytes to a neighbour on the tree."""
 
     to: int
-    traffic: Traffic
+    traffic: TrafficKind
     payload: bytes
 
 
@@ -50,7 +50,7 @@ class Drive:
 class Fly:
     """Fly a plan from its start on, and until then what was planned before; circle when it is over.
 
-    The circle is a turn at the vehicle's greatest rate, counter-clockwise (``flight.Flight``).
+    The circle is a turn at the vehicle's greatest rate, counter-clockwise (``flight.Itinerary``).
     """
 
     plan: FlightPlan

@@ -46,7 +46,7 @@ class FlightPlan:
 
 
 @dataclass(frozen=True, eq=False)
-class Flight:
+class Itinerary:
     """What a vehicle flies: each plan from its start until the next one's; without one, a circle.
 
     Before its first plan and after its last a vehicle turns at ``loiter``. It then stays within
@@ -57,7 +57,7 @@ class Flight:
     plans: tuple[FlightPlan, ...] = ()
     since: tuple[float, ...] = ()  # when each takes over [s], increasing
 
-    def joined(self, plan: FlightPlan, now: float) -> Flight:
+    def joined(self, plan: FlightPlan, now: float) -> Itinerary:
         """Return this flight up to the plan's start, the plan from then on.
 
         A plan that comes after its start is taken up where it would be by now. Plans over by now are dropped.

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from vedette.agent.effects import Effect, Fly
 from vedette.agent.events import Arrived, Pose, Scan, Sensed, Stuck
-from vedette.agent.flight import Flight
+from vedette.agent.flight import Itinerary
 from vedette.agent.mission import FlightMission
 from vedette.agent.state import Agent, State
 
@@ -30,10 +30,10 @@ class FlightBehaviour:
     speed: float  # [m/s]
     turn_rate: float  # greatest [rad/s]
     state: State = State.WAITING
-    flight: Flight = field(init=False)
+    flight: Itinerary = field(init=False)
 
     def __post_init__(self) -> None:
-        self.flight = Flight(self.turn_rate)
+        self.flight = Itinerary(self.turn_rate)
 
     def wake(self, agent: Agent, pose: Pose, now: float) -> bool:
         """Take part in rounds from the first pose on."""

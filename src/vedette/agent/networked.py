@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from vedette.agent.agent import step
-from vedette.agent.effects import Job, Motion, Send, Traffic
+from vedette.agent.effects import Job, Motion, Send, TrafficKind
 from vedette.agent.events import Event, Message, TreeChanged
 from vedette.agent.state import Agent
 from vedette.overlay import Overlay, Place, ReliableLink
@@ -64,8 +64,8 @@ class NetworkedAgent:
         self.overlay = Overlay(agent.robot, agent.boot, now, lease)
         self.hold = False
         self.malformed = 0  # datagrams that did not make sense
-        self.messages_sent: Counter[Traffic] = Counter()
-        self.bytes_sent: Counter[Traffic] = Counter()
+        self.messages_sent: Counter[TrafficKind] = Counter()
+        self.bytes_sent: Counter[TrafficKind] = Counter()
         self._mission_time = mission_time
         self._lease = lease
         self._alone_until = now + ALONE_AT_FIRST
@@ -174,7 +174,7 @@ class NetworkedAgent:
                 continue
             self.messages_sent[effect.traffic] += 1
             self.bytes_sent[effect.traffic] += len(effect.payload)
-            if effect.traffic is Traffic.BEACONS:  # the next one is worth more than this one again
+            if effect.traffic is TrafficKind.BEACONS:  # the next one is worth more than this one again
                 effects.append(self._datagram(effect.to, BEACON + effect.payload, len(effect.payload)))
             else:
                 self._links[effect.to].send(effect.payload, now)
@@ -186,13 +186,13 @@ class NetworkedAgent:
             carried = link.carried
             packets = link.poll(now)
             datagrams += [self._datagram(to, PACKET + packet) for packet in packets]
-            self.bytes_sent[Traffic.OVERLAY] -= link.carried - carried
+            self.bytes_sent[TrafficKind.OVERLAY] -= link.carried - carried
             if link.lost:
                 self.overlay.lost(to, now)
         return datagrams
 
     def _datagram(self, to: int, payload: bytes, carried: int = 0) -> Datagram:
         """Count what a datagram adds to the messages that it carries."""
-        self.bytes_sent[Traffic.OVERLAY] += len(payload) - carried
-        self.messages_sent[Traffic.OVERLAY] += 1
+        self.bytes_sent[TrafficKind.OVERLAY] += len(payload) - carried
+        self.messages_sent[TrafficKind.OVERLAY] += 1
         return Datagram(to, payload)

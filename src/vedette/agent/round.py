@@ -9,15 +9,15 @@ from typing import Any
 
 from msgspec import structs
 
-from vedette.agent.effects import Effect, Job, Send, Traffic
+from vedette.agent.effects import Effect, Job, Send, TrafficKind
 from vedette.agent.events import Pose, TreeChanged
 from vedette.agent.mates import Mate
 from vedette.agent.messages import Areas, Begin, Call, Evidence, Flushed, Freeze, Negotiate, Note, encode
 from vedette.agent.mission import Mission
 from vedette.agent.participant import RoundParticipant
 from vedette.agent.reaches import reaches_to_tell
-from vedette.negotiation import Claims, Negotiator, Outcome, messages, node_of
-from vedette.negotiation import Send as Reply
+from vedette.negotiation import Claims, Negotiator, RoundOutcome, messages, node_of
+from vedette.negotiation import Outgoing as Reply
 from vedette.problem import Reach
 
 MAX_SWEEPS = 12
@@ -86,7 +86,7 @@ class Round:
         return self.waiting or ({self.tree.parent} if self.tree.parent is not None else set())
 
     @property
-    def finished(self) -> Outcome | None:
+    def finished(self) -> RoundOutcome | None:
         """What the team has agreed on; None while the round lasts."""
         return None if self.negotiator is None else self.negotiator.finished
 
@@ -206,10 +206,10 @@ class Round:
 
 def say(to: int, message: Call | Begin | Flushed | Freeze | Negotiate) -> Send:
     """Return a message of a round to a neighbour."""
-    return Send(to, Traffic.NEGOTIATION, encode(message))
+    return Send(to, TrafficKind.NEGOTIATION, encode(message))
 
 
 def send_news(mission: Mission[Any, Any, Any], neighbour: int, now: float) -> list[Effect]:
     """Return what a neighbour lacks of the evidence, if anything."""
     data = mission.fusion.outgoing(neighbour, now)
-    return [] if data is None else [Send(neighbour, Traffic.FUSION, encode(Evidence(data)))]
+    return [] if data is None else [Send(neighbour, TrafficKind.FUSION, encode(Evidence(data)))]

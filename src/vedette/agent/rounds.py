@@ -17,7 +17,7 @@ from vedette.agent.messages import Begin, Call, Flushed, Freeze, Negotiate
 from vedette.agent.mission import Mission
 from vedette.agent.pace import Pace
 from vedette.agent.round import Round, say, send_news
-from vedette.negotiation import Outcome
+from vedette.negotiation import RoundOutcome
 
 CALL_AGAIN = 1.0  # a call not answered is repeated after so long [s]
 SETTLING = 0.2  # a new tree is left alone for so long before a round [s]
@@ -37,7 +37,7 @@ class Decision:
     """What a finished round says, besides the strategies themselves."""
 
     time: float
-    outcome: Outcome
+    outcome: RoundOutcome
     approximate: bool  # this robot's belief was not the root's
     blocked: bool  # this robot planned with its mates in the way
 

@@ -22,7 +22,7 @@ from vedette.record.folder import OutputFolder
 from vedette.study.provenance import provenance
 
 if TYPE_CHECKING:
-    from vedette_reproduction.reproduce import Result
+    from vedette_reproduction.reproduce import Reproduction
 
 
 @click.command()
@@ -67,7 +67,7 @@ def _require() -> None:
         )
 
 
-def _closing(result: Result) -> str:
+def _closing(result: Reproduction) -> str:
     """Say how the claims fared and where the report is."""
     fates = [section.verdict.value for section in result.sections if section.verdict is not None]
     counts = ", ".join(f"{fates.count(fate)} {_PLURAL.get(fate, fate)}" for fate in dict.fromkeys(fates))

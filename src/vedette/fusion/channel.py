@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.fusion.codec import Codec
+from vedette.fusion.codec import EvidenceCodec
 from vedette.fusion.edges import Edges
-from vedette.fusion.link import RESEND_AFTER, Link
+from vedette.fusion.link import RESEND_AFTER, EvidenceLink
 from vedette.fusion.packing import WordPacking, join_word, split_word
 from vedette.fusion.snapshots import NONE, Delta, Snapshot, tiles_to_publish
 from vedette.fusion.tiles import (
@@ -27,10 +27,10 @@ from vedette.fusion.tiles import (
 
 
 @dataclass(eq=False)
-class Edge:
+class MapEdge:
     """One end of a tree edge: the latest ``mu`` either way; their sum is the edge's common information."""
 
-    link: Link[Delta[np.int32]]
+    link: EvidenceLink[Delta[np.int32]]
     inbox: Snapshot[np.int32]  # mu_{k->i}: sum over the robots behind the neighbour
     outbox: Snapshot[np.int32]  # mu_{i->k}: sum over the robots on this side
 
@@ -70,12 +70,12 @@ class ChannelFilter(TeamMap):
         """Start with nothing known; ``boot < 2**38`` must differ from those of the robot's earlier starts."""
         super().__init__(Tiling(*shape), counts_size)
         self._size = counts_size + 1  # the last count is 1 for every robot that has published
-        self._codec = Codec(self._tiling, self._size, WordPacking())
+        self._codec = EvidenceCodec(self._tiling, self._size, WordPacking())
         self._own = Snapshot(self._tiling.count, self._size, np.uint8)
         self._inherited: NDArray[np.uint8] = np.zeros((self._tiling.count, CELLS), dtype=np.uint8)
         self._touched: NDArray[np.bool_] = np.zeros(self._tiling.count, dtype=np.bool_)
         self._robots = 0
-        self._edges: Edges[Edge, Delta[np.int32]] = Edges(robot, boot, resend_after)
+        self._edges: Edges[MapEdge, Delta[np.int32]] = Edges(robot, boot, resend_after)
 
     def contributors(self) -> int:
         """Return how many robots on the tree have published evidence."""
@@ -96,7 +96,7 @@ class ChannelFilter(TeamMap):
     def set_neighbours(self, neighbours: Sequence[int]) -> None:
         """Take these as the neighbours on the tree; evidence from lost ones is kept as inherited."""
         self._edges.set_neighbours(
-            neighbours, self._inherit, lambda link: Edge(link, self._box(), self._box())
+            neighbours, self._inherit, lambda link: MapEdge(link, self._box(), self._box())
         )
         self._update(np.flatnonzero(self._touched))
 
@@ -126,14 +126,14 @@ class ChannelFilter(TeamMap):
     def _box(self) -> Snapshot[np.int32]:
         return Snapshot(self._tiling.count, self._size, np.int32)
 
-    def _blank(self, edge: Edge) -> NDArray[np.int64]:
+    def _blank(self, edge: MapEdge) -> NDArray[np.int64]:
         """The neighbour has started anew: inherit what came from it, and expect its sums from the start."""
         self._inherit(edge)
         tiles = edge.inbox.known_tiles
         edge.inbox = self._box()
         return self._update(tiles)
 
-    def _inherit(self, edge: Edge) -> None:
+    def _inherit(self, edge: MapEdge) -> None:
         tiles = edge.inbox.known_tiles
         code, live = split_word(edge.inbox.values[tiles])
         self._inherited[tiles] = np.maximum(self._inherited[tiles], np.maximum(code, code_of_sums(live)))

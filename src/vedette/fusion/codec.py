@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from vedette import wire
 from vedette.fusion.link import MOST_SECTIONS, Greeting, Key, Payload
-from vedette.fusion.packing import Body, Packing
+from vedette.fusion.packing import MapPacking, PackedBody
 from vedette.fusion.planes import from_planes, planes
 from vedette.fusion.snapshots import Delta, ValueT
 from vedette.fusion.tiles import Tiling
@@ -26,12 +26,12 @@ _GREETING, _WANTS, _BODY = 16, 32, 64
 
 
 @dataclass(frozen=True)
-class Codec(Generic[ValueT]):
+class EvidenceCodec(Generic[ValueT]):
     """Encodes and decodes the payloads of one team: same map shape, counts size and packing."""
 
     tiling: Tiling
     counts_size: int
-    packing: Packing[ValueT]
+    packing: MapPacking[ValueT]
 
     def encode(self, payload: Payload[Delta[ValueT]]) -> bytes:
         """Return the payload's bytes."""
@@ -74,7 +74,7 @@ class Codec(Generic[ValueT]):
             return Payload(own, greeting, have)
         outlines = self._outlines(head, own)
         most = sum(self.packing.most_bytes * len(o.tiles) + 8 * self.counts_size * o.counts for o in outlines)
-        body = Body(wire.inflate(head.rest(), most, "fusion payload"))
+        body = PackedBody(wire.inflate(head.rest(), most, "fusion payload"))
         sections = [(outline.key, self._delta(outline, body)) for outline in outlines]
         body.finish()
         return Payload(own, greeting, have, sections)
@@ -99,7 +99,7 @@ class Codec(Generic[ValueT]):
             outlines.append(_Outline(key, base, base + ahead, ids, bool(counts)))
         return outlines
 
-    def _delta(self, outline: _Outline, body: Body) -> Delta[ValueT]:
+    def _delta(self, outline: _Outline, body: PackedBody) -> Delta[ValueT]:
         mask, values = self.packing.unpack(body, len(outline.tiles))
         if (mask & ~self.tiling.inside(outline.tiles)).any():
             raise ValueError("fusion payload: a cell lies outside the map")

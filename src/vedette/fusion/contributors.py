@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any, Generic, Protocol, TypeVar
 
-from vedette.fusion.link import Boots, Key, Link, NewsT, Payload, check_boot
+from vedette.fusion.link import Boots, EvidenceLink, Key, NewsT, Payload, check_boot
 
 MOST_CONTRIBUTORS = 1024
 
@@ -41,7 +41,7 @@ class Contributors(Generic[CopyT, NewsT]):
         self.copies: dict[Key, CopyT] = {(robot, boot): self.own}
         self._key: Key = (robot, boot)
         self._blank = blank
-        self._links: dict[int, Link[NewsT]] = {}
+        self._links: dict[int, EvidenceLink[NewsT]] = {}
         self._boots = Boots()
         self._resend_after = resend_after
 
@@ -52,7 +52,7 @@ class Contributors(Generic[CopyT, NewsT]):
     def set_neighbours(self, neighbours: Sequence[int]) -> None:
         """Exchange with exactly these robots from now on; the graph may have cycles."""
         after = self._resend_after
-        self._links = {n: self._links.get(n) or Link(*self._key, after) for n in neighbours}
+        self._links = {n: self._links.get(n) or EvidenceLink(*self._key, after) for n in neighbours}
 
     def tell(self, neighbour: int, now: float) -> Payload[NewsT] | None:
         """Return what the neighbour lacks, and what it waits to see acknowledged; None if nothing."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any, Generic, Protocol, TypeVar
 
-from vedette.fusion.link import Boots, Link, NewsT, Payload, check_boot
+from vedette.fusion.link import Boots, EvidenceLink, NewsT, Payload, check_boot
 
 SESSION_BITS = 24
 
@@ -13,7 +13,7 @@ SESSION_BITS = 24
 class Edge(Protocol[NewsT]):
     """One end of a tree edge: the latest sums either way; what crosses it is state, not increments."""
 
-    link: Link[NewsT]
+    link: EvidenceLink[NewsT]
 
     @property
     def heard(self) -> int:
@@ -41,7 +41,10 @@ class Edges(dict[int, EdgeT], Generic[EdgeT, NewsT]):
         self._resend_after = resend_after
 
     def set_neighbours(
-        self, neighbours: Sequence[int], lose: Callable[[EdgeT], None], make: Callable[[Link[NewsT]], EdgeT]
+        self,
+        neighbours: Sequence[int],
+        lose: Callable[[EdgeT], None],
+        make: Callable[[EvidenceLink[NewsT]], EdgeT],
     ) -> None:
         """Let the edges to other robots go, then make those that are not there."""
         for edge in [self.pop(n) for n in self.keys() - set(neighbours)]:
@@ -50,7 +53,7 @@ class Edges(dict[int, EdgeT], Generic[EdgeT, NewsT]):
             if neighbour not in self:
                 self._session += 1
                 nonce = (self._boot << SESSION_BITS) + self._session
-                self[neighbour] = make(Link(self._robot, nonce, self._resend_after))
+                self[neighbour] = make(EvidenceLink(self._robot, nonce, self._resend_after))
 
     def tell(self, neighbour: int, since: Callable[[int], NewsT], now: float) -> Payload[NewsT] | None:
         """Return what the neighbour lacks, and what it waits to see acknowledged; None if nothing."""

@@ -54,7 +54,7 @@ class Payload(Generic[NewsT]):
             raise ValueError("fusion payload: claims evidence of this robot that it never published")
 
 
-class Link(Generic[NewsT]):
+class EvidenceLink(Generic[NewsT]):
     """One robot's book-keeping of one neighbour; versions only, no evidence.
 
     Optimistic: what was sent counts as held until ``resend_after`` seconds pass without the neighbour's

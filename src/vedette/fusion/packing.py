@@ -12,7 +12,7 @@ from vedette.fusion.snapshots import Delta, ValueT
 from vedette.fusion.tiles import CELLS, LEVELS, MOST_ROBOTS, contributors_of, sums_of
 
 
-class Body:
+class PackedBody:
     """Hands out the inflated body piece by piece."""
 
     def __init__(self, data: bytes) -> None:
@@ -30,7 +30,7 @@ class Body:
             raise ValueError("fusion payload: the body is too long")
 
 
-class Packing(Protocol[ValueT]):
+class MapPacking(Protocol[ValueT]):
     """How the cells of a section stand in the body."""
 
     most_bytes: int  # a tile
@@ -39,7 +39,7 @@ class Packing(Protocol[ValueT]):
         """Return the section's masks and values."""
         ...
 
-    def unpack(self, body: Body, tiles: int) -> tuple[NDArray[np.bool_], NDArray[ValueT]]:
+    def unpack(self, body: PackedBody, tiles: int) -> tuple[NDArray[np.bool_], NDArray[ValueT]]:
         """Return ``(tiles, 1024)`` mask and the masked cells' values, all in range; else ValueError."""
         ...
 
@@ -55,7 +55,7 @@ class CodePacking:
         symbols[delta.mask] = delta.values + 1
         return (symbols[:, 0::2] * 6 + symbols[:, 1::2]).tobytes()
 
-    def unpack(self, body: Body, tiles: int) -> tuple[NDArray[np.bool_], NDArray[np.uint8]]:
+    def unpack(self, body: PackedBody, tiles: int) -> tuple[NDArray[np.bool_], NDArray[np.uint8]]:
         """Return mask and codes."""
         pairs = body.take(tiles * self.most_bytes).reshape(tiles, self.most_bytes)
         if pairs.size and pairs.max() >= 36:
@@ -74,7 +74,7 @@ class WordPacking:
         """Return 128 bytes a tile and 4 bytes a given cell."""
         return np.packbits(delta.mask, axis=1).tobytes() + planes(delta.values, 4)
 
-    def unpack(self, body: Body, tiles: int) -> tuple[NDArray[np.bool_], NDArray[np.int32]]:
+    def unpack(self, body: PackedBody, tiles: int) -> tuple[NDArray[np.bool_], NDArray[np.int32]]:
         """Return mask and words."""
         bits = body.take(tiles * CELLS // 8).reshape(tiles, CELLS // 8)
         mask = np.unpackbits(bits, axis=1).astype(np.bool_)

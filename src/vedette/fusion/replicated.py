@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.fusion.codec import Codec
+from vedette.fusion.codec import EvidenceCodec
 from vedette.fusion.contributors import Contributors
 from vedette.fusion.link import RESEND_AFTER
 from vedette.fusion.packing import CodePacking
@@ -35,7 +35,7 @@ class ReplicatedEvidence(TeamMap):
         """Start with nothing known; ``boot < 2**38`` must differ from those of the robot's earlier starts."""
         tiling = Tiling(*shape)
         super().__init__(tiling, counts_size)
-        self._codec = Codec(tiling, counts_size, CodePacking())
+        self._codec = EvidenceCodec(tiling, counts_size, CodePacking())
         self._words: NDArray[np.int32] = np.zeros((tiling.count, CELLS), dtype=np.int32)
         self._contributors: Contributors[Snapshot[np.uint8], Delta[np.uint8]] = Contributors(
             robot, boot, lambda: Snapshot(tiling.count, counts_size, np.uint8), resend_after

@@ -17,7 +17,7 @@ Measure: TypeAlias = Literal["trajectory", "final-logdet", "final-trace"]
 Sparse: TypeAlias = tuple[NDArray[np.int64], NDArray[np.float64]]  # targets, blocks
 
 
-class Motion(NamedTuple):
+class ChainMotion(NamedTuple):
     """The tracks before the first step and how they move: ``P' = F P F' + Q``; state x, y, vx, vy."""
 
     covariances: NDArray[np.float64]  # (T, 4, 4) [m, m, m/s, m/s]^2
@@ -26,7 +26,7 @@ class Motion(NamedTuple):
 
 
 def chain_values(
-    tracks: Motion, measure: Measure, others: Sparse, starts: NDArray[np.int64], own: Sparse
+    tracks: ChainMotion, measure: Measure, others: Sparse, starts: NDArray[np.int64], own: Sparse
 ) -> NDArray[np.float64]:
     """``value(others * own_c)`` for every candidate c, summed over the targets, 0 where nobody observes.
 
@@ -48,6 +48,6 @@ def chain_values(
     return _kernels.track_values(tracks, measure, others, starts, own)
 
 
-def chain_gradient(tracks: Motion, measure: Measure, team: Sparse) -> NDArray[np.float64]:
+def chain_gradient(tracks: ChainMotion, measure: Measure, team: Sparse) -> NDArray[np.float64]:
     """Derivative of the value in ``chain_values`` by each number in the team's blocks, (M, K, 3); (V38)."""
     return _kernels.track_gradient(tracks, measure, team)

@@ -2,9 +2,9 @@
 
 from vedette.negotiation.chooser import Chooser
 from vedette.negotiation.jacobi import JacobiNode
-from vedette.negotiation.messages import Message, Outcome, decode, encode
+from vedette.negotiation.messages import Message, RoundOutcome, decode, encode
 from vedette.negotiation.negotiate import Negotiation, Step, negotiate
-from vedette.negotiation.node import Claims, Negotiator, Participant, Send
+from vedette.negotiation.node import Claims, Negotiator, Outgoing, Participant
 from vedette.negotiation.schemes import SCHEMES, node_of
 from vedette.negotiation.token import TokenNode
 from vedette.negotiation.tree import Tree
@@ -17,9 +17,9 @@ __all__ = [
     "Message",
     "Negotiation",
     "Negotiator",
-    "Outcome",
+    "Outgoing",
     "Participant",
-    "Send",
+    "RoundOutcome",
     "Step",
     "TokenNode",
     "Tree",

@@ -7,8 +7,8 @@ from collections.abc import Callable, Hashable, Sequence
 from typing import Generic
 
 from vedette.errors import InputError
-from vedette.negotiation.messages import Down, Message, Outcome, Stop, Up
-from vedette.negotiation.node import Claims, Links, Participant, Send
+from vedette.negotiation.messages import Down, Message, RoundOutcome, Stop, Up
+from vedette.negotiation.node import Claims, Outgoing, Participant, TreeLinks
 from vedette.problem.bound import attains, tightest
 from vedette.problem.objective import ImpactT
 
@@ -47,10 +47,10 @@ class JacobiNode(Generic[ImpactT]):
                 is needed.
             claims: what each neighbour's side may claim; without it anything.
         """
-        self.finished: Outcome | None = None
+        self.finished: RoundOutcome | None = None
         self.values: list[float] = []  # at the root: the team's value at each iterate
         self._own = own
-        self._links = Links(own, neighbours, claims=claims)
+        self._links = TreeLinks(own, neighbours, claims=claims)
         self._parent = parent
         self._children = tuple(k for k in neighbours if k != parent)
         self._epsilon = epsilon
@@ -77,14 +77,14 @@ class JacobiNode(Generic[ImpactT]):
             return frozenset(() if self._parent is None else (self._parent,))
         return frozenset(self._children).difference(self._reports)
 
-    def start(self) -> list[Send[ImpactT]]:
+    def start(self) -> list[Outgoing[ImpactT]]:
         """Begin, once the own impact is ready; messages may have arrived before."""
         self._started = True
         self._ceiling = self._own.slack(self._own.nothing())
         self._strategies.append(self._own.strategy)
         return self._report()
 
-    def receive(self, sender: int, message: Message[ImpactT]) -> list[Send[ImpactT]]:
+    def receive(self, sender: int, message: Message[ImpactT]) -> list[Outgoing[ImpactT]]:
         """Take in a neighbour's message; ``ValueError`` if it breaks the protocol or claims too much."""
         self._links.check(sender)
         if self.finished is not None or sender in self._cut:
@@ -103,7 +103,7 @@ class JacobiNode(Generic[ImpactT]):
                     return self._end(message)
         raise InputError(f"message {type(message).__name__} from {sender} is out of turn; drop it")
 
-    def cut(self, neighbour: int) -> list[Send[ImpactT]]:
+    def cut(self, neighbour: int) -> list[Outgoing[ImpactT]]:
         """Go on without a child and all behind it; see `Negotiator`."""
         self._links.check_child(neighbour, self._parent)
         if self.finished is not None or neighbour in self._cut:
@@ -119,7 +119,7 @@ class JacobiNode(Generic[ImpactT]):
         self._fewer = max(0, len(self._strategies) - 1)
         return self._report()
 
-    def _report(self) -> list[Send[ImpactT]]:
+    def _report(self) -> list[Outgoing[ImpactT]]:
         """Send this iterate up once all children have reported it; the root decides what comes down."""
         if not self._started or self.waiting_for:
             return []
@@ -134,7 +134,7 @@ class JacobiNode(Generic[ImpactT]):
             slack=self._slack + sum(report.slack for report in reports),
             same=tuple(sorted(same.intersection(*(report.same for report in reports)))),
         )
-        return self._decide(summary) if self._parent is None else [Send(self._parent, summary)]
+        return self._decide(summary) if self._parent is None else [Outgoing(self._parent, summary)]
 
     def _same(self) -> set[int]:
         """Iterates of the present team at which this platform had its present strategy.
@@ -146,7 +146,7 @@ class JacobiNode(Generic[ImpactT]):
             return set()
         return {m for m, then in enumerate(self._strategies) if m >= self._fewer and then == now}
 
-    def _decide(self, summary: Up[ImpactT]) -> list[Send[ImpactT]]:
+    def _decide(self, summary: Up[ImpactT]) -> list[Outgoing[ImpactT]]:
         """At the root: begin the next iterate, or stop at a fixed point, a cycle, the ceiling or the cap."""
         total = self._own.combine(self._links.others(), self._own.impact)
         self.values.append(self._own.value(total))
@@ -166,7 +166,7 @@ class JacobiNode(Generic[ImpactT]):
             best = now - 1  # the same strategies, and their slack is known
         value = self.values[best]
         above = [value + self._slacks[best]] if best < now else []
-        outcome = Outcome(
+        outcome = RoundOutcome(
             value=value,
             bound=tightest(value, summary.ceiling, *above),
             sweeps=now,
@@ -175,13 +175,13 @@ class JacobiNode(Generic[ImpactT]):
         )
         return self._end(Stop(outcome, best))
 
-    def _next_iterate(self, down: Down[ImpactT]) -> list[Send[ImpactT]]:
+    def _next_iterate(self, down: Down[ImpactT]) -> list[Outgoing[ImpactT]]:
         """Pass this iterate down, then reply to it (paper, Table 1, steps 4 and 5)."""
         if self._remove is None:
-            onwards = [Send(k, Down(self._links.outgoing(k))) for k in self._children]
+            onwards = [Outgoing(k, Down(self._links.outgoing(k))) for k in self._children]
             others = self._links.others()
         elif down.mu is not None:
-            onwards = [Send(k, down) for k in self._children]
+            onwards = [Outgoing(k, down) for k in self._children]
             others = self._remove(down.mu, self._own.impact)  # paper, eq. (31)
         else:
             raise InputError("negotiation message Down without the team's total; drop it")
@@ -192,10 +192,10 @@ class JacobiNode(Generic[ImpactT]):
         self._strategies.append(self._own.strategy)
         return onwards + self._report()
 
-    def _end(self, stop: Stop) -> list[Send[ImpactT]]:
+    def _end(self, stop: Stop) -> list[Outgoing[ImpactT]]:
         """Take up the best iterate's strategy again and tell the children."""
         if stop.iterate is None or stop.iterate >= len(self._strategies):
             raise InputError(f"negotiation message Stop at iterate {stop.iterate}, never reached; drop it")
         self._own.adopt(self._strategies[stop.iterate])
         self.finished = stop.outcome
-        return [Send(k, stop) for k in (*self._children, *self._lost)]
+        return [Outgoing(k, stop) for k in (*self._children, *self._lost)]

@@ -18,7 +18,7 @@ Value = Annotated[float, msgspec.Meta(ge=-1e100, le=1e100)]  # sums of so many s
 Most = Annotated[float, msgspec.Meta(ge=-1e100)]  # infinite where nothing is known; never NaN
 
 
-class Outcome(msgspec.Struct, frozen=True, array_like=True):
+class RoundOutcome(msgspec.Struct, frozen=True, array_like=True):
     """How a round ended; the same at every platform that it ended for."""
 
     value: Value  # of the team's choice, in the objective's unit
@@ -77,7 +77,7 @@ class Down(msgspec.Struct, Generic[ImpactT], frozen=True, array_like=True, tag=3
 class Stop(msgspec.Struct, frozen=True, array_like=True, tag=4):
     """To everybody, once: the round is over."""
 
-    outcome: Outcome
+    outcome: RoundOutcome
     iterate: Count | None = None  # whose strategies everybody takes up again; None: the present ones
 
 

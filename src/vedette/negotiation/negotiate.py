@@ -13,7 +13,7 @@ from vedette.negotiation import messages
 from vedette.negotiation.chooser import Chooser
 from vedette.negotiation.door import check_codec, check_round, checked_reach, remover
 from vedette.negotiation.jacobi import JacobiNode
-from vedette.negotiation.node import Negotiator, Send
+from vedette.negotiation.node import Negotiator, Outgoing
 from vedette.negotiation.schemes import node_of
 from vedette.negotiation.token import TokenNode
 from vedette.negotiation.tree import Tree
@@ -153,7 +153,7 @@ def _try_out(
 
 def _deliver(nodes: Sequence[Negotiator[ImpactT]], codec: Codec[ImpactT] | None) -> tuple[int, int]:
     """Start all nodes and carry their messages, oldest first; return how many and how many bytes."""
-    post: deque[tuple[int, Send[ImpactT]]] = deque()
+    post: deque[tuple[int, Outgoing[ImpactT]]] = deque()
     for i, node in enumerate(nodes):
         post.extend((i, send) for send in node.start())
     sent = size = 0

@@ -8,7 +8,7 @@ from typing import Generic, Protocol
 
 from vedette.errors import InputError
 from vedette.negotiation.fold import Fold
-from vedette.negotiation.messages import Message, Outcome
+from vedette.negotiation.messages import Message, RoundOutcome
 from vedette.problem.objective import ImpactT
 from vedette.problem.reach import Reach
 
@@ -47,7 +47,7 @@ class Participant(Protocol[ImpactT]):
 
 
 @dataclass(frozen=True, eq=False)
-class Send(Generic[ImpactT]):
+class Outgoing(Generic[ImpactT]):
     """A message for a neighbour."""
 
     to: int
@@ -76,14 +76,14 @@ class Negotiator(Protocol[ImpactT]):
     """
 
     @property
-    def finished(self) -> Outcome | None:
+    def finished(self) -> RoundOutcome | None:
         """How the round ended, ``None`` while it lasts."""
 
     @property
     def waiting_for(self) -> frozenset[int]:
         """Neighbours without whose next message nothing goes on here; none once the round is over."""
 
-    def cut(self, neighbour: int) -> list[Send[ImpactT]]:
+    def cut(self, neighbour: int) -> list[Outgoing[ImpactT]]:
         """Go on without a child and all behind it: they count as nothing, what the child says is void.
 
         For a child that is waited for it holds at once, for another when this platform's turn comes. A round
@@ -93,14 +93,14 @@ class Negotiator(Protocol[ImpactT]):
             InputError: not a neighbour, or the parent.
         """
 
-    def start(self) -> list[Send[ImpactT]]:
+    def start(self) -> list[Outgoing[ImpactT]]:
         """Begin, once the own impact is ready; messages may have arrived before."""
 
-    def receive(self, sender: int, message: Message[ImpactT]) -> list[Send[ImpactT]]:
+    def receive(self, sender: int, message: Message[ImpactT]) -> list[Outgoing[ImpactT]]:
         """Take in a neighbour's message; ``InputError`` if it breaks the protocol."""
 
 
-class Links(Generic[ImpactT]):
+class TreeLinks(Generic[ImpactT]):
     """``mu_{i->j} = Y_i * (* of mu_{k->i}, k in N(i) without j)``: one platform's end of its links.
 
     A mu is sent only if something that it is made of has changed since it was last sent, and only what of it

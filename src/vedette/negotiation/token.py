@@ -9,8 +9,8 @@ from typing import Generic
 import msgspec
 
 from vedette.errors import InputError
-from vedette.negotiation.messages import Gather, Message, Outcome, Stop, Tally, Token
-from vedette.negotiation.node import Claims, Links, Participant, Send
+from vedette.negotiation.messages import Gather, Message, RoundOutcome, Stop, Tally, Token
+from vedette.negotiation.node import Claims, Outgoing, Participant, TreeLinks
 from vedette.negotiation.part import Part
 from vedette.problem.bound import attains, tightest
 from vedette.problem.objective import ImpactT
@@ -51,10 +51,10 @@ class TokenNode(Generic[ImpactT]):
                 everything.
             claims: what each neighbour's side may claim; without it anything.
         """
-        self.finished: Outcome | None = None
+        self.finished: RoundOutcome | None = None
         self.turns: list[tuple[int, float]] = []  # own: (number in the round, team value after it)
         self._own = own
-        self._links = Links(own, neighbours, reaches, claims)
+        self._links = TreeLinks(own, neighbours, reaches, claims)
         self._claims = claims
         self._most = math.inf if claims is None else 1 + sum(claims.platforms[k] for k in neighbours)
         self._parent = parent
@@ -77,12 +77,12 @@ class TokenNode(Generic[ImpactT]):
             return frozenset(self._children).difference(self._parts, self._cut)
         return frozenset((self._expected,))
 
-    def start(self) -> list[Send[ImpactT]]:
+    def start(self) -> list[Outgoing[ImpactT]]:
         """Begin, once the own impact is ready; messages may have arrived before."""
         self._started = True
         return self._gather()
 
-    def receive(self, sender: int, message: Message[ImpactT]) -> list[Send[ImpactT]]:
+    def receive(self, sender: int, message: Message[ImpactT]) -> list[Outgoing[ImpactT]]:
         """Take in a neighbour's message; ``ValueError`` if it breaks the protocol or claims too much."""
         self._links.check(sender)
         if self.finished is not None or sender in self._cut:
@@ -95,10 +95,10 @@ class TokenNode(Generic[ImpactT]):
                     return self._take(sender, message)
                 case Stop(outcome=outcome) if self._expected == sender:
                     self.finished = outcome
-                    return [Send(k, message) for k in self._links.neighbours if k != sender]
+                    return [Outgoing(k, message) for k in self._links.neighbours if k != sender]
         raise InputError(f"message {type(message).__name__} from {sender} is out of turn; drop it")
 
-    def cut(self, neighbour: int) -> list[Send[ImpactT]]:
+    def cut(self, neighbour: int) -> list[Outgoing[ImpactT]]:
         """Go on without a child and all behind it; see `Negotiator`."""
         self._links.check_child(neighbour, self._parent)
         if self.finished is not None or neighbour in self._cut:
@@ -114,7 +114,7 @@ class TokenNode(Generic[ImpactT]):
         assert self._handed is not None
         return self._pass_on(self._less_the_lost(self._handed), neighbour)
 
-    def _hear(self, child: int, report: Gather[ImpactT]) -> list[Send[ImpactT]]:
+    def _hear(self, child: int, report: Gather[ImpactT]) -> list[Outgoing[ImpactT]]:
         """Hold what a child's part of the tree is and does."""
         if self._claims is not None:
             self._claims.check_size(child, report.size)
@@ -124,7 +124,7 @@ class TokenNode(Generic[ImpactT]):
         self._parts[child] = Part(report.size, report.ceiling, report.value, nothing, [first])
         return self._gather()
 
-    def _gather(self) -> list[Send[ImpactT]]:
+    def _gather(self) -> list[Outgoing[ImpactT]]:
         """Report to the parent once all children have reported; the root starts the token."""
         if not self._started or self.waiting_for:
             return []
@@ -134,7 +134,7 @@ class TokenNode(Generic[ImpactT]):
         value = sum(part.value for part in parts) + self._interplay()
         if self._parent is not None:
             self._expected = self._parent
-            return [Send(self._parent, Gather(self._links.outgoing(self._parent), size, ceiling, value))]
+            return [Outgoing(self._parent, Gather(self._links.outgoing(self._parent), size, ceiling, value))]
         return self._turn(Tally(turns=0, quiet=0, value=value, slack=0.0, size=size, ceiling=ceiling))
 
     def _interplay(self) -> float:
@@ -152,7 +152,7 @@ class TokenNode(Generic[ImpactT]):
     def _team_value(self) -> float:
         return self._own.value(self._own.combine(self._links.others(), self._own.impact))
 
-    def _take(self, sender: int, token: Token[ImpactT]) -> list[Send[ImpactT]]:
+    def _take(self, sender: int, token: Token[ImpactT]) -> list[Outgoing[ImpactT]]:
         """Take the token: from the parent to reply, from a child to hand it on."""
         if sender == self._parent:
             self._check_size(token.tally, 1 + sum(part.size for part in self._parts.values()), math.inf)
@@ -184,7 +184,7 @@ class TokenNode(Generic[ImpactT]):
             tally = self._parts.pop(child).taken_off(tally, self._own, with_it - self._team_value())
         return tally
 
-    def _turn(self, tally: Tally) -> list[Send[ImpactT]]:
+    def _turn(self, tally: Tally) -> list[Outgoing[ImpactT]]:
         """Reply to the rest of the team (paper, eq. (30)); then stop or hand the token on."""
         others, before = self._links.others(), self._own.impact
         changed = self._own.reply(others)
@@ -205,9 +205,9 @@ class TokenNode(Generic[ImpactT]):
         self.finished = self._outcome(tally)
         if self.finished is None:
             return self._pass_on(tally, None)
-        return [Send(k, Stop(self.finished)) for k in self._links.neighbours]
+        return [Outgoing(k, Stop(self.finished)) for k in self._links.neighbours]
 
-    def _pass_on(self, tally: Tally, last: int | None) -> list[Send[ImpactT]]:
+    def _pass_on(self, tally: Tally, last: int | None) -> list[Outgoing[ImpactT]]:
         """Hand the token to the child after ``last``, else to the parent; the root begins a new sweep."""
         position = 0 if last is None else self._children.index(last) + 1
         ahead = (child for child in self._children[position:] if child in self._parts)
@@ -220,9 +220,9 @@ class TokenNode(Generic[ImpactT]):
             if mu is not None:
                 self._parts[onwards].told = mu
         self._expected = onwards
-        return [Send(onwards, Token(mu, tally))]
+        return [Outgoing(onwards, Token(mu, tally))]
 
-    def _outcome(self, tally: Tally) -> Outcome | None:
+    def _outcome(self, tally: Tally) -> RoundOutcome | None:
         """Return how the round ends: all are content, or the value is optimal, or it took too long."""
         content = tally.quiet >= tally.size
         everybody = tally.turns >= tally.size  # has chosen
@@ -230,7 +230,7 @@ class TokenNode(Generic[ImpactT]):
         if not (content or optimal or tally.turns >= self._max_sweeps * tally.size):
             return None
         above = tally.value + tally.slack if content else math.inf
-        return Outcome(
+        return RoundOutcome(
             value=tally.value,
             bound=tightest(tally.value, tally.ceiling, above),
             sweeps=-(-tally.turns // tally.size),

@@ -2,19 +2,19 @@
 
 from vedette.net.access import Access
 from vedette.net.credentials import Credentials, credentials
-from vedette.net.inbox import Datagram, Inbox, PeerGone, PeerSeen
+from vedette.net.inbox import Inbox, PeerGone, PeerSeen, ReceivedDatagram
 from vedette.net.names import Topic
 from vedette.net.transport import Operator, Published, Transport
 
 __all__ = [
     "Access",
     "Credentials",
-    "Datagram",
     "Inbox",
     "Operator",
     "PeerGone",
     "PeerSeen",
     "Published",
+    "ReceivedDatagram",
     "Topic",
     "Transport",
     "credentials",

@@ -34,7 +34,7 @@ ADMITTED = 64  # robots numbered higher are let in only by a robot that knows of
 Robot = Annotated[int, Meta(ge=1, le=MOST_ROBOTS)]
 
 
-class Links(Struct, forbid_unknown_fields=True, frozen=True):
+class LinkSettings(Struct, forbid_unknown_fields=True, frozen=True):
     """How the robot is reached, and whom it reaches."""
 
     listen: tuple[str, ...] = ()  # endpoints of this robot
@@ -56,7 +56,7 @@ class Links(Struct, forbid_unknown_fields=True, frozen=True):
         )
 
 
-class Body(Struct, forbid_unknown_fields=True, frozen=True):
+class BodySettings(Struct, forbid_unknown_fields=True, frozen=True):
     """The robot itself; in this version a simulated one."""
 
     map: str | None = None  # the world: a map_server .yaml beside this file, or an image
@@ -83,7 +83,7 @@ class Body(Struct, forbid_unknown_fields=True, frozen=True):
         return PlatformSpec(name, start=self.start, **{field: getattr(self, field) for field in OF_BODY})
 
 
-class Best(Struct, forbid_unknown_fields=True, frozen=True):
+class BestOfTeam(Struct, forbid_unknown_fields=True, frozen=True):
     """What no robot of the team exceeds: who claims to see more is not believed."""
 
     range: Annotated[float, Meta(gt=0.0)]  # of the lidar [m]
@@ -95,10 +95,10 @@ class AgentConfig(Struct, forbid_unknown_fields=True, frozen=True):
 
     team: str
     robot: Robot
-    body: Body = Body()
+    body: BodySettings = BodySettings()
     robots: Robot = 1  # it waits for so many, itself included, before it begins; for a while
-    best: Best | None = None  # of the whole team; None: as this robot
-    links: Links = Links()
+    best: BestOfTeam | None = None  # of the whole team; None: as this robot
+    links: LinkSettings = LinkSettings()
     explore: ExploreOptions | None = None  # one of the three; without any, it explores
     track: TrackOptions | None = None
     search: SearchOptions | None = None

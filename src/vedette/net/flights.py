@@ -12,12 +12,12 @@ import msgspec
 
 from vedette.errors import InputError
 from vedette.missions.flying import RoundTimes
-from vedette.net.config import Links
+from vedette.net.config import LinkSettings
 
 THINKING = 0.1  # that a vehicle's preparation of a round is reckoned to take [s of real time]
 
 
-def round_times(links: Links, speed: float) -> RoundTimes:
+def round_times(links: LinkSettings, speed: float) -> RoundTimes:
     """Return what rounds take over such links, in mission time."""
     return RoundTimes(links.delay * speed, THINKING * speed)
 
@@ -44,7 +44,7 @@ class FlightsPlan:
     @property
     def times(self) -> RoundTimes:
         """What the team's rounds take."""
-        return round_times(Links(), self.speed)
+        return round_times(LinkSettings(), self.speed)
 
     def write(self, folder: Path) -> None:
         """Write nothing: all read the same scenario."""

@@ -11,7 +11,7 @@ MOST_BYTES = 1 << 26
 
 
 @dataclass(frozen=True)
-class Datagram:
+class ReceivedDatagram:
     """Bytes from a neighbour."""
 
     robot: int
@@ -58,7 +58,7 @@ class Inbox:
                 return
             if self._queue.qsize() >= self._most_events:
                 self.dropped += 1
-                if isinstance(event, Datagram):
+                if isinstance(event, ReceivedDatagram):
                     return
                 self._bytes -= _size(self._queue.get())
             self._bytes += size
@@ -76,4 +76,4 @@ class Inbox:
 
 
 def _size(event: object) -> int:
-    return len(event.payload) if isinstance(event, Datagram) else 0
+    return len(event.payload) if isinstance(event, ReceivedDatagram) else 0

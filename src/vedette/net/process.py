@@ -15,8 +15,8 @@ from vedette.agent.effects import Drive, Fly, Job
 from vedette.agent.events import JobDone
 from vedette.agent.networked import Output
 from vedette.net.clock import MissionClock
-from vedette.net.inbox import Datagram as Received
 from vedette.net.inbox import Inbox, PeerGone, PeerSeen
+from vedette.net.inbox import ReceivedDatagram as Received
 from vedette.net.names import Topic
 from vedette.net.transport import Published, Transport
 from vedette.net.witness import Witness

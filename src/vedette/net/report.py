@@ -18,7 +18,7 @@ Word = Annotated[str, Meta(max_length=64, pattern=PRINTABLE)]
 Sentence = Annotated[str, Meta(max_length=500, pattern=PRINTABLE)]
 
 
-class Spread(msgspec.Struct, frozen=True, array_like=True):
+class SpreadReport(msgspec.Struct, frozen=True, array_like=True):
     """Order statistics of wall-clock durations [ms]."""
 
     count: Count
@@ -73,9 +73,9 @@ class Condition(msgspec.Struct, frozen=True, array_like=True, tag=1):
     bytes: Annotated[dict[Word, int], Meta(max_length=16)]
     dropped: Annotated[dict[Word, Count], Meta(max_length=16)]  # what failed a check, by where
     refusal: Sentence | None  # why it must start anew to join a team again
-    planning_ms: Spread | None  # a round's preparation and answers
-    answer_ms: Spread | None  # a negotiation message
-    round_ms: Spread | None  # rounds that this robot began, as the root, from end to end
+    planning_ms: SpreadReport | None  # a round's preparation and answers
+    answer_ms: SpreadReport | None  # a negotiation message
+    round_ms: SpreadReport | None  # rounds that this robot began, as the root, from end to end
     decided: Real | None = None  # how long ago the latest round ended with a decision, in real time [s]
 
 

@@ -12,7 +12,7 @@ from vedette.net.gather import status_of
 from vedette.net.inbox import Inbox
 from vedette.net.launch import TeamPlan, TeamProcesses
 from vedette.net.names import Topic, robot_name
-from vedette.net.report import Condition, Spread, read_report
+from vedette.net.report import Condition, SpreadReport, read_report
 from vedette.net.transport import Operator, Published
 from vedette.outcome import Outcome
 from vedette.record.links import Link, links_of
@@ -177,7 +177,7 @@ class TeamWatch(Generic[ReportT_co]):
         )
 
 
-def _slowest(spreads: Sequence[Spread | None]) -> Statistics | None:
+def _slowest(spreads: Sequence[SpreadReport | None]) -> Statistics | None:
     told = [each for each in spreads if each is not None]
     if not told:
         return None

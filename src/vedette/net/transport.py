@@ -15,7 +15,7 @@ import zenoh
 from vedette.errors import InputError
 from vedette.net.access import MOST_PAYLOAD, Access, settings
 from vedette.net.endpoints import check_connecting, check_listening
-from vedette.net.inbox import Datagram, Inbox, PeerGone, PeerSeen
+from vedette.net.inbox import Inbox, PeerGone, PeerSeen, ReceivedDatagram
 from vedette.net.names import Topic, check_robot, robot_of
 
 MOST_STATUS = 1 << 20  # bytes taken of an answer
@@ -106,9 +106,9 @@ class _Session:
 class Transport(_Session):
     """One robot's session: unreliable datagrams to and from its neighbours.
 
-    What arrives waits in ``inbox`` as ``Datagram``, ``PeerSeen`` and ``PeerGone``. Datagrams may be lost, not
-    doubled, and come in the order in which they were sent while one link lasts. Neighbours are those that
-    this robot connects to or that connect to it; nobody passes anything on.
+    What arrives waits in ``inbox`` as ``ReceivedDatagram``, ``PeerSeen`` and ``PeerGone``. Datagrams may be
+    lost, not doubled, and come in the order in which they were sent while one link lasts. Neighbours are
+    those that this robot connects to or that connect to it; nobody passes anything on.
     """
 
     def __init__(
@@ -166,7 +166,7 @@ class Transport(_Session):
         if sender is None or len(payload) > MOST_PAYLOAD:
             self.refused += 1
             return
-        self.inbox.put(Datagram(sender, payload.to_bytes(), self.clock()))
+        self.inbox.put(ReceivedDatagram(sender, payload.to_bytes(), self.clock()))
 
     def _put(self, key: str, payload: bytes, priority: zenoh.Priority) -> None:
         if len(payload) > MOST_PAYLOAD:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from vedette.agent import NetworkedAgent
 from vedette.agent.body import Body
 from vedette.net import report as wire
-from vedette.net.report import Condition, LinkReport, Spread
+from vedette.net.report import Condition, LinkReport, SpreadReport
 from vedette.net.transport import Transport
 from vedette.overlay import LinkStatus
 from vedette.record.clock import Clock
@@ -127,5 +127,5 @@ def _link(link: LinkStatus) -> LinkReport:
     return LinkReport(link.robot, link.role, link.loss, link.round_trip, link.offset, link.silent)
 
 
-def _spread(statistics: Statistics | None, count: int) -> Spread | None:
-    return None if statistics is None else Spread(count, statistics.p50, statistics.p95, statistics.max)
+def _spread(statistics: Statistics | None, count: int) -> SpreadReport | None:
+    return None if statistics is None else SpreadReport(count, statistics.p50, statistics.p95, statistics.max)

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from vedette.overlay import hello as wire
 from vedette.overlay.hello import BYE, PARENT, TICKS, Hello
 from vedette.overlay.peer import Peer
-from vedette.overlay.position import Position
+from vedette.overlay.position import TreePosition
 from vedette.overlay.stamp import BOOT_BITS, EPOCH_BITS, ROBOT_BITS
 from vedette.overlay.status import LinkStatus, Place, Status
 
@@ -39,7 +39,7 @@ class Overlay:
         self._now = now
         self._silent = False  # for good
         self._peers: dict[int, Peer] = {}
-        self._position = Position(robot, boot, self._peers, now)
+        self._position = TreePosition(robot, boot, self._peers, now)
         self.place = Place(self._position.number, None, (), 1)
         self._own_size = 1  # of this robot's part of the tree
         self._to_root = 0.0  # the root's clock minus ours [s]

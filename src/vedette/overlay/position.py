@@ -25,7 +25,7 @@ def patience(cost: int) -> float:
     return 0.02 * cost * cost
 
 
-class Position:
+class TreePosition:
     """A robot's stamp, distance, parent and children, brought in line with what is known of its peers."""
 
     def __init__(self, robot: int, boot: int, peers: Mapping[int, Peer], now: float) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from vedette.agent.effects import Traffic as Kind
+from vedette.agent.effects import TrafficKind as Kind
 from vedette.agent.rounds import Rounds
 from vedette.record.summary import Traffic
 

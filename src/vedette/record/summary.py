@@ -51,7 +51,7 @@ class Setting:
 
 @dataclass(frozen=True)
 class Traffic:
-    """Messages or bytes that one robot sent, by kind: a field for each `vedette.agent.effects.Traffic`."""
+    """Messages or bytes that one robot sent, by kind: a field for each `effects.TrafficKind`."""
 
     negotiation: int = 0
     fusion: int = 0

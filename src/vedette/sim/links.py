@@ -6,24 +6,24 @@ import heapq
 from collections import defaultdict
 from dataclasses import dataclass, field
 
-from vedette.agent.effects import Send, Traffic
+from vedette.agent.effects import Send, TrafficKind
 
 
 @dataclass
-class Links:
+class Wires:
     """Links with a delay, and a count of what was sent over them."""
 
     robots: int
     delay: float  # one way [s]
-    messages_sent: dict[Traffic, list[int]] = field(init=False)  # by kind and robot
-    bytes_sent: dict[Traffic, list[int]] = field(init=False)
+    messages_sent: dict[TrafficKind, list[int]] = field(init=False)  # by kind and robot
+    bytes_sent: dict[TrafficKind, list[int]] = field(init=False)
     _queue: list[tuple[float, int, int, int, bytes]] = field(default_factory=list)
     _sent: int = 0
     _last: defaultdict[tuple[int, int], float] = field(default_factory=lambda: defaultdict(float))
 
     def __post_init__(self) -> None:
-        self.messages_sent = {kind: [0] * self.robots for kind in Traffic}
-        self.bytes_sent = {kind: [0] * self.robots for kind in Traffic}
+        self.messages_sent = {kind: [0] * self.robots for kind in TrafficKind}
+        self.bytes_sent = {kind: [0] * self.robots for kind in TrafficKind}
 
     def send(self, sender: int, send: Send, now: float) -> None:
         """Put a message on its link."""

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Protocol, TypeAlias
 
 from vedette.agent import Agent
-from vedette.agent.effects import Traffic
+from vedette.agent.effects import TrafficKind
 from vedette.agent.events import Event
 from vedette.record.links import Link
 
@@ -27,11 +27,11 @@ class Network(Protocol):
         """Everybody's agent, the latest one where a robot has been started again."""
 
     @property
-    def messages_sent(self) -> Mapping[Traffic, Sequence[int]]:
+    def messages_sent(self) -> Mapping[TrafficKind, Sequence[int]]:
         """By kind and robot."""
 
     @property
-    def bytes_sent(self) -> Mapping[Traffic, Sequence[int]]:
+    def bytes_sent(self) -> Mapping[TrafficKind, Sequence[int]]:
         """By kind and robot, payloads only."""
 
     def tick(self, now: float) -> Iterable[tuple[int, Act]]:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.agent import Agent, NetworkedAgent
-from vedette.agent.effects import Traffic
+from vedette.agent.effects import TrafficKind
 from vedette.agent.events import Event, Pose, Scan, Sensed
 from vedette.record.links import Link, links_of
 from vedette.sim.datagrams import Datagrams
@@ -77,7 +77,7 @@ class OverlaidNetwork:
         self._timeline, self._losses, self._lease = timeline, losses, lease
         n = len(field.alive)
         self._earlier = {
-            kind: ([0] * n, [0] * n) for kind in Traffic
+            kind: ([0] * n, [0] * n) for kind in TrafficKind
         }  # messages, bytes of lives that are over
         self._queue: list[tuple[float, int, int]] = []  # wakings: time, number, robot
         self._count = itertools.count()
@@ -105,7 +105,7 @@ class OverlaidNetwork:
         return self._agents
 
     @property
-    def messages_sent(self) -> Mapping[Traffic, Sequence[int]]:
+    def messages_sent(self) -> Mapping[TrafficKind, Sequence[int]]:
         """By kind and robot, over all its lives."""
         return {
             kind: [
@@ -116,7 +116,7 @@ class OverlaidNetwork:
         }
 
     @property
-    def bytes_sent(self) -> Mapping[Traffic, Sequence[int]]:
+    def bytes_sent(self) -> Mapping[TrafficKind, Sequence[int]]:
         """By kind and robot, over all its lives."""
         return {
             kind: [

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.agent import Agent, step
-from vedette.agent.effects import Traffic
+from vedette.agent.effects import TrafficKind
 from vedette.agent.events import Event, Message, TreeChanged
 from vedette.negotiation import Tree
-from vedette.sim.links import Links
+from vedette.sim.links import Wires
 from vedette.sim.network import FIRST_BOOT, Act, Spawn
 
 NOTICED_AFTER = 1.0  # a dead robot is missed, and the tree planted anew, after so long [s]
@@ -26,7 +26,7 @@ class PlantedTree:
         self,
         spawn: Spawn,
         alive: Callable[[], NDArray[np.bool_]],
-        wires: Links,
+        wires: Wires,
         apart: bool = False,
     ) -> None:
         """Bring robots to life; ``apart``: each is on a tree of its own."""
@@ -36,12 +36,12 @@ class PlantedTree:
         self._epoch = 0
 
     @property
-    def messages_sent(self) -> Mapping[Traffic, Sequence[int]]:
+    def messages_sent(self) -> Mapping[TrafficKind, Sequence[int]]:
         """By kind and robot."""
         return self.wires.messages_sent
 
     @property
-    def bytes_sent(self) -> Mapping[Traffic, Sequence[int]]:
+    def bytes_sent(self) -> Mapping[TrafficKind, Sequence[int]]:
         """By kind and robot, payloads only."""
         return self.wires.bytes_sent
 

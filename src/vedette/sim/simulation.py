@@ -25,7 +25,7 @@ from vedette.record.clock import Clock
 from vedette.sim.datagrams import Datagrams
 from vedette.sim.faults import Timeline
 from vedette.sim.field import Field
-from vedette.sim.links import Links
+from vedette.sim.links import Wires
 from vedette.sim.network import Act, Network, Spawn
 from vedette.sim.overlaid import OverlaidNetwork
 from vedette.sim.planted import PlantedTree
@@ -61,7 +61,7 @@ class Simulation:
         self._stopped = False
 
     def _planted(self, spawn: Spawn) -> Network:
-        wires = Links(len(self.field.alive), self.setup.link_delay)
+        wires = Wires(len(self.field.alive), self.setup.link_delay)
         return PlantedTree(spawn, lambda: self.field.alive, wires, self.setup.apart)
 
     def _overlaid(self, spawn: Spawn, walls: World | None) -> Network:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from vedette.agent.body import TICK
 from vedette.agent.effects import Fly, Motion
 from vedette.agent.events import Event, Pose, Sensed
-from vedette.agent.flight import Flight
+from vedette.agent.flight import Itinerary
 from vedette.errors import InputError
 from vedette.outcome import Outcome
 
@@ -55,7 +55,7 @@ class Vehicles:
             raise InputError(f"step must be a multiple of the simulator's tick of {TICK:g} s; got {step!r}")
         self._step, self._look, self._over = step, look, over
         self._alive = np.ones(n, np.bool_)
-        self._flights = [Flight(rate) for rate in self._turn_rates.tolist()]
+        self._flights = [Itinerary(rate) for rate in self._turn_rates.tolist()]
         self._stood = np.zeros(n)  # time of that in which each was not alive [s]
         self._flown = np.zeros(n)  # time up to which each pose has been worked out [s]
         self._looks = np.zeros(n, np.int64)
@@ -75,7 +75,7 @@ class Vehicles:
         x, y, heading = self.poses[i].tolist()
         return x, y, heading
 
-    def flight(self, i: int) -> Flight:
+    def flight(self, i: int) -> Itinerary:
         """Return what a vehicle flies."""
         return self._flights[i]
 
@@ -113,7 +113,7 @@ class Vehicles:
         self._alive[i] = True
         self._stood[i] += now - self._flown[i]
         self._flown[i] = now
-        self._flights[i] = Flight(float(self._turn_rates[i]))
+        self._flights[i] = Itinerary(float(self._turn_rates[i]))
 
     def over(self, now: float) -> Outcome | None:
         """Return what the mission's world says."""

@@ -7,7 +7,7 @@ from typing import cast
 import numpy as np
 
 from vedette.agent import FlightBehaviour
-from vedette.agent.flight import Flight
+from vedette.agent.flight import Itinerary
 from vedette.record.figures import RobotFigures, RoundFigures, traffic_of
 from vedette.record.summary import Setting
 from vedette.sim.setup import Setup
@@ -33,7 +33,7 @@ def state(simulation: Simulation, i: int) -> str:
     return simulation.network.agents[i].state.value if simulation.field.alive[i] else DEAD
 
 
-def flight(simulation: Simulation, i: int) -> Flight:
+def flight(simulation: Simulation, i: int) -> Itinerary:
     """Return what a vehicle means to fly."""
     return cast(FlightBehaviour, simulation.network.agents[i].behaviour).flight
 

@@ -5,7 +5,14 @@ try:
 except ImportError as error:
     raise ImportError("vedette.stonesoup needs Stone Soup; run: pip install 'vedette[stonesoup]'") from error
 
-from vedette.stonesoup.manager import Decision, VedetteSensorManager
-from vedette.stonesoup.objectives import LogDetReward, TrackReward, Tracks, UncertaintyReward
+from vedette.stonesoup.manager import ManagerDecision, VedetteSensorManager
+from vedette.stonesoup.objectives import LogDetReward, StoneSoupTracks, TrackReward, UncertaintyReward
 
-__all__ = ["Decision", "LogDetReward", "TrackReward", "Tracks", "UncertaintyReward", "VedetteSensorManager"]
+__all__ = [
+    "LogDetReward",
+    "ManagerDecision",
+    "StoneSoupTracks",
+    "TrackReward",
+    "UncertaintyReward",
+    "VedetteSensorManager",
+]

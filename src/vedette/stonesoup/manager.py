@@ -17,12 +17,12 @@ from vedette.errors import InputError, nearest_name
 from vedette.negotiation import Negotiation, Tree, negotiate
 from vedette.stonesoup.candidates import Actions, Menu, menus
 from vedette.stonesoup.forecast import forecast
-from vedette.stonesoup.objectives import REWARDS, TrackReward, Tracks
+from vedette.stonesoup.objectives import REWARDS, StoneSoupTracks, TrackReward
 from vedette.stonesoup.search import good_start
 
 
 @dataclass(frozen=True)
-class Decision:
+class ManagerDecision:
     """What the last call of ``choose_actions`` agreed on, and what that took."""
 
     reward: float  # of the configuration returned: nats with logdet, the covariances' units with uncertainty
@@ -64,7 +64,7 @@ class VedetteSensorManager(SensorManager):  # type: ignore[misc]  # Stone Soup h
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
-        self.last: Decision | None = None
+        self.last: ManagerDecision | None = None
 
     def choose_actions(
         self,
@@ -94,10 +94,10 @@ class VedetteSensorManager(SensorManager):  # type: ignore[misc]  # Stone Soup h
             raise InputError("the manager has no sensors; pass sensors={...}, or platforms that carry some")
         ahead = forecast(tracks, predictor, timestamp)
         found, config = menus(self.sensors, self.platforms, ahead, self.max_actions)
-        agreed = self._negotiate(objective, Tracks.of(ahead.covariances), found)
+        agreed = self._negotiate(objective, StoneSoupTracks.of(ahead.covariances), found)
         for menu, k in zip(found, agreed.choice, strict=True):
             config |= menu.candidates[k].actions
-        self.last = Decision(
+        self.last = ManagerDecision(
             reward=agreed.value,
             bound=agreed.bound,
             converged=agreed.converged,
@@ -109,7 +109,9 @@ class VedetteSensorManager(SensorManager):  # type: ignore[misc]  # Stone Soup h
         )
         return _result(config, agreed.value, return_reward)
 
-    def _negotiate(self, objective: TrackReward, belief: Tracks, menus: Sequence[Menu]) -> Negotiation:
+    def _negotiate(
+        self, objective: TrackReward, belief: StoneSoupTracks, menus: Sequence[Menu]
+    ) -> Negotiation:
         """Let the choosers agree, from a good start unless ``starts`` is 0."""
         own = [[candidate.information for candidate in menu.candidates] for menu in menus]
         start = None

@@ -14,14 +14,14 @@ from vedette.problem import Objective
 
 
 @dataclass(frozen=True, eq=False)
-class Tracks:
+class StoneSoupTracks:
     """The predicted tracks' covariances: what both rewards depend on."""
 
     roots: NDArray[np.float64]  # (m, d, d), lower triangular, P = L L', in the units of the tracks' states
     norms: NDArray[np.float64]  # (m,), Frobenius norm of P
 
     @classmethod
-    def of(cls, covariances: NDArray[np.float64]) -> Tracks:
+    def of(cls, covariances: NDArray[np.float64]) -> StoneSoupTracks:
         """Return the belief with these covariances, (m, d, d).
 
         Raises:
@@ -38,7 +38,7 @@ class Tracks:
         return cls(np.asarray(roots, dtype=np.float64), np.asarray(norms, dtype=np.float64))
 
 
-class TrackReward(Objective[Tracks, NDArray[np.float64]]):
+class TrackReward(Objective[StoneSoupTracks, NDArray[np.float64]]):
     """``psi(I) = sum_t g(P_t, I_t)``, with ``*`` the sum of information matrices.
 
     Impact: ``H' R^-1 H`` of a sensor's measurement of every track, (m, d, d), zero where it has none in view.
@@ -49,11 +49,11 @@ class TrackReward(Objective[Tracks, NDArray[np.float64]]):
 
     @abstractmethod
     def gains(
-        self, belief: Tracks, tracks: NDArray[np.int64], information: NDArray[np.float64]
+        self, belief: StoneSoupTracks, tracks: NDArray[np.int64], information: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """Return ``g`` of N tracks, given by number, with ``information`` (N, d, d); 0 for none."""
 
-    def nothing(self, belief: Tracks) -> NDArray[np.float64]:
+    def nothing(self, belief: StoneSoupTracks) -> NDArray[np.float64]:
         """Return zeros: no track is measured."""
         return np.zeros_like(belief.roots)
 
@@ -65,12 +65,12 @@ class TrackReward(Objective[Tracks, NDArray[np.float64]]):
         """Return ``total - own`` (paper, eq. (31) and its footnote 2)."""
         return total - own
 
-    def value(self, belief: Tracks, impact: NDArray[np.float64]) -> float:
+    def value(self, belief: StoneSoupTracks, impact: NDArray[np.float64]) -> float:
         """Return the sum over the tracks."""
         return float(self.gains(belief, np.arange(len(belief.roots)), impact).sum())
 
     def values(
-        self, belief: Tracks, others: NDArray[np.float64], own: Sequence[NDArray[np.float64]]
+        self, belief: StoneSoupTracks, others: NDArray[np.float64], own: Sequence[NDArray[np.float64]]
     ) -> NDArray[np.float64]:
         """Return the sum over the tracks with each own impact; only tracks in its view are computed anew."""
         if len(own) == 0:
@@ -91,7 +91,7 @@ class LogDetReward(TrackReward):
     submodular = True
 
     def gains(
-        self, belief: Tracks, tracks: NDArray[np.int64], information: NDArray[np.float64]
+        self, belief: StoneSoupTracks, tracks: NDArray[np.int64], information: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """Return the entropy removed from each track [nat]."""
         log_dets = np.linalg.slogdet(_whitened(belief.roots[tracks], information))[1]
@@ -105,7 +105,7 @@ class UncertaintyReward(TrackReward):
     """
 
     def gains(
-        self, belief: Tracks, tracks: NDArray[np.int64], information: NDArray[np.float64]
+        self, belief: StoneSoupTracks, tracks: NDArray[np.int64], information: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """Return by how much the norm of each track's covariance falls, in the covariance's units."""
         roots = belief.roots[tracks]

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.stonesoup.objectives import TrackReward, Tracks
+from vedette.stonesoup.objectives import StoneSoupTracks, TrackReward
 
 MOST_STARTS = 128
 EFFORT = 384  # starts are EFFORT m / n^2: small teams and many tracks have the worse equilibria
@@ -21,7 +21,11 @@ EPSILON = 1e-9  # least gain for which somebody changes, relative where the valu
 
 
 def good_start(
-    objective: TrackReward, belief: Tracks, menus: Sequence[NDArray[np.float64]], starts: int, seed: int
+    objective: TrackReward,
+    belief: StoneSoupTracks,
+    menus: Sequence[NDArray[np.float64]],
+    starts: int,
+    seed: int,
 ) -> tuple[int, ...]:
     """Return a choice, one index a menu, from which nobody gains by changing alone.
 
@@ -61,7 +65,11 @@ class _Search:
     """R searches at once: in each, every chooser in turn replies to all others."""
 
     def __init__(
-        self, objective: TrackReward, belief: Tracks, menus: Sequence[_Menu], choices: NDArray[np.int64]
+        self,
+        objective: TrackReward,
+        belief: StoneSoupTracks,
+        menus: Sequence[_Menu],
+        choices: NDArray[np.int64],
     ) -> None:
         self.choices = choices  # (R, n), changed as the searches go on
         self._objective = objective

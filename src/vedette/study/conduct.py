@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from rich.console import Console
 
-from vedette.study.mission import Result
+from vedette.study.mission import RunResult
 from vedette.study.progress import StudyProgress
 from vedette.study.run import Run
 from vedette.study.store import Store
@@ -18,7 +18,7 @@ from vedette.study.workers import Workers
 class Conducted:
     """How far a study has come."""
 
-    results: Mapping[Run, Result]  # in the order of the spec
+    results: Mapping[Run, RunResult]  # in the order of the spec
     missing: Sequence[Run]  # not done, because the study was interrupted
     fresh: int  # carried out just now
 

@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from vedette.study.bootstrap import mean_band
 from vedette.study.compare import Draw, draw
-from vedette.study.mission import Result
+from vedette.study.mission import RunResult
 from vedette.study.rows import Row
 from vedette.study.run import Value
 
 Curve = tuple[Sequence[float], Sequence[float]]  # times of change [s], unknown share from then on
 POINTS = 240
 _SHOWN_UNTIL = 0.005  # unknown share below which a curve has nothing more to show
-CurvesOf = Mapping[tuple[Value, Value], Result]  # by case and planner
+CurvesOf = Mapping[tuple[Value, Value], RunResult]  # by case and planner
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,5 +77,5 @@ def _stacked(found: Sequence[tuple[Draw, Curve]], times: NDArray[np.float64]) ->
     return np.array([np.mean(group, axis=0) for group in groups.values()])
 
 
-def _of(row: Row, curves: CurvesOf) -> Result:
+def _of(row: Row, curves: CurvesOf) -> RunResult:
     return curves[row["case"], row["planner"]]

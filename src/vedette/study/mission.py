@@ -23,7 +23,7 @@ FAILED = "failed"  # outcome of a run that broke
 
 
 @dataclass(frozen=True)
-class Result:
+class RunResult:
     """What one run left: figures in simulated time, wall-clock figures apart, and the curve of coverage."""
 
     figures: Mapping[str, Value]
@@ -39,7 +39,7 @@ class Result:
         return str(self.figures.get("error", ""))
 
 
-def carry_out(run: Run) -> Result:
+def carry_out(run: Run) -> RunResult:
     """Run a mission to its end; one that breaks is a result too.
 
     Raises:
@@ -54,7 +54,7 @@ def carry_out(run: Run) -> Result:
         raise KeyboardInterrupt
     best = limit(simulation.world, simulation.specs, simulation.starts)
     figures = _figures(report.summary, simulation) | _limits(best)
-    return Result(plain(figures), plain(_timing(report.timing)), *_curve(report.log), *_limit_curve(best))
+    return RunResult(plain(figures), plain(_timing(report.timing)), *_curve(report.log), *_limit_curve(best))
 
 
 def prepared(run: Run) -> ExploreSimulation:
@@ -66,10 +66,10 @@ def prepared(run: Run) -> ExploreSimulation:
     return prepare(world, specs, run.setup)
 
 
-def broken(error: BaseException) -> Result:
+def broken(error: BaseException) -> RunResult:
     """Return the result of a run that did not come to an end."""
     text = " ".join(f"{type(error).__name__}: {error}".split())
-    return Result({"outcome": FAILED, "completed": False, "error": text[:500]}, {}, (), (), (), ())
+    return RunResult({"outcome": FAILED, "completed": False, "error": text[:500]}, {}, (), (), (), ())
 
 
 def _figures(summary: ExploreSummary, simulation: ExploreSimulation) -> dict[str, Value]:

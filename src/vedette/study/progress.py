@@ -10,7 +10,7 @@ from types import TracebackType
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
-from vedette.study.mission import Result
+from vedette.study.mission import RunResult
 from vedette.study.run import Run
 
 
@@ -66,7 +66,7 @@ class StudyProgress(AbstractContextManager["StudyProgress"]):
         if self._bar is not None:
             self._bar.stop()
 
-    def ended(self, run: Run, result: Result) -> None:
+    def ended(self, run: Run, result: RunResult) -> None:
         """Tell how a run ended; one that broke gets a line in a terminal too."""
         self._done += 1
         self._work_done += weight(run)
@@ -98,7 +98,7 @@ def _bar(console: Console) -> Progress:
     )
 
 
-def _outcome(result: Result) -> str:
+def _outcome(result: RunResult) -> str:
     if result.error:
         return f"broke: {result.error}"
     outcome = str(result.figures["outcome"]).replace("_", " ")

@@ -11,18 +11,18 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from vedette.record.files import atomic_path
-from vedette.study.mission import Result
+from vedette.study.mission import RunResult
 from vedette.study.run import Run, Value
 
 Row: TypeAlias = Mapping[str, Value]
 
 
-def figure_rows(results: Mapping[Run, Result]) -> list[Row]:
+def figure_rows(results: Mapping[Run, RunResult]) -> list[Row]:
     """Return the runs with their figures in simulated time; the same runs give the same rows."""
     return _filled([{"case": run.case, **run.columns(), **result.figures} for run, result in results.items()])
 
 
-def timing_rows(results: Mapping[Run, Result]) -> list[Row]:
+def timing_rows(results: Mapping[Run, RunResult]) -> list[Row]:
     """Return the runs with their wall-clock figures, which differ from machine to machine."""
     return _filled([{"case": run.case, **_team(run), **result.timing} for run, result in results.items()])
 

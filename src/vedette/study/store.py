@@ -11,7 +11,7 @@ import msgspec
 from vedette.errors import InputError
 from vedette.record.files import output_directory, write_text
 from vedette.record.summary import SCHEMA_VERSION
-from vedette.study.mission import Result
+from vedette.study.mission import RunResult
 from vedette.study.run import Run
 
 
@@ -39,14 +39,14 @@ class Store:
         """Return where the result of a run is, or will be."""
         return self._folder / f"{run.key(self._code)}.json"
 
-    def read(self, run: Run) -> Result | None:
+    def read(self, run: Run) -> RunResult | None:
         """Return the result of a run, ``None`` if there is none that can be read."""
         try:
             return msgspec.json.decode(self.path(run).read_bytes(), type=RunFile).result
         except (OSError, msgspec.DecodeError):
             return None
 
-    def write(self, run: Run, result: Result) -> None:
+    def write(self, run: Run, result: RunResult) -> None:
         """Put the result of a run in place."""
         file = RunFile(run=run.columns(), result=result)
         write_text(self.path(run), msgspec.json.encode(file).decode() + "\n")
@@ -63,4 +63,4 @@ class RunFile(msgspec.Struct, kw_only=True):
 
     schema_version: Literal[3] = SCHEMA_VERSION
     run: dict[str, str | int | float | bool | None]  # for people: the key says the same
-    result: Result
+    result: RunResult

@@ -12,11 +12,11 @@ from joblib import Parallel, delayed, parallel_config
 
 from vedette.errors import InputError
 from vedette.study.backends import Backend
-from vedette.study.mission import Result, broken, carry_out
+from vedette.study.mission import RunResult, broken, carry_out
 from vedette.study.run import Run
 
 IDLE = 20.0  # a worker without work ends after so long, as all do when this process is killed [s]
-Work = Callable[[Run], Result]
+Work = Callable[[Run], RunResult]
 
 
 @dataclass
@@ -28,7 +28,7 @@ class Workers:
     work: Work = carry_out
     _given: dict[Run, None] = field(default_factory=dict)  # to the workers, and not yet back
 
-    def results(self, runs: Sequence[Run]) -> Iterator[tuple[Run, Result]]:
+    def results(self, runs: Sequence[Run]) -> Iterator[tuple[Run, RunResult]]:
         """Yield runs and results as they come, in any order."""
         left = dict.fromkeys(runs)
         with self._cluster():
@@ -42,7 +42,7 @@ class Workers:
                         del left[run]
                         yield run, self._alone(run)
 
-    def _together(self, runs: Sequence[Run]) -> Iterator[tuple[Run, Result]]:
+    def _together(self, runs: Sequence[Run]) -> Iterator[tuple[Run, RunResult]]:
         self._given.clear()
         jobs = min(self.jobs, len(runs))
         for run, result in self._parallel(jobs, self._giving(runs)):
@@ -54,14 +54,14 @@ class Workers:
             self._given[run] = None
             yield run
 
-    def _alone(self, run: Run) -> Result:
+    def _alone(self, run: Run) -> RunResult:
         """Try a run that was under way when a worker died once more, in a process of its own."""
         try:
             return next(result for _, result in self._parallel(2, [run]))
         except Exception as error:
             return broken(error)
 
-    def _parallel(self, jobs: int, runs: Iterable[Run]) -> Iterator[tuple[Run, Result]]:
+    def _parallel(self, jobs: int, runs: Iterable[Run]) -> Iterator[tuple[Run, RunResult]]:
         """Yield what comes back; a single job is done in this process, a cluster does as many as it can."""
         local = self.backend == "loky"
         own = {"backend": "loky", "initializer": ignore_ctrl_c, "idle_worker_timeout": IDLE} if local else {}
@@ -74,7 +74,7 @@ class Workers:
         return nullcontext() if self.backend == "loky" else _dask(self.jobs)
 
 
-def _named(work: Work, run: Run) -> tuple[Run, Result]:
+def _named(work: Work, run: Run) -> tuple[Run, RunResult]:
     return run, work(run)
 
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from vedette.domains.mapping.impact import MIN_SHARE, NOTHING, Impact, ImpactCodec, final_miss, quantise
+from vedette.domains.mapping.impact import MIN_SHARE, NOTHING, Impact, MapImpactCodec, final_miss, quantise
 from vedette.kernels.coverage import LAYERS
 from vedette.kernels.reference import coverage as reference
 
@@ -24,7 +24,7 @@ def random_impact(rng: np.random.Generator, cells: int) -> Impact:
 @settings(deadline=None, max_examples=60)
 @given(seeds, st.sampled_from([1, 2, 30, 254, 255, 256, 257, 3000]))
 def test_the_codec_gives_back_any_impact_within_its_bound(seed: int, cells: int) -> None:
-    codec, impact = ImpactCodec(cells), random_impact(np.random.default_rng(seed), cells)
+    codec, impact = MapImpactCodec(cells), random_impact(np.random.default_rng(seed), cells)
     payload = codec.encode(impact)
     assert len(payload) <= codec.bound
     again = codec.decode(payload)
@@ -34,7 +34,7 @@ def test_the_codec_gives_back_any_impact_within_its_bound(seed: int, cells: int)
 
 
 def test_the_fullest_and_the_emptiest_impact_travel() -> None:
-    codec = ImpactCodec(2000)
+    codec = MapImpactCodec(2000)
     rng = np.random.default_rng(0)
     full = Impact(
         np.arange(2000 * LAYERS, dtype=np.uint32), rng.integers(1, 256, 2000 * LAYERS).astype(np.uint8)
@@ -45,7 +45,7 @@ def test_the_fullest_and_the_emptiest_impact_travel() -> None:
         assert len(codec.encode(impact)) <= codec.bound
 
 
-def check_decoded(codec: ImpactCodec, cells: int, payload: bytes) -> None:
+def check_decoded(codec: MapImpactCodec, cells: int, payload: bytes) -> None:
     """Decoding gives a sound impact or ValueError, nothing else."""
     try:
         impact = codec.decode(payload)
@@ -60,7 +60,7 @@ def check_decoded(codec: ImpactCodec, cells: int, payload: bytes) -> None:
 @settings(deadline=None, max_examples=150)
 @given(seeds, st.binary(max_size=40), st.integers(1, 600))
 def test_malformed_bytes_are_value_errors_or_sound_impacts(seed: int, junk: bytes, cells: int) -> None:
-    rng, codec = np.random.default_rng(seed), ImpactCodec(cells)
+    rng, codec = np.random.default_rng(seed), MapImpactCodec(cells)
     payload = bytearray(codec.encode(random_impact(rng, cells)))
     body = bytearray(zlib.decompress(bytes(payload), wbits=-15))
     flips = rng.integers(0, len(payload), 2), rng.integers(0, len(body), 2)
@@ -97,7 +97,7 @@ def packed(counts: list[int], gaps: list[int], misses: list[int]) -> bytes:
 )
 def test_a_malformed_impact_is_refused_with_its_fault(payload: bytes, fault: str) -> None:
     with pytest.raises(ValueError, match=fault):
-        ImpactCodec(10).decode(payload)
+        MapImpactCodec(10).decode(payload)
 
 
 def test_a_share_is_rounded_by_less_than_a_twelfth() -> None:

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.support.search_scenes import OBJECTIVE, frozen, random_impact, team
-from vedette.domains.search.impact import NOTHING, Impact, ImpactCodec, quantise
+from vedette.domains.search.impact import NOTHING, Impact, SearchImpactCodec, quantise
 from vedette.domains.search.paths import impact_of, shared_paths
 
 CELLS, LAYERS = 700, 5
@@ -22,7 +22,7 @@ def impact_from(rng: np.random.Generator, share: float) -> Impact:
 @settings(deadline=None, max_examples=60)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 0.001, 0.05, 1.0]))
 def test_an_impact_survives_the_wire_within_its_bound(seed: int, share: float) -> None:
-    codec = ImpactCodec(CELLS, LAYERS)
+    codec = SearchImpactCodec(CELLS, LAYERS)
     impact = impact_from(np.random.default_rng(seed), share)
     data = codec.encode(impact)
     assert codec.decode(data) == impact
@@ -31,13 +31,13 @@ def test_an_impact_survives_the_wire_within_its_bound(seed: int, share: float) -
 
 def test_what_is_not_an_impact_over_this_area_is_refused() -> None:
     rng = np.random.default_rng(0)
-    codec = ImpactCodec(CELLS, LAYERS)
+    codec = SearchImpactCodec(CELLS, LAYERS)
     data = codec.encode(impact_from(rng, 0.2))
     for broken in (b"", b"\x00", data[:-4], data + b"x", bytes(rng.bytes(50))):
         with pytest.raises(ValueError, match="impact"):
             codec.decode(broken)
     with pytest.raises(ValueError, match="impact"):
-        ImpactCodec(CELLS // 2, LAYERS).decode(data)
+        SearchImpactCodec(CELLS // 2, LAYERS).decode(data)
     empty_entry = Impact(np.array([3], np.uint32), np.array([0], np.uint8))
     with pytest.raises(ValueError, match="empty"):
         codec.decode(codec.encode(empty_entry))
@@ -76,7 +76,9 @@ def test_a_message_costs_little_more_than_its_footprint() -> None:
     belief = frozen()
     platform = team(belief, size=1)[0]
     impact = platform.impact(belief, platform.reply(belief, NOTHING, platform.start))
-    data = ImpactCodec(belief.frame.size, belief.layers).encode(impact)
+    data = SearchImpactCodec(belief.frame.size, belief.layers).encode(impact)
     assert len(data) < len(impact.keys)
     scattered = random_impact(belief, np.random.default_rng(2))
-    assert len(ImpactCodec(belief.frame.size, belief.layers).encode(scattered)) < 3 * len(scattered.keys)
+    assert len(SearchImpactCodec(belief.frame.size, belief.layers).encode(scattered)) < 3 * len(
+        scattered.keys
+    )

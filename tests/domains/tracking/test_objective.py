@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from tests.support.tracking_scenes import random_impact, random_platform, random_tracks
 from vedette.domains.tracking.belief import tracks
-from vedette.domains.tracking.codec import ImpactCodec
+from vedette.domains.tracking.codec import TrackImpactCodec
 from vedette.domains.tracking.impact import Impact, clip, impact_of
 from vedette.domains.tracking.models import TargetModel, static
 from vedette.domains.tracking.objective import (
@@ -142,7 +142,7 @@ def test_clipping_to_what_a_platform_can_reach_leaves_its_gains_as_they_are(seed
 def test_messages_come_back_as_they_were_within_the_bound(seed: int) -> None:
     rng = np.random.default_rng(seed)
     belief = random_tracks(rng, targets=5)
-    codec = ImpactCodec(len(belief), belief.horizon)
+    codec = TrackImpactCodec(len(belief), belief.horizon)
     team = functools.reduce(OBJECTIVE.combine, (random_impact(rng, belief) for _ in range(3)))
     for impact in (OBJECTIVE.nothing(belief), random_impact(rng, belief), team):
         data = codec.encode(impact)
@@ -165,14 +165,14 @@ def test_messages_come_back_as_they_were_within_the_bound(seed: int) -> None:
     ],
 )
 def test_messages_that_are_no_impact_are_refused(targets: list[int], block: list[float], reason: str) -> None:
-    codec = ImpactCodec(targets=3, horizon=2)
+    codec = TrackImpactCodec(targets=3, horizon=2)
     bad = Impact(np.array(targets), np.tile(np.array(block, np.float64), (2, 2, 1)))
     with pytest.raises(ValueError, match=reason):
         codec.decode(codec.encode(bad))
 
 
 def test_messages_of_the_wrong_size_are_refused() -> None:
-    codec = ImpactCodec(targets=1, horizon=2)
+    codec = TrackImpactCodec(targets=1, horizon=2)
     data = codec.encode(impact_of(np.ones((1, 2, 3))))
     for wrong in (data[:-1], data + b"\0", data + data):
         with pytest.raises(ValueError, match="cut short or too large"):

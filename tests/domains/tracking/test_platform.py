@@ -16,7 +16,7 @@ from tests.support.tracking_scenes import SIDE, random_impact, random_platform, 
 from vedette import Tree, exhaustive, negotiate
 from vedette.domains.tracking.ascent import ascend, turn_rate_gradient
 from vedette.domains.tracking.belief import tracks
-from vedette.domains.tracking.codec import ImpactCodec
+from vedette.domains.tracking.codec import TrackImpactCodec
 from vedette.domains.tracking.courses import Course, sequences
 from vedette.domains.tracking.models import constant_velocity, static
 from vedette.domains.tracking.objective import OBJECTIVES, FinalEntropy, TrackingObjective
@@ -113,7 +113,7 @@ def test_token_negotiation_is_near_the_optimum_of_all_joint_courses(name: str) -
             belief,
             candidates,
             Tree.chain(3),
-            codec=ImpactCodec(len(belief), belief.horizon),
+            codec=TrackImpactCodec(len(belief), belief.horizon),
         )
         best = exhaustive(OBJECTIVES[name](), belief, candidates)
         ratios.append(found.value / best.value if best.value else 1.0)
@@ -134,7 +134,7 @@ def test_messages_clipped_to_what_their_receivers_can_reach_change_no_choice(see
     belief = random_tracks(rng, targets=8, horizon=2)
     team = [random_platform(rng, belief) for _ in range(5)]
     candidates = [platform.candidates for platform in team if platform.candidates is not None]
-    tree, codec = Tree.random(5, seed=seed % 1000), ImpactCodec(len(belief), belief.horizon)
+    tree, codec = Tree.random(5, seed=seed % 1000), TrackImpactCodec(len(belief), belief.horizon)
     full = negotiate(OBJECTIVE, belief, candidates, tree, codec=codec)
     reach = [platform.reach(belief) for platform in team]
     clipped = negotiate(OBJECTIVE, belief, candidates, tree, codec=codec, reach=reach)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tests.support.search_missions import BOX, DRIFTING, EYE, blind, case, central, curve, scattered
-from vedette.agent.effects import Traffic
+from vedette.agent.effects import TrafficKind
 from vedette.agent.events import Pose, Sensed
 from vedette.domains.search.belief import freeze
 from vedette.domains.search.impact import NOTHING
@@ -143,7 +143,7 @@ def test_messages_clipped_to_what_their_receivers_can_reach_change_no_flight(
     for one, other in zip(clipped.vehicles.looks, whole.vehicles.looks, strict=True):
         assert one.keys() == other.keys()
         assert all(np.array_equal(one[k], other[k]) for k in one)
-    sent, unclipped = (sum(each.network.bytes_sent[Traffic.NEGOTIATION]) for each in (clipped, whole))
+    sent, unclipped = (sum(each.network.bytes_sent[TrafficKind.NEGOTIATION]) for each in (clipped, whole))
     assert sent < 0.8 * unclipped
 
 

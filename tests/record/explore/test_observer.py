@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from tests.support.small_missions import robots, run, small_maze
-from vedette.agent.effects import Traffic as Kind
+from vedette.agent.effects import TrafficKind as Kind
 from vedette.domains.mapping.belief import LN2
 from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.platform import GivenUp

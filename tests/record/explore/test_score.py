@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
 from vedette.maps.world import World
-from vedette.record.explore.score import Progress, Reference, coverage, map_errors, overlap
+from vedette.record.explore.score import CoverageProgress, Reference, coverage, map_errors, overlap
 from vedette.team import PlatformSpec
 
 
@@ -105,7 +105,7 @@ def test_overlap_is_the_share_seen_by_two_or_more() -> None:
 
 
 def test_times_and_area_are_those_of_a_step_curve() -> None:
-    progress = Progress()
+    progress = CoverageProgress()
     assert progress.t_at(0.5) is None
     assert progress.auc(10.0) == 10.0
     for t, share in ((1.0, 0.2), (2.0, 0.5), (2.0, 0.6), (4.0, 0.9)):

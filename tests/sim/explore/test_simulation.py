@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.support.small_missions import check_complete, drawn, robots, run, small_maze, small_office
-from vedette.agent.effects import Send, Traffic
+from vedette.agent.effects import Send, TrafficKind
 from vedette.domains.mapping.planners import PLANNERS
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.maps.world import World
@@ -15,7 +15,7 @@ from vedette.negotiation import SCHEMES
 from vedette.record.explore.score import Reference
 from vedette.sim.explore.run import explore, observer_of, prepare, views
 from vedette.sim.explore.simulation import ExploreSetup
-from vedette.sim.links import Links
+from vedette.sim.links import Wires
 from vedette.team import PlatformSpec
 
 TWO_DOORS = """
@@ -209,16 +209,16 @@ def test_stopping_a_mission_ends_it_as_interrupted_with_all_its_figures() -> Non
 
 
 def test_a_link_delivers_in_order_after_its_delay_and_counts_what_it_carries() -> None:
-    links = Links(2, 0.05)
+    links = Wires(2, 0.05)
     for number in range(4000):
-        links.send(0, Send(1, Traffic.BEACONS, number.to_bytes(2, "little")), number * 1e-3)
+        links.send(0, Send(1, TrafficKind.BEACONS, number.to_bytes(2, "little")), number * 1e-3)
     for number in range(4000):
         time, sender, receiver, payload = links.arrive()
         assert (sender, receiver, int.from_bytes(payload, "little")) == (0, 1, number)
         assert time == pytest.approx(number * 1e-3 + 0.05)
     assert links.next_arrival() == float("inf")
-    assert links.messages_sent[Traffic.BEACONS] == [4000, 0]
-    assert links.bytes_sent[Traffic.BEACONS] == [8000, 0]
+    assert links.messages_sent[TrafficKind.BEACONS] == [4000, 0]
+    assert links.bytes_sent[TrafficKind.BEACONS] == [8000, 0]
 
 
 def test_the_sum_of_curves_is_what_the_log_says() -> None:

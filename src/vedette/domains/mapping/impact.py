@@ -65,7 +65,7 @@ def check_claim(
         raise ValueError(f"impact claims to see more surely than {robots} robots can")
 
 
-class ImpactCodec(MissesCodec):
+class MapImpactCodec(MissesCodec):
     """Impacts over so many planning cells as bytes, layer by layer."""
 
     def __init__(self, cells: int) -> None:

@@ -16,7 +16,7 @@ MOST = 64 * 1024  # levels one step's evidence of one robot may have in a cell, 
 
 
 @dataclass(frozen=True, eq=False)
-class Evidence:
+class LookEvidence:
     """A sparse grid of log-likelihood ratios, rounded once: sums are exact in any order and grouping."""
 
     cells: NDArray[np.uint32]  # (M,) strictly increasing flat cells
@@ -24,7 +24,7 @@ class Evidence:
 
     def __eq__(self, other: object) -> bool:
         return (
-            isinstance(other, Evidence)
+            isinstance(other, LookEvidence)
             and np.array_equal(self.cells, other.cells)
             and np.array_equal(self.levels, other.levels)
         )
@@ -32,7 +32,7 @@ class Evidence:
     def __hash__(self) -> int:
         return hash((self.cells.tobytes(), self.levels.tobytes()))
 
-    def __add__(self, other: Evidence) -> Evidence:
+    def __add__(self, other: LookEvidence) -> LookEvidence:
         return _summed(np.concatenate((self.cells, other.cells)), np.concatenate((self.levels, other.levels)))
 
     @property
@@ -41,25 +41,25 @@ class Evidence:
         return self.levels / LEVELS_PER_NAT
 
 
-NO_EVIDENCE = Evidence(np.empty(0, np.uint32), np.empty(0, np.int64))
+NO_EVIDENCE = LookEvidence(np.empty(0, np.uint32), np.empty(0, np.int64))
 
 
-def evidence(cells: NDArray[np.uint32], log_likelihood: NDArray[np.float64]) -> Evidence:
+def evidence(cells: NDArray[np.uint32], log_likelihood: NDArray[np.float64]) -> LookEvidence:
     """Round log-likelihood ratios [nat] in distinct cells to levels, at most 64 nat either way."""
     levels = np.clip(np.rint(np.asarray(log_likelihood) * LEVELS_PER_NAT), -MOST, MOST)
     return _summed(cells, levels.astype(np.int64))
 
 
-def _summed(cells: NDArray[np.uint32], levels: NDArray[np.int64]) -> Evidence:
+def _summed(cells: NDArray[np.uint32], levels: NDArray[np.int64]) -> LookEvidence:
     distinct, where = np.unique(cells, return_inverse=True)
     total = np.zeros(len(distinct), np.int64)
     np.add.at(total, where, levels)
-    return Evidence(distinct[total != 0].astype(np.uint32), total[total != 0])
+    return LookEvidence(distinct[total != 0].astype(np.uint32), total[total != 0])
 
 
 def evidence_of_looks(
     detector: Detector, frame: GridFrame, poses: NDArray[np.float64], reports: Sequence[Report]
-) -> Evidence:
+) -> LookEvidence:
     """Evidence of the looks of one step, from poses ``(L, 3)``: those without a report together.
 
     ``ln (1 - P)`` with P the probability that at least one of them detects, as plans take it; a report by

@@ -66,7 +66,7 @@ def check_claim(
         raise ValueError(f"impact promises {looked[horizon:].sum()} cells; {robots} vehicles search fewer")
 
 
-class ImpactCodec(MissesCodec):
+class SearchImpactCodec(MissesCodec):
     """Impacts over so many cells and layers as bytes, all layers in one go."""
 
     def __init__(self, cells: int, layers: int) -> None:

@@ -15,7 +15,7 @@ from vedette.kernels.search import Paths
 
 
 @dataclass(frozen=True, eq=False)
-class Options:
+class FlightOptions:
     """What a vehicle can choose from in a round."""
 
     flights: list[Flight]  # the present one, restated, first

@@ -21,7 +21,7 @@ from vedette.domains.search.flights import (
 )
 from vedette.domains.search.goals import NO_GOALS, Goals, find_goals, promise, share_left
 from vedette.domains.search.impact import Impact
-from vedette.domains.search.options import Options, boxes_of, quantised_looks, with_promises
+from vedette.domains.search.options import FlightOptions, boxes_of, quantised_looks, with_promises
 from vedette.domains.search.paths import impact_of
 from vedette.errors import InputError
 from vedette.kernels import search
@@ -58,7 +58,7 @@ class SearchPlatform:
     looks: int | None = None  # a step; None: enough to move by half the range between two
     pose: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
     present: Flight | None = None
-    options: Options | None = None
+    options: FlightOptions | None = None
     _known: dict[Impact, NDArray[np.float64]] = field(default_factory=dict)  # gains by the rest of the team
 
     def __post_init__(self) -> None:
@@ -116,7 +116,7 @@ class SearchPlatform:
         promised = goals if belief.worth.promises else NO_GOALS
         boxes = boxes_of(belief, paths, promised)
         paths, ends = with_promises(paths, tree.ends, promised, after, *promise(delays, belief.duration))
-        self.options = Options(flights, index, to_best, paths, ends, boxes)
+        self.options = FlightOptions(flights, index, to_best, paths, ends, boxes)
         self._known.clear()
 
     @property

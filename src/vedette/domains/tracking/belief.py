@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from vedette.domains.tracking.models import STATE, TargetModel
 from vedette.errors import InputError
-from vedette.kernels.tracking import Motion
+from vedette.kernels.tracking import ChainMotion
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,10 +69,10 @@ class Tracks:
         return np.asarray((self.covariances @ self.y[:, :, None])[:, :, 0])
 
     @cached_property
-    def motion(self) -> Motion:
+    def motion(self) -> ChainMotion:
         """The tracks as the kernels take them."""
         transitions = np.stack([model.F for model in self.models])
-        return Motion(self.covariances, transitions, np.stack([model.Q for model in self.models]))
+        return ChainMotion(self.covariances, transitions, np.stack([model.Q for model in self.models]))
 
     @cached_property
     def predicted_means(self) -> NDArray[np.float64]:

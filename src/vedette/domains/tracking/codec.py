@@ -10,7 +10,7 @@ MOST = 1e14  # of any entry of a block [1/m^2]; sums of so many stay finite
 _RANK_ONE = 1e-9  # a matrix that rounding made indefinite by this share still counts as semi-definite
 
 
-class ImpactCodec:
+class TrackImpactCodec:
     """A row for each target that somebody sees: its number in four bytes, then K blocks of three float64."""
 
     def __init__(self, targets: int, horizon: int) -> None:

@@ -7,9 +7,9 @@ from typing import Protocol
 
 from vedette.errors import InputError, nearest_name
 from vedette.fusion.gaussian.channel import GaussianChannel
-from vedette.fusion.gaussian.information import Information, Motion
+from vedette.fusion.gaussian.information import Information, TrackMotion
 from vedette.fusion.gaussian.intersection import IntersectionFusion, intersect
-from vedette.fusion.gaussian.packing import Likelihoods, Packing
+from vedette.fusion.gaussian.packing import Likelihoods, TrackPacking
 from vedette.fusion.gaussian.refiltered import RefilteredTracks
 from vedette.fusion.link import RESEND_AFTER
 from vedette.fusion.steps import ReplicatedSteps, StepSums
@@ -20,10 +20,10 @@ __all__ = [
     "Information",
     "IntersectionFusion",
     "Likelihoods",
-    "Motion",
-    "Packing",
     "RefilteredTracks",
     "TrackFusion",
+    "TrackMotion",
+    "TrackPacking",
     "intersect",
     "track_fusion",
 ]
@@ -74,7 +74,7 @@ def track_fusion(
     robot: int,
     boot: int,
     prior: Information,
-    motion: Motion,
+    motion: TrackMotion,
     start: int,
     *,
     most_matrix: float,
@@ -93,7 +93,7 @@ def track_fusion(
         return GaussianChannel(robot, boot, prior, motion, start, resend_after=resend_after)
     if way == "intersection":
         return IntersectionFusion(robot, boot, prior, motion, start, resend_after=resend_after)
-    likelihoods = Likelihoods(Packing(*prior.vector.shape), most_matrix, most_vector)
+    likelihoods = Likelihoods(TrackPacking(*prior.vector.shape), most_matrix, most_vector)
     if way == "replicated":
         replicated = ReplicatedSteps(robot, boot, likelihoods.elements, resend_after=resend_after)
         return RefilteredTracks(replicated, likelihoods, prior, motion, start)

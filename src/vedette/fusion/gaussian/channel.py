@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from vedette.fusion.gaussian.edge import Edge
+from vedette.fusion.gaussian.edge import TrackEdge
 from vedette.fusion.gaussian.exchange import TrackExchange
-from vedette.fusion.gaussian.information import Information, Motion
+from vedette.fusion.gaussian.information import Information, TrackMotion
 from vedette.fusion.gaussian.intersection import intersect
 from vedette.fusion.gaussian.wire import TrackMessage, decode, encode
 from vedette.fusion.link import RESEND_AFTER
@@ -15,7 +15,7 @@ GENERATION_BITS = 24
 _CYCLE = (1 << GENERATION_BITS) - 1  # generations 1.._CYCLE, then from 1 again
 
 
-class GaussianChannel(TrackExchange[Edge]):
+class GaussianChannel(TrackExchange[TrackEdge]):
     """``Y_i <- Y_i + (Y_j - Y_ij)``, ``Y_ij <- Y_j`` on hearing j: what j says beyond what both know is new.
 
     Node and channels are predicted with the same F and Q at the same steps. What crosses an edge are whole
@@ -39,7 +39,7 @@ class GaussianChannel(TrackExchange[Edge]):
         robot: int,
         boot: int,
         prior: Information,
-        motion: Motion,
+        motion: TrackMotion,
         start: int,
         *,
         resend_after: float = RESEND_AFTER,
@@ -66,7 +66,7 @@ class GaussianChannel(TrackExchange[Edge]):
         """Take these as the neighbours on the tree; begin a new generation if tracks have been exchanged."""
         if set(neighbours) == self._edges.keys():
             return
-        self._edges = {neighbour: Edge() for neighbour in neighbours}
+        self._edges = {neighbour: TrackEdge() for neighbour in neighbours}
         self._renew(self.generation if self._untouched else self._next)
 
     def outgoing(self, neighbour: int, now: float) -> bytes | None:
@@ -108,7 +108,9 @@ class GaussianChannel(TrackExchange[Edge]):
         if generation == self.generation:
             self._hear(neighbour, self._edges[neighbour], message, theirs)
 
-    def _hear(self, neighbour: int, edge: Edge, message: TrackMessage, theirs: Information | None) -> None:
+    def _hear(
+        self, neighbour: int, edge: TrackEdge, message: TrackMessage, theirs: Information | None
+    ) -> None:
         edge.peer = message.nonce
         is_answer = message.echo == self._nonce
         if is_answer:
@@ -127,7 +129,7 @@ class GaussianChannel(TrackExchange[Edge]):
         for edge in self._edges.values():
             edge.common = {n: self._node.forward(track) for n, track in edge.common.items()}
 
-    def _merge(self, neighbour: int, edge: Edge, message: TrackMessage, theirs: Information) -> None:
+    def _merge(self, neighbour: int, edge: TrackEdge, message: TrackMessage, theirs: Information) -> None:
         """Take in a neighbour's tracks: their news if we know what is common, all of an offer if we may."""
         included = message.included if message.echo >= 0 else 0
         if included in edge.common:
@@ -161,16 +163,16 @@ class GaussianChannel(TrackExchange[Edge]):
         self.generation = generation
         self._settled = generation == 0 or not self._edges
         common = {} if self._origin is None else {0: self._origin}
-        self._edges = {neighbour: Edge(common=dict(common)) for neighbour in self._edges}
+        self._edges = {neighbour: TrackEdge(common=dict(common)) for neighbour in self._edges}
 
-    def _may_tell(self, edge: Edge) -> bool:
+    def _may_tell(self, edge: TrackEdge) -> bool:
         """Once settled; before that, an offer, when all other neighbours' offers are merged."""
         if self._settled:
             return True
         others = all(other.taken for other in self._edges.values() if other is not edge)
         return others and not edge.taken and edge.acknowledged == 0
 
-    def _may_take(self, neighbour: int, edge: Edge) -> bool:
+    def _may_take(self, neighbour: int, edge: TrackEdge) -> bool:
         """Take one offer of each neighbour; where two offers cross, the robot of higher number takes."""
         return not self._settled and not edge.taken and (edge.sent == 0 or self._robot > neighbour)
 

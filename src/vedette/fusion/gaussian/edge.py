@@ -46,7 +46,7 @@ class Contact:
 
 
 @dataclass(eq=False)
-class Edge(Contact):
+class TrackEdge(Contact):
     """One end of a channel, at the node's step.
 
     ``common[n]`` is what both sides know if the neighbour has taken in the tracks that we sent as number n,

@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from typing import Generic, TypeVar
 
 from vedette.fusion.gaussian.edge import Contact
-from vedette.fusion.gaussian.information import Information, Motion
+from vedette.fusion.gaussian.information import Information, TrackMotion
 from vedette.fusion.gaussian.node import Node
 from vedette.fusion.gaussian.wire import TrackMessage
 from vedette.fusion.link import RESEND_AFTER, Boots, check_boot
@@ -25,7 +25,7 @@ class TrackExchange(ABC, Generic[ContactT]):
         robot: int,
         boot: int,
         prior: Information,
-        motion: Motion,
+        motion: TrackMotion,
         start: int,
         *,
         resend_after: float = RESEND_AFTER,

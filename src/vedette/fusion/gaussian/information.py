@@ -94,7 +94,7 @@ class Information:
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class TrackMotion:
     """``x(k+1) = F x(k) + w``, ``w ~ N(0, Q)``, for every target; Q may be singular, F x F' + Q may not."""
 
     transition: Floats  # (T, d, d) F, for one step

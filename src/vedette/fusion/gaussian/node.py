@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from vedette.errors import InputError
-from vedette.fusion.gaussian.information import Information, Motion, check_likelihood, checked_start
-from vedette.fusion.gaussian.packing import Packing, check_shape
+from vedette.fusion.gaussian.information import Information, TrackMotion, check_likelihood, checked_start
+from vedette.fusion.gaussian.packing import TrackPacking, check_shape
 from vedette.fusion.gaussian.wire import TrackMessage
 from vedette.fusion.steps.wire import check_step
 
@@ -12,14 +12,14 @@ from vedette.fusion.steps.wire import check_step
 class Node:
     """``(Y, y)`` at one step; prediction is common to all robots, likelihoods are added."""
 
-    def __init__(self, prior: Information, motion: Motion, start: int) -> None:
+    def __init__(self, prior: Information, motion: TrackMotion, start: int) -> None:
         check_step(start)
         if motion.transition.shape != prior.matrix.shape:
             raise InputError(f"F has shape {motion.transition.shape}; the prior has {prior.matrix.shape}")
         self.track = checked_start(prior)
         self.step = start
         self._motion = motion
-        self._packing = Packing(*prior.vector.shape)
+        self._packing = TrackPacking(*prior.vector.shape)
         check_shape(self._packing)
 
     @property

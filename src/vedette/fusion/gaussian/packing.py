@@ -15,7 +15,7 @@ MOST_ROBOTS = 1024  # whose rounding errors add up in a sum
 
 
 @dataclass(frozen=True)
-class Packing:
+class TrackPacking:
     """T targets of dimension d: upper triangles of the matrices, row by row, then the vectors."""
 
     targets: int
@@ -64,7 +64,7 @@ class LikelihoodElements(SparseIntegers):
     by entry, to a unit, and may have been below zero by ``BELOW`` before.
     """
 
-    def __init__(self, packing: Packing, scale: FixedPoint) -> None:
+    def __init__(self, packing: TrackPacking, scale: FixedPoint) -> None:
         super().__init__(packing.size)
         self._packing, self._scale = packing, scale
         self._row, self._col = np.triu_indices(packing.dimension)
@@ -104,7 +104,7 @@ class Likelihoods:
     Matrix entries up to ``most_matrix``, vector entries up to ``most_vector``, each kept to 2^-50 of that.
     """
 
-    def __init__(self, packing: Packing, most_matrix: float, most_vector: float) -> None:
+    def __init__(self, packing: TrackPacking, most_matrix: float, most_vector: float) -> None:
         self._packing = packing
         vectors = packing.targets * packing.dimension
         largest = np.repeat([most_matrix, most_vector], [packing.size - vectors, vectors])
@@ -122,7 +122,7 @@ class Likelihoods:
         return self.elements.tracks(total)
 
 
-def check_shape(packing: Packing, most_elements: int = 1 << 20) -> None:
+def check_shape(packing: TrackPacking, most_elements: int = 1 << 20) -> None:
     """Raise InputError for a team of tracks that is empty or absurdly large."""
     if packing.targets < 1 or packing.dimension < 1 or packing.size > most_elements:
         raise InputError(f"{packing.targets} targets of dimension {packing.dimension}; at least one of each")

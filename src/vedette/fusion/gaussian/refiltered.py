@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from vedette.errors import InputError
-from vedette.fusion.gaussian.information import Information, Motion, check_likelihood, checked_start
+from vedette.fusion.gaussian.information import Information, TrackMotion, check_likelihood, checked_start
 from vedette.fusion.gaussian.packing import Likelihoods
 from vedette.fusion.steps import Refilter, Sparse, StepEvidence
 
@@ -23,7 +23,7 @@ class RefilteredTracks:
         evidence: StepEvidence[Sparse],
         likelihoods: Likelihoods,
         prior: Information,
-        motion: Motion,
+        motion: TrackMotion,
         start: int,
     ) -> None:
         """``prior`` are the tracks at step ``start``, ahead of its evidence; the same for every robot."""

@@ -9,7 +9,7 @@ from typing import Generic, TypeVar
 
 from vedette.errors import InputError
 from vedette.fusion.edges import Edges
-from vedette.fusion.link import RESEND_AFTER, Link
+from vedette.fusion.link import RESEND_AFTER, EvidenceLink
 from vedette.fusion.steps.elements import Elements
 from vedette.fusion.steps.totals import Totals
 from vedette.fusion.steps.wire import Entries, check_step, decode, encode, pack, unpack
@@ -18,10 +18,10 @@ E = TypeVar("E")
 
 
 @dataclass(eq=False)
-class Edge(Generic[E]):
+class StepEdge(Generic[E]):
     """One end of a tree edge: the latest sums from there, and when the sums to there last changed."""
 
-    link: Link[Entries]
+    link: EvidenceLink[Entries]
     inbox: dict[int, E] = field(default_factory=dict)  # step -> mu_{l->i}(k)
     heard: int = 0  # version of the inbox
     robots: int = 0  # behind the neighbour that have published
@@ -67,7 +67,7 @@ class StepSums(Totals[E]):
             raise InputError(f"window must be at least 1 step; got {window}")
         self._window = window
         self._has_published = False
-        self._edges: Edges[Edge[E], Entries] = Edges(robot, boot, resend_after)
+        self._edges: Edges[StepEdge[E], Entries] = Edges(robot, boot, resend_after)
         self._newest = -1
         self._hold = -1  # no step is closed before the newest one is this
         self._open_from = 0
@@ -130,7 +130,7 @@ class StepSums(Totals[E]):
             if sums.base <= edge.heard < sums.version:
                 self._apply(edge, sums, elements)
 
-    def _apply(self, edge: Edge[E], sums: Entries, elements: list[tuple[int, E]]) -> None:
+    def _apply(self, edge: StepEdge[E], sums: Entries, elements: list[tuple[int, E]]) -> None:
         edge.heard = sums.version
         if edge.robots != sums.robots:
             edge.robots = sums.robots
@@ -144,7 +144,7 @@ class StepSums(Totals[E]):
             self._change(step, self._elements.subtract(element, before), edge)
         self._advance()
 
-    def _change(self, step: int, more: E, source: Edge[E] | None) -> None:
+    def _change(self, step: int, more: E, source: StepEdge[E] | None) -> None:
         """Add to a total, and note that the sums to everybody but the source have changed."""
         self.add(step, more)
         for edge in self._edges.values():
@@ -152,13 +152,13 @@ class StepSums(Totals[E]):
                 edge.told += 1
                 edge.stamps[step] = edge.told
 
-    def _count(self, source: Edge[E] | None = None) -> None:
+    def _count(self, source: StepEdge[E] | None = None) -> None:
         """Note that the number of robots told to everybody but the source has changed."""
         for edge in self._edges.values():
             if edge is not source:
                 edge.told += 1
 
-    def _since(self, edge: Edge[E], base: int) -> Entries:
+    def _since(self, edge: StepEdge[E], base: int) -> Entries:
         """Return the sums for a neighbour that changed after a version: totals less what came from there."""
         entries = bytearray()
         for step, stamp in edge.stamps.items():
@@ -178,10 +178,10 @@ class StepSums(Totals[E]):
             edge.inbox = {k: element for k, element in edge.inbox.items() if k >= fresh}
             edge.stamps = {k: stamp for k, stamp in edge.stamps.items() if k >= fresh}
 
-    def _new_edge(self, link: Link[Entries]) -> Edge[E]:
-        return Edge(link, stamps={step: 1 for step in self.steps() if step >= self._open_from})
+    def _new_edge(self, link: EvidenceLink[Entries]) -> StepEdge[E]:
+        return StepEdge(link, stamps={step: 1 for step in self.steps() if step >= self._open_from})
 
-    def _blank(self, edge: Edge[E]) -> None:
+    def _blank(self, edge: StepEdge[E]) -> None:
         """Take what came over an edge out of the open totals: it goes, or starts anew."""
         inbox, edge.inbox = edge.inbox, {}
         edge.heard = edge.robots = 0

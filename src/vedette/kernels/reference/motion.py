@@ -50,7 +50,7 @@ def clearance(solid: NDArray[np.bool_], resolution: float, x: float, y: float, r
     return float(min(border, reach, nearest))
 
 
-class Scene(NamedTuple):
+class MotionScene(NamedTuple):
     """What a robot steers by; see ``vedette.kernels.motion.steer``."""
 
     solid: NDArray[np.bool_]
@@ -198,7 +198,7 @@ def steer(
 ) -> Command:
     """Try every follower in turn; stop at the first that is good enough, else take the cheapest."""
     s, last_offset, turning = progress
-    scene = Scene(solid, traversable, resolution, path, arc, others, limits, turning)
+    scene = MotionScene(solid, traversable, resolution, path, arc, others, limits, turning)
     s = scene.project(pose[0], pose[1], s - 0.5, s + 1.0)[0]
     conceivable = max(float(arc[-1]) - s - STEPS * limits.period * limits.speed, 0.0) / limits.speed
     best = scene.price(Follower(last_offset, 0.0, LOOKS[0]), pose, s, last_offset)

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.kernels.tracking import Measure, Motion, Sparse
+from vedette.kernels.tracking import ChainMotion, Measure, Sparse
 
 _POSITION = np.eye(2, 4)  # H: the position part of x, y, vx, vy
 
@@ -19,7 +19,7 @@ def information(block: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(_POSITION.T @ matrices @ _POSITION)
 
 
-def predicted(tracks: Motion, target: int, covariance: NDArray[np.float64]) -> NDArray[np.float64]:
+def predicted(tracks: ChainMotion, target: int, covariance: NDArray[np.float64]) -> NDArray[np.float64]:
     """``F P F' + Q``."""
     f = tracks.transitions[target]
     return np.asarray(f @ covariance @ f.T + tracks.noises[target])
@@ -30,7 +30,7 @@ def updated(covariance: NDArray[np.float64], info: NDArray[np.float64]) -> NDArr
     return np.asarray(np.linalg.solve(np.eye(4) + covariance @ info, covariance), np.float64)
 
 
-def score(tracks: Motion, measure: Measure, target: int, block: NDArray[np.float64]) -> float:
+def score(tracks: ChainMotion, measure: Measure, target: int, block: NDArray[np.float64]) -> float:
     """Return one target's measure after the information (K, 3): gains are differences of it."""
     covariance, total = tracks.covariances[target], 0.0
     for info in information(block):
@@ -47,7 +47,7 @@ def score(tracks: Motion, measure: Measure, target: int, block: NDArray[np.float
 
 
 def chain_values(
-    tracks: Motion, measure: Measure, others: Sparse, starts: NDArray[np.int64], own: Sparse
+    tracks: ChainMotion, measure: Measure, others: Sparse, starts: NDArray[np.int64], own: Sparse
 ) -> NDArray[np.float64]:
     """Twin of ``tracking.chain_values``: the sum over all targets, from the beginning for every candidate."""
     shape = (len(tracks.covariances), *others[1].shape[1:])
@@ -62,7 +62,7 @@ def chain_values(
     return np.array(values, np.float64)
 
 
-def chain_gradient(tracks: Motion, measure: Measure, team: Sparse) -> NDArray[np.float64]:
+def chain_gradient(tracks: ChainMotion, measure: Measure, team: Sparse) -> NDArray[np.float64]:
     """Twin of ``tracking.chain_gradient``: the derivative of every covariance by every number, forward.
 
     ``dP_{k|k-1} = F dP F'``, ``d(1/2 ln det(1 + P I)) = 1/2 tr((1 + P I)^-1 (dP I + P dI))`` and

@@ -11,7 +11,7 @@ from vedette.domains.mapping.sightings import BINS
 from vedette.errors import check_word
 from vedette.fusion import ChannelFilter, Fusion, ReplicatedEvidence
 from vedette.maps import GridFrame
-from vedette.missions.explore.exploration import Exploration
+from vedette.missions.explore.exploring import Exploring
 from vedette.missions.explore.options import ExploreOptions
 from vedette.team import Most, PlatformSpec
 
@@ -49,6 +49,6 @@ def assemble(
     """
     check_word("fusion", options.fusion, FUSIONS)
     fusion: Fusion = FUSIONS[options.fusion](robot, boot, frame.shape, 4 * BINS)
-    mission = Exploration(frame, spec, planner(options.planner, robots), fusion, most=most)
+    mission = Exploring(frame, spec, planner(options.planner, robots), fusion, most=most)
     behaviour = GroundBehaviour(mission, Driver(robot, spec, frame), options.return_home, waits_for)
     return Agent(robot, boot, spec, behaviour, options.negotiates_by)

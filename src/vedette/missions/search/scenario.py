@@ -59,7 +59,7 @@ class Target(Struct, forbid_unknown_fields=True, frozen=True):
     start: tuple[Metre, Metre] | None = None  # where it really is [m]; without it, drawn from the prior
 
 
-class Vehicle(Struct, forbid_unknown_fields=True, frozen=True):
+class SearchVehicle(Struct, forbid_unknown_fields=True, frozen=True):
     """A vehicle at constant speed with a bounded turn rate."""
 
     start: tuple[Metre, Metre, float]  # x, y, heading [m, m, deg]
@@ -94,7 +94,7 @@ class SearchScenario(Struct, forbid_unknown_fields=True, frozen=True, kw_only=Tr
     cell: Annotated[float, Meta(gt=0.0, le=1e6)] = 25.0  # side of a cell [m]
     prior: Annotated[tuple[Prior, ...], Meta(min_length=1, max_length=1000)]
     target: Target = Target()
-    vehicles: Annotated[tuple[Vehicle, ...], Meta(min_length=1, max_length=MOST_VEHICLES)]
+    vehicles: Annotated[tuple[SearchVehicle, ...], Meta(min_length=1, max_length=MOST_VEHICLES)]
     detector: dict[str, Any] = field(
         default_factory=lambda: {"type": "definite"}
     )  # of vehicles without one of their own

@@ -15,9 +15,9 @@ from vedette.agent.mates import Mate
 from vedette.agent.mission import RoundPlatform
 from vedette.domains.search.belief import SearchBelief, TargetPdf, freeze
 from vedette.domains.search.detectors import Report
-from vedette.domains.search.evidence import LEVELS_PER_NAT, Evidence, evidence_of_looks
+from vedette.domains.search.evidence import LEVELS_PER_NAT, LookEvidence, evidence_of_looks
 from vedette.domains.search.flights import Flight
-from vedette.domains.search.impact import Impact, ImpactCodec, check_claim
+from vedette.domains.search.impact import Impact, SearchImpactCodec, check_claim
 from vedette.domains.search.objective import SearchObjective
 from vedette.domains.search.platform import SearchPlatform
 from vedette.domains.search.worth import Worth
@@ -79,17 +79,17 @@ class Searching(FlyingMission):
     declared: Declared | None = None
     looked: deque[tuple[int, NDArray[np.float64]]] = field(default_factory=lambda: deque(maxlen=LOOKS_KEPT))
     objective: SearchObjective = field(default_factory=SearchObjective)
-    codec: ImpactCodec = field(init=False)
+    codec: SearchImpactCodec = field(init=False)
     platform: RoundPlatform[SearchBelief, Flight, Impact] = field(init=False)
     _elements: SparseIntegers = field(init=False)
     _filter: Refilter[TargetPdf, Sparse] = field(init=False)
-    _waiting: list[tuple[int, Evidence]] = field(default_factory=list)
+    _waiting: list[tuple[int, LookEvidence]] = field(default_factory=list)
     _flown: Flight | None = None  # what the vehicle was last told to fly
     _seen_at: tuple[float, float, float] | None = None  # x, y [m], time [s] of the last pose
 
     def __post_init__(self) -> None:
         prior = self.team.prior
-        self.codec = ImpactCodec(prior.frame.size, len(self.team.worth.weights))
+        self.codec = SearchImpactCodec(prior.frame.size, len(self.team.worth.weights))
         self.platform = self.vehicle if self.tells_plans else SharedBelief(self.vehicle, self.objective)
         self._elements = SparseIntegers(prior.frame.size)
         self._filter = Refilter(self.fusion, prior, prior.step, predict=_moved, update=_observed)

@@ -11,11 +11,11 @@ from vedette.domains.tracking.objective import TrackingObjective, objective
 from vedette.domains.tracking.platform import TrackingPlatform
 from vedette.domains.tracking.sensing import Sensor
 from vedette.errors import InputError
-from vedette.fusion.gaussian import Information, Motion, track_fusion
+from vedette.fusion.gaussian import Information, TrackMotion, track_fusion
 from vedette.missions.flying import RoundTimes
 from vedette.missions.track.options import TrackOptions
 from vedette.missions.track.scenario import TrackScenario
-from vedette.missions.track.tracking import Bounds, Plan, Tracking
+from vedette.missions.track.tracking import Bounds, Tracking, TrackPlan
 
 _EXTENT = 10.0  # evidence holds up to so many times the area's farthest corner from the origin
 
@@ -90,10 +90,10 @@ class TrackTeam:
             robot,
             boot,
             Information(prior.Y, prior.y),
-            Motion(prior.motion.transitions, prior.motion.noises),
+            TrackMotion(prior.motion.transitions, prior.motion.noises),
             0,
             most_matrix=self.bounds.matrix,
             most_vector=self.bounds.vector,
         )
-        plan = Plan(prior.models, prior.dt, prior.horizon, self.lead)
+        plan = TrackPlan(prior.models, prior.dt, prior.horizon, self.lead)
         return Tracking(platform, plan, fusion, self.bounds, self.options.coordination != "shared")

@@ -30,7 +30,7 @@ LEAST_SD = 1e-3  # [m], [m/s]
 DEFAULT = "track.yaml"
 
 
-class Vehicle(Struct, forbid_unknown_fields=True, frozen=True):
+class TrackVehicle(Struct, forbid_unknown_fields=True, frozen=True):
     """A vehicle at constant speed with a bounded turn rate."""
 
     start: tuple[Metre, Metre, float]  # x, y, heading [m, m, deg]
@@ -94,7 +94,7 @@ class TrackScenario(Struct, forbid_unknown_fields=True, frozen=True, kw_only=Tru
     """What a scenario file says."""
 
     area: tuple[Metre, Metre, Metre, Metre]  # lowest x, lowest y, highest x, highest y [m]
-    vehicles: Annotated[tuple[Vehicle, ...], Meta(min_length=1, max_length=MOST_VEHICLES)]
+    vehicles: Annotated[tuple[TrackVehicle, ...], Meta(min_length=1, max_length=MOST_VEHICLES)]
     targets: Annotated[tuple[StaticTarget | MovingTarget, ...], Meta(min_length=1, max_length=MOST_TARGETS)]
     duration: Annotated[float, Meta(gt=0.0, le=86400.0)] = 120.0  # [s]
     step: Annotated[float, Meta(ge=0.2, le=60.0)] = 1.0  # of looking and planning [s]

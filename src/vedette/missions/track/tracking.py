@@ -15,7 +15,7 @@ from vedette.agent.flight import FlightPlan, start_step, step_of
 from vedette.agent.mates import Mate
 from vedette.agent.mission import RoundPlatform
 from vedette.domains.tracking.belief import Tracks
-from vedette.domains.tracking.codec import ImpactCodec
+from vedette.domains.tracking.codec import TrackImpactCodec
 from vedette.domains.tracking.courses import Course
 from vedette.domains.tracking.filter import predict
 from vedette.domains.tracking.impact import Impact, check_claim
@@ -31,7 +31,7 @@ NEAR = 2.0  # standard deviations of its place: a target must be farther away th
 
 
 @dataclass(frozen=True)
-class Plan:
+class TrackPlan:
     """What a team plans: the targets' models, the steps, and when plans can start."""
 
     models: tuple[TargetModel, ...]
@@ -60,20 +60,20 @@ class Tracking(FlyingMission):
     """
 
     vehicle: TrackingPlatform
-    team: Plan
+    team: TrackPlan
     fusion: TrackFusion
     bounds: Bounds
     tells_plans: bool = True  # False: the team shares beliefs alone
     strategy: Course = field(default_factory=lambda: Course(0, ()))
     skipped: int = 0  # measurements that could not be linearised, or whose likelihood exceeded the bounds
     seen: tuple[int, ...] = ()  # targets, by the latest look
-    codec: ImpactCodec = field(init=False)
+    codec: TrackImpactCodec = field(init=False)
     platform: RoundPlatform[Tracks, Course, Impact] = field(init=False)
     _waiting: list[tuple[int, Information]] = field(default_factory=list)  # step, likelihood
     _seen_at: tuple[float, float, float] | None = None  # x, y [m], time [s] of the last pose
 
     def __post_init__(self) -> None:
-        self.codec = ImpactCodec(len(self.team.models), self.team.horizon)
+        self.codec = TrackImpactCodec(len(self.team.models), self.team.horizon)
         self.platform = self.vehicle if self.tells_plans else SharedBelief(self.vehicle, self.objective)
 
     @property

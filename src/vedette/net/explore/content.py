@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 from vedette import wire
 from vedette.agent import Agent, GroundBehaviour
-from vedette.domains.mapping.impact import ImpactCodec
+from vedette.domains.mapping.impact import MapImpactCodec
 from vedette.domains.mapping.platform import GivenUp
 from vedette.maps import OCCUPIED, UNKNOWN
-from vedette.missions.explore.exploration import Exploration
+from vedette.missions.explore.exploring import Exploring
 from vedette.net.gather import figures_of, path_of
 from vedette.net.report import MOST_BYTES, Condition, Count, Real, inflated
 from vedette.record.explore.log import RobotSample
@@ -58,8 +58,8 @@ class ExploreTeller:
     agent: Agent
 
     @property
-    def _mission(self) -> Exploration:
-        return cast(Exploration, self.agent.mission)
+    def _mission(self) -> Exploring:
+        return cast(Exploring, self.agent.mission)
 
     @property
     def _held(self) -> NDArray[np.uint8]:
@@ -103,7 +103,7 @@ def read_content(payload: bytes) -> MapContent:
     return wire.decode(_CONTENTS, payload, "report")
 
 
-def view_of(condition: Condition, payload: bytes, shape: tuple[int, int], codec: ImpactCodec) -> RobotView:
+def view_of(condition: Condition, payload: bytes, shape: tuple[int, int], codec: MapImpactCodec) -> RobotView:
     """Return what a robot reports, over a map of this shape.
 
     Raises:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from vedette.agent.state import State
-from vedette.domains.mapping.impact import ImpactCodec
+from vedette.domains.mapping.impact import MapImpactCodec
 from vedette.net.explore.content import view_of
 from vedette.net.explore.plan import ExplorePlan
 from vedette.net.report import Condition
@@ -32,7 +32,7 @@ class ExploreWatcher:
         """Prepare to watch; the ``sinks`` follow the mission."""
         self._observer = ExploreObserver(plan.world, plan.specs, plan.starts, plan.options, setting, sinks)
         self._shape = plan.world.frame.shape
-        self._codec = ImpactCodec(self._observer.log.scene.planning.size)
+        self._codec = MapImpactCodec(self._observer.log.scene.planning.size)
         self._views = [
             _unheard(spec.name, start, self._shape)
             for spec, start in zip(plan.specs, plan.starts.tolist(), strict=True)

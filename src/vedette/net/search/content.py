@@ -25,7 +25,7 @@ from vedette.record.search.observer import SearchView, ahead
 MOST_LOOKS = 64  # in a step
 
 
-class Place(NamedTuple):
+class DeclaredPlace(NamedTuple):
     """Where the target is declared to be, as ``vedette.missions.search.searching.Declared``."""
 
     x: Real  # [m], team frame
@@ -46,7 +46,7 @@ class PdfContent(msgspec.Struct, frozen=True, array_like=True, tag=3):
 
     step: Count
     mass: Annotated[bytes, Meta(max_length=MOST_BYTES)]  # (R, C) little-endian floats, deflated
-    declared: Place | None
+    declared: DeclaredPlace | None
     goal: tuple[Real, Real] | None  # where it will search after its plan [m]
     looks: Annotated[tuple[StepLooks, ...], Meta(max_length=MOST_LOOKS)]
 
@@ -84,7 +84,7 @@ class SearchTeller:
             PdfContent(
                 pdf.step,
                 zlib.compress(pdf.mass.astype("<f4").tobytes(), 1),
-                None if found is None else Place(found.x, found.y, found.time, found.certain),
+                None if found is None else DeclaredPlace(found.x, found.y, found.time, found.certain),
                 None if goal is None else (float(goal[0]), float(goal[1])),
                 tuple(
                     StepLooks(step, tuple((x, y, heading) for x, y, heading in poses.tolist()))

@@ -20,7 +20,7 @@ from vedette.maps.world import World
 from vedette.missions.explore.options import ExploreOptions
 from vedette.outcome import Outcome
 from vedette.record.explore.log import ExploreLog, ExploreScene, ExploreSnapshot
-from vedette.record.explore.score import Progress, Reference, coverage, map_errors, overlap
+from vedette.record.explore.score import CoverageProgress, Reference, coverage, map_errors, overlap
 from vedette.record.explore.summary import ExploreSummary, LeftOut
 from vedette.record.explore.views import RobotView, union_map
 from vedette.record.figures import TeamFigures
@@ -61,7 +61,7 @@ class ExploreObserver:
         """
         self._world, self._options, self._setting = world, options, setting
         self._reference = Reference(world, specs, starts)
-        self._progress = Progress()
+        self._progress = CoverageProgress()
         self.period = LOOK_PERIOD if world.frame.size <= LARGE else LOOK_PERIOD_IF_LARGE  # of looking [s]
         self.log = ExploreLog(ExploreScene.of(world, [spec.name for spec in specs]), sinks)
         self.apart_s = 0.0  # time during which the living robots were not all on one tree

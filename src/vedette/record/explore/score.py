@@ -67,7 +67,7 @@ def overlap(own_known: Sequence[NDArray[np.bool_]]) -> float:
 
 
 @dataclass
-class Progress:
+class CoverageProgress:
     """Coverage against time, constant between samples and 0 before the first."""
 
     times: list[float] = field(default_factory=list)  # [s], not descending

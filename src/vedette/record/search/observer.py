@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from msgspec import structs
 
-from vedette.agent.flight import Flight
+from vedette.agent.flight import Itinerary
 from vedette.domains.search.belief import TargetPdf
 from vedette.missions.search.assemble import SearchTeam
 from vedette.missions.search.case import SearchCase
@@ -150,7 +150,7 @@ def ended_as(
     return Outcome.FOUND if found.certain or near else Outcome.MISTAKEN
 
 
-def ahead(flight: Flight, pose: Floats, case: SearchCase, vehicle: int, step: int) -> Floats:
+def ahead(flight: Itinerary, pose: Floats, case: SearchCase, vehicle: int, step: int) -> Floats:
     """Return where a flight takes a vehicle as far as it is planned, in half steps, (k, 2) [m]."""
     dt, speed = case.scenario.step, case.scenario.vehicles[vehicle].speed
     begin = step * dt

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from msgspec import structs
 
-from vedette.agent.flight import Flight
+from vedette.agent.flight import Itinerary
 from vedette.domains.tracking.belief import Tracks
 from vedette.domains.tracking.filter import nees, predict
 from vedette.missions.track.assemble import TrackTeam
@@ -123,7 +123,7 @@ class TrackObserver:
         )
 
 
-def ahead(flight: Flight, pose: Floats, scenario: TrackScenario, vehicle: int, step: int) -> Floats:
+def ahead(flight: Itinerary, pose: Floats, scenario: TrackScenario, vehicle: int, step: int) -> Floats:
     """Return where a flight takes a vehicle, (k, 2) [m], up to the end of a plan that starts a step later."""
     ways = [pose]
     for k in range(step, step + scenario.horizon + 1):

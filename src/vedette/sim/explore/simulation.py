@@ -14,7 +14,7 @@ from vedette.agent.driving import Driver
 from vedette.domains.mapping.planners import DEFAULT
 from vedette.maps.world import World
 from vedette.missions.explore.assemble import assemble
-from vedette.missions.explore.exploration import Exploration
+from vedette.missions.explore.exploring import Exploring
 from vedette.missions.explore.options import ExploreOptions
 from vedette.sim.robots import Robots
 from vedette.sim.setup import Setup
@@ -64,9 +64,9 @@ class ExploreSimulation(Simulation):
         return assemble(frame, specs[robot], options, robot, boot, robots=len(specs), most=most)
 
     @property
-    def missions(self) -> list[Exploration]:
+    def missions(self) -> list[Exploring]:
         """Everybody's share of the mission, by index."""
-        return [cast(Exploration, agent.mission) for agent in self.network.agents]
+        return [cast(Exploring, agent.mission) for agent in self.network.agents]
 
     @property
     def drivers(self) -> list[Driver]:

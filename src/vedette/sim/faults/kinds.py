@@ -76,7 +76,7 @@ class Restart(_At, frozen=True, kw_only=True, tag="restart"):
     robot: Robot
 
 
-class Freeze(_At, frozen=True, kw_only=True, tag="freeze"):
+class FreezeFault(_At, frozen=True, kw_only=True, tag="freeze"):
     """A robot's program halts, and goes on as if nothing had been."""
 
     robot: Robot
@@ -92,7 +92,7 @@ class Skew(_At, frozen=True, kw_only=True, tag="skew"):
 
 
 LinkFault: TypeAlias = Loss | Delay | Duplicate | OneWay | Cut | Partition
-Fault: TypeAlias = LinkFault | Heal | Crash | Restart | Freeze | Skew
+Fault: TypeAlias = LinkFault | Heal | Crash | Restart | FreezeFault | Skew
 
 
 class Schedule(Struct, forbid_unknown_fields=True, frozen=True):

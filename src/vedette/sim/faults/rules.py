@@ -8,7 +8,7 @@ from vedette.sim.faults.kinds import (
     Cut,
     Delay,
     Fault,
-    Freeze,
+    FreezeFault,
     OneWay,
     Partition,
     Restart,
@@ -43,7 +43,7 @@ def _strangers(fault: Fault, robots: int) -> str | None:
             named = {"robots": pair}
         case Partition(parts=parts):
             named = {f"parts[{k}]": part for k, part in enumerate(parts)}
-        case Crash(robot=robot) | Restart(robot=robot) | Freeze(robot=robot) | Skew(robot=robot):
+        case Crash(robot=robot) | Restart(robot=robot) | FreezeFault(robot=robot) | Skew(robot=robot):
             named = {"robot": (robot,)}
     for field, numbers in named.items():
         for number in numbers:
@@ -91,7 +91,7 @@ def _wrong_life(fault: Fault, crashed: set[int], frozen: dict[int, float]) -> st
                     f".robot: robot {robot} is up at {fault.at:g} s; only a robot that has crashed restarts"
                 )
             crashed.remove(robot)
-        case Freeze(robot=robot):
+        case FreezeFault(robot=robot):
             if robot in crashed:
                 return f".robot: robot {robot} has crashed by {fault.at:g} s; only one that is up freezes"
             if fault.at < frozen.get(robot, 0.0):

@@ -13,7 +13,7 @@ from vedette.sim.faults.kinds import (
     Delay,
     Duplicate,
     Fault,
-    Freeze,
+    FreezeFault,
     Heal,
     Loss,
     OneWay,
@@ -135,7 +135,7 @@ class _Dice:
         robot = self._one_of(awake)
         lasts = self._within(at, self._number(0.1, LONGEST_FREEZE))
         self._thaw[robot] = at + lasts
-        return [Freeze(at=at, robot=robot, lasts=lasts)]
+        return [FreezeFault(at=at, robot=robot, lasts=lasts)]
 
     # -- chance --------------------------------------------------------------------------------------
 

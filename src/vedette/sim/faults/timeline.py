@@ -17,7 +17,7 @@ from vedette.sim.faults.kinds import (
     Delay,
     Duplicate,
     Fault,
-    Freeze,
+    FreezeFault,
     Heal,
     LinkFault,
     Loss,
@@ -77,7 +77,7 @@ class Timeline:
         self.weather = Weather()
         self._robots = robots
         self._links: list[LinkFault] = []  # at work, in the order of their beginning
-        self._frozen: dict[int, Freeze] = {}  # by number from 1
+        self._frozen: dict[int, FreezeFault] = {}  # by number from 1
         begins = [(fault.at, True, fault) for _, fault in schedule.in_time()]
         ends = [(end, False, fault) for _, fault in schedule.in_time() if (end := _end(fault)) is not None]
         # at one time, what ends comes before what begins
@@ -109,7 +109,7 @@ class Timeline:
                 return Crashes(robot - 1)
             case Restart(robot=robot):
                 return Restarts(robot - 1)
-            case Freeze(robot=robot):
+            case FreezeFault(robot=robot):
                 self._frozen[robot] = fault
                 return Freezes(robot - 1)
             case Skew(robot=robot):
@@ -120,14 +120,14 @@ class Timeline:
 
     def _finish(self, fault: Fault) -> Happening | None:
         self._links = [each for each in self._links if each is not fault]
-        if isinstance(fault, Freeze) and self._frozen.get(fault.robot) is fault:
+        if isinstance(fault, FreezeFault) and self._frozen.get(fault.robot) is fault:
             del self._frozen[fault.robot]
             return Thaws(fault.robot - 1)
         return None
 
 
 def _end(fault: Fault) -> float | None:
-    lasts = fault.lasts if isinstance(fault, LinkFault | Freeze) else None
+    lasts = fault.lasts if isinstance(fault, LinkFault | FreezeFault) else None
     return None if lasts is None else fault.at + lasts
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vedette.sim.worlds.rect import Rect
-from vedette.sim.worlds.size import Scale
+from vedette.sim.worlds.size import WorldScale
 
 DOOR = 0.9  # [m]
 _OUTER, _MAIN, _PARTITION = 0.2, 0.2, 0.1  # thickness of walls [m]
@@ -19,7 +19,7 @@ OPEN_PLAN = 38.0  # from this area on a room is open-plan [m2]
 
 
 @dataclass(frozen=True)
-class Plan:
+class FloorPlan:
     """An office floor; what is in none of the lists is wall."""
 
     rows: int
@@ -40,7 +40,7 @@ class Plan:
 Blocks = tuple[list[Rect], list[Rect]]  # corridors, and what lies between them
 
 
-def draw_plan(rng: np.random.Generator, rows: int, cols: int, cells: Scale) -> Plan:
+def draw_plan(rng: np.random.Generator, rows: int, cols: int, cells: WorldScale) -> FloorPlan:
     """Return a random floor: a corridor layout, rooms of many sizes along it, a way into every room."""
     outer = cells(_OUTER)
     inside = Rect(outer, outer, rows - outer, cols - outer)
@@ -53,13 +53,13 @@ def draw_plan(rng: np.random.Generator, rows: int, cols: int, cells: Scale) -> P
         wall for i, a in enumerate(corridors) for b in corridors[:i] if (wall := a.between(b, cells(_MAIN)))
     ]
     rooms, doors, openings = _connect(rng, corridors, rooms, cells)
-    return Plan(rows, cols, corridors, rooms, doors, openings + joints)
+    return FloorPlan(rows, cols, corridors, rooms, doors, openings + joints)
 
 
-def _layout(rng: np.random.Generator, inside: Rect, cells: Scale) -> Blocks:
+def _layout(rng: np.random.Generator, inside: Rect, cells: WorldScale) -> Blocks:
     """Choose one of the corridor layouts that the size allows."""
     short, long = sorted((inside.height, inside.width))
-    layouts: list[Callable[[np.random.Generator, Rect, Scale], Blocks]] = [_spine]
+    layouts: list[Callable[[np.random.Generator, Rect, WorldScale], Blocks]] = [_spine]
     if short >= cells(12.0) and long >= cells(16.0):
         layouts += [_cross]
     if short >= cells(15.5) and long >= cells(20.0):
@@ -72,7 +72,7 @@ def _layout(rng: np.random.Generator, inside: Rect, cells: Scale) -> Blocks:
 
 
 def _corridor(
-    rng: np.random.Generator, rect: Rect, at: float, rows: bool, cells: Scale
+    rng: np.random.Generator, rect: Rect, at: float, rows: bool, cells: WorldScale
 ) -> tuple[Rect, Rect, Rect]:
     """Return what lies before a corridor across ``rect``, the corridor, and what lies after.
 
@@ -88,12 +88,12 @@ def _corridor(
     return before, corridor, after
 
 
-def _spine(rng: np.random.Generator, inside: Rect, cells: Scale) -> Blocks:
+def _spine(rng: np.random.Generator, inside: Rect, cells: WorldScale) -> Blocks:
     low, spine, high = _corridor(rng, inside, rng.uniform(0.38, 0.62), True, cells)
     return [spine], [low, high]
 
 
-def _cross(rng: np.random.Generator, inside: Rect, cells: Scale) -> Blocks:
+def _cross(rng: np.random.Generator, inside: Rect, cells: WorldScale) -> Blocks:
     low, spine, high = _corridor(rng, inside, rng.uniform(0.4, 0.6), True, cells)
     corridors, blocks = [spine], []
     at = rng.uniform(0.3, 0.7)
@@ -106,7 +106,7 @@ def _cross(rng: np.random.Generator, inside: Rect, cells: Scale) -> Blocks:
     return corridors, blocks
 
 
-def _double(rng: np.random.Generator, inside: Rect, cells: Scale) -> Blocks:
+def _double(rng: np.random.Generator, inside: Rect, cells: WorldScale) -> Blocks:
     low, first, rest = _corridor(rng, inside, rng.uniform(0.26, 0.32), True, cells)
     core, second, high = _corridor(rng, rest, rng.uniform(0.5, 0.58), True, cells)
     left, link, right = _corridor(rng, core, rng.uniform(0.2, 0.4), False, cells)
@@ -114,7 +114,7 @@ def _double(rng: np.random.Generator, inside: Rect, cells: Scale) -> Blocks:
     return [first, second, link, other], [low, high, left, middle, right]
 
 
-def _ring(rng: np.random.Generator, inside: Rect, cells: Scale) -> Blocks:
+def _ring(rng: np.random.Generator, inside: Rect, cells: WorldScale) -> Blocks:
     depth = min(rng.uniform(4.5, 5.6) / cells.resolution, 0.33 * inside.height)  # of the corridors' middle
     low, first, rest = _corridor(rng, inside, depth / inside.height, True, cells)
     belt, second, high = _corridor(rng, rest, 1.0 - depth / rest.height, True, cells)
@@ -124,7 +124,7 @@ def _ring(rng: np.random.Generator, inside: Rect, cells: Scale) -> Blocks:
 
 
 def _serve_deep_blocks(
-    rng: np.random.Generator, corridors: list[Rect], blocks: list[Rect], cells: Scale
+    rng: np.random.Generator, corridors: list[Rect], blocks: list[Rect], cells: WorldScale
 ) -> Blocks:
     """Cut blocks that are deep both ways by more corridors, each of which meets one that is there."""
     extra: list[Rect] = []
@@ -145,7 +145,7 @@ def _serve_deep_blocks(
     return extra, done
 
 
-def _rooms(rng: np.random.Generator, block: Rect, cells: Scale) -> list[Rect]:
+def _rooms(rng: np.random.Generator, block: Rect, cells: WorldScale) -> list[Rect]:
     """Slice a block across its length into strips of many widths, deep ones again into two or three."""
     if block.height > block.width:
         return [room.turned() for room in _rooms(rng, block.turned(), cells)]
@@ -165,7 +165,7 @@ def _rooms(rng: np.random.Generator, block: Rect, cells: Scale) -> list[Rect]:
     return rooms
 
 
-def _split_strip(rng: np.random.Generator, strip: Rect, cells: Scale) -> list[Rect]:
+def _split_strip(rng: np.random.Generator, strip: Rect, cells: WorldScale) -> list[Rect]:
     wall = cells(_PARTITION)
     if strip.height < 2 * cells(_SIDE) + wall:
         return [strip]
@@ -176,7 +176,7 @@ def _split_strip(rng: np.random.Generator, strip: Rect, cells: Scale) -> list[Re
     return [room for part in strip.cut(at, wall, rows=True) for room in _halve_long(rng, part, cells)]
 
 
-def _halve_long(rng: np.random.Generator, room: Rect, cells: Scale) -> list[Rect]:
+def _halve_long(rng: np.random.Generator, room: Rect, cells: WorldScale) -> list[Rect]:
     rows = room.height >= room.width
     long, short = max(room.height, room.width), min(room.height, room.width)
     if long <= 2.2 * short or long < 2 * cells(_SIDE) + cells(_PARTITION):
@@ -185,7 +185,7 @@ def _halve_long(rng: np.random.Generator, room: Rect, cells: Scale) -> list[Rect
     return list(room.cut(start + round(rng.uniform(0.42, 0.58) * long), cells(_PARTITION), rows))
 
 
-def _split_to(rng: np.random.Generator, rooms: list[Rect], count: int, cells: Scale) -> None:
+def _split_to(rng: np.random.Generator, rooms: list[Rect], count: int, cells: WorldScale) -> None:
     """Halve the longest rooms until there are ``count``, as far as they can be halved."""
     while len(rooms) < count:
         room = max(rooms, key=lambda rect: max(rect.height, rect.width))
@@ -198,7 +198,7 @@ def _split_to(rng: np.random.Generator, rooms: list[Rect], count: int, cells: Sc
 
 
 def _connect(
-    rng: np.random.Generator, corridors: list[Rect], rooms: list[Rect], cells: Scale
+    rng: np.random.Generator, corridors: list[Rect], rooms: list[Rect], cells: WorldScale
 ) -> tuple[list[Rect], list[Rect], list[Rect]]:
     """Give each room on a corridor a door to it, each other one a way through a neighbour, and some a second.
 
@@ -227,13 +227,13 @@ def _connect(
     return reached, [gap for gap in gaps if gap not in wide], wide
 
 
-def _walls(room: Rect, others: list[Rect], cells: Scale) -> list[Rect]:
+def _walls(room: Rect, others: list[Rect], cells: WorldScale) -> list[Rect]:
     """Return the walls that a room shares with others and that are long enough for a door."""
     walls = (room.between(other, cells(_MAIN)) for other in others)
     return [wall for wall in walls if wall and max(wall.height, wall.width) >= cells(DOOR) + 2 * cells(0.2)]
 
 
-def _gap(rng: np.random.Generator, wall: Rect, metres: float, cells: Scale) -> Rect:
+def _gap(rng: np.random.Generator, wall: Rect, metres: float, cells: WorldScale) -> Rect:
     """Return a gap through a wall, at most as wide as it allows; doors are mostly near an end of it."""
     if wall.height < wall.width:
         return _gap(rng, wall.turned(), metres, cells).turned()

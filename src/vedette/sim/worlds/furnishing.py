@@ -6,15 +6,15 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from vedette.sim.worlds.floor_plan import OPEN_PLAN, Plan
+from vedette.sim.worlds.floor_plan import OPEN_PLAN, FloorPlan
 from vedette.sim.worlds.furniture import Floor, Piece
 from vedette.sim.worlds.rect import Rect
-from vedette.sim.worlds.size import Scale
+from vedette.sim.worlds.size import WorldScale
 
 Fill = Callable[[np.random.Generator, Floor, Rect], None]
 
 
-def furnish(rng: np.random.Generator, plan: Plan, cells: Scale) -> Floor:
+def furnish(rng: np.random.Generator, plan: FloorPlan, cells: WorldScale) -> Floor:
     """Return the floor with furniture in every room, by its size, and a little in the corridors."""
     floor = Floor(plan, cells)
     for room in plan.rooms:
@@ -154,13 +154,13 @@ def _spread(low: int, high: int, size: int, gap: int) -> list[int]:
     return [low + (i + 1) * room // (count + 1) + i * size for i in range(count)]
 
 
-def _box(cells: Scale, deep: float, wide: float) -> Piece:
+def _box(cells: WorldScale, deep: float, wide: float) -> Piece:
     """A cupboard, shelf, counter or bench."""
     height, width = cells(deep), cells(wide)
     return Piece(height, width, (Rect(0, 0, height, width),))
 
 
-def _desk(cells: Scale) -> Piece:
+def _desk(cells: WorldScale) -> Piece:
     """A desk with its back to the wall and a chair drawn up to it."""
     height, width, chair = cells(0.8), cells(1.6), cells(0.5)
     middle = (width - chair) // 2
@@ -168,17 +168,17 @@ def _desk(cells: Scale) -> Piece:
     return Piece(height + chair, width, parts)
 
 
-def _island(cells: Scale, pairs: int) -> Piece:
+def _island(cells: WorldScale, pairs: int) -> Piece:
     """Pairs of desks face to face, side by side, with a chair at each."""
     return _seated(cells, deep=1.6, step=1.4, count=pairs)
 
 
-def _table(cells: Scale, seats: int, deep: float) -> Piece:
+def _table(cells: WorldScale, seats: int, deep: float) -> Piece:
     """A table with ``seats`` chairs on either long side."""
     return _seated(cells, deep, step=0.8, count=seats)
 
 
-def _seated(cells: Scale, deep: float, step: float, count: int) -> Piece:
+def _seated(cells: WorldScale, deep: float, step: float, count: int) -> Piece:
     chair, height = cells(0.4), cells(deep)
     width = cells(step * count)
     parts = [Rect(chair, 0, chair + height, width)]

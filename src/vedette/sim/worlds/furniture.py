@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vedette.sim.worlds.floor_plan import Plan
+from vedette.sim.worlds.floor_plan import FloorPlan
 from vedette.sim.worlds.rect import Rect
-from vedette.sim.worlds.size import Scale
+from vedette.sim.worlds.size import WorldScale
 
 _PASSAGE = 0.7  # left beside every piece that does not touch what is there [m]
 _DOORSTEP = 1.0  # depth kept clear on both sides of a door [m]
@@ -31,7 +31,7 @@ class Piece:
 class Floor:
     """A floor that is being furnished: walls and furniture, and what must stay clear."""
 
-    def __init__(self, plan: Plan, cells: Scale) -> None:
+    def __init__(self, plan: FloorPlan, cells: WorldScale) -> None:
         self.cells = cells
         self.solid = plan.solid()
         self.placed: list[tuple[Rect, Piece]] = []

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from vedette.maps.world import World
 from vedette.sim.worlds.rect import Rect
-from vedette.sim.worlds.size import Scale, world_frame
+from vedette.sim.worlds.size import WorldScale, world_frame
 
 _CORRIDOR = 1.5  # least width [m]
 _WALL = 0.2  # [m]
@@ -32,7 +32,7 @@ def maze(
         InputError: a size out of range, or more than 8000 cells a side.
     """
     frame = world_frame(width, height, resolution)
-    cells = Scale(resolution)
+    cells = WorldScale(resolution)
     wall = cells(_WALL)
     rows = _lines(frame.rows, cells(_CORRIDOR), wall)
     cols = _lines(frame.cols, cells(_CORRIDOR), wall)

@@ -6,10 +6,10 @@ import numpy as np
 
 from vedette.maps.world import World, standable
 from vedette.sim.components import largest
-from vedette.sim.worlds.floor_plan import Plan, draw_plan
+from vedette.sim.worlds.floor_plan import FloorPlan, draw_plan
 from vedette.sim.worlds.furnishing import furnish
 from vedette.sim.worlds.furniture import Floor
-from vedette.sim.worlds.size import Scale, world_frame
+from vedette.sim.worlds.size import WorldScale, world_frame
 
 RADIUS = 0.25  # [m] of the disc that reaches every room
 
@@ -32,7 +32,7 @@ def office(
         InputError: a size out of range, or more than 8000 cells a side.
     """
     frame = world_frame(width, height, resolution)
-    cells = Scale(resolution)
+    cells = WorldScale(resolution)
     plan = draw_plan(rng, frame.rows, frame.cols, cells)
     floor = furnish(rng, plan, cells)
     world = World(frame, floor.solid, "office")
@@ -40,7 +40,7 @@ def office(
     return world
 
 
-def _clear_ways(world: World, plan: Plan, floor: Floor) -> None:
+def _clear_ways(world: World, plan: FloorPlan, floor: Floor) -> None:
     """Take furniture away, last come first, wherever a place that has room for the disc is cut off."""
     standing = standable(world, RADIUS)
     reached = largest(standing)

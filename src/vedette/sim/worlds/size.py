@@ -13,7 +13,7 @@ RESOLUTIONS = (0.02, 0.2)  # accepted [m]: doors and passages need some cells
 
 
 @dataclass(frozen=True)
-class Scale:
+class WorldScale:
     """Metres to whole cells."""
 
     resolution: float  # [m]

@@ -22,22 +22,22 @@ _OBJECTIVE = MappingObjective()
 
 
 @dataclass(frozen=True, eq=False)
-class Options:
+class JointOptions:
     """What one robot can do: go to one of the stops, or nowhere if it can get to none."""
 
     stops: NDArray[np.int64]  # (M,) index among the round's stops, or NOWHERE
     impacts: list[Impact]  # (M,)
 
-    def only(self, stop: int) -> Options:
+    def only(self, stop: int) -> JointOptions:
         """Return the options without all stops but one."""
-        return Options(np.array([stop]), [self.impacts[int(np.flatnonzero(self.stops == stop)[0])]])
+        return JointOptions(np.array([stop]), [self.impacts[int(np.flatnonzero(self.stops == stop)[0])]])
 
 
 @dataclass(eq=False)
 class OptimalPlatform(TeamPlatform):
     """Takes its part of ``argmax_v J(v)``, one stop a robot, which all compute alike (paper, eq. (16))."""
 
-    options: list[Options] = field(init=False, default_factory=list)  # by row
+    options: list[JointOptions] = field(init=False, default_factory=list)  # by row
     best: tuple[int, float] = field(
         init=False, default=(NOWHERE, 0.0)
     )  # own stop at the optimum; value [nats]
@@ -74,11 +74,11 @@ class OptimalPlatform(TeamPlatform):
         del mates[self.row]
         return _OBJECTIVE.value(belief, reduce(_OBJECTIVE.combine, mates, NOTHING)), value
 
-    def _options(self, belief: MapBelief, lengths: NDArray[np.float64]) -> Options:
+    def _options(self, belief: MapBelief, lengths: NDArray[np.float64]) -> JointOptions:
         stops = np.flatnonzero(np.isfinite(lengths))
         if not len(stops):
-            return Options(np.array([NOWHERE]), [NOTHING])
-        return Options(
+            return JointOptions(np.array([NOWHERE]), [NOTHING])
+        return JointOptions(
             stops, [self._glimpse(belief, k, lengths[k] / self.spec.speed) for k in stops.tolist()]
         )
 

@@ -15,20 +15,20 @@ from vedette.domains.mapping.stops import CLEARANCES
 from vedette.fusion import ReplicatedEvidence
 from vedette.kernels.frontier import traversable
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
-from vedette.missions.explore.exploration import AVOID_TIME, TRIES, Exploration
+from vedette.missions.explore.exploring import AVOID_TIME, TRIES, Exploring
 from vedette.team import PlatformSpec
 
 THERE = Pose(3.04, 7.08, 0.0)
 
 
-def look(mission: Exploration, pose: Pose, times: int = 10, seed: int = 0) -> None:
+def look(mission: Exploring, pose: Pose, times: int = 10, seed: int = 0) -> None:
     rng = np.random.default_rng(seed)
     for _ in range(times):
         mission.observe(scan_from(pose, rng), pose, [], 0.0)
     mission.publish(0.0)
 
 
-def occupied_near(mission: Exploration, mate: Mate) -> NDArray[np.bool_]:
+def occupied_near(mission: Exploring, mate: Mate) -> NDArray[np.bool_]:
     mission.publish(0.0)
     away = np.hypot(*(FRAME.centres(np.arange(FRAME.size)) - (mate.x, mate.y)).T)
     near = np.flatnonzero(away < mate.radius + 0.1)
@@ -77,7 +77,7 @@ def test_sightings_are_counted_only_of_what_was_unknown() -> None:
     assert (mission.counts[1] - first[1]).sum() < 0.2 * first[1].sum()
 
 
-def exchange(one: Exploration, other: Exploration) -> None:
+def exchange(one: Exploring, other: Exploring) -> None:
     one.fusion.set_neighbours([1])
     other.fusion.set_neighbours([0])
     for step in range(6):
@@ -102,13 +102,13 @@ def test_two_robots_that_exchange_hold_the_same_map_and_freeze_the_same_belief()
     assert known > np.count_nonzero(one.log_odds) > 0
 
 
-def prepared(mission: Exploration, now: float = 0.0) -> None:
+def prepared(mission: Exploring, now: float = 0.0) -> None:
     belief = mission.freeze(0.0)
     mission.prepare(belief, HERE, [], False, now)
     mission.strategy = mission.platform.reply(belief, mission.objective.nothing(belief), mission.strategy)
 
 
-def reachable(mission: Exploration, target: list[float]) -> bool:
+def reachable(mission: Exploring, target: list[float]) -> bool:
     stops = mission.platform.stops
     assert stops is not None
     return bool(np.isfinite(stops.first_leg[stops.targets.tolist().index(target)]))
@@ -156,12 +156,12 @@ def before_a_passage(width: int) -> NDArray[np.uint8]:
     return classes
 
 
-def broad_explorer(classes: NDArray[np.uint8]) -> Exploration:
+def broad_explorer(classes: NDArray[np.uint8]) -> Exploring:
     """Return the mission of a robot 0.48 m across that knows this map."""
     fusion = ReplicatedEvidence(0, 1, FRAME.shape, 4 * BINS)
     fusion.publish(np.array([0, -20, 20], np.int8)[classes], None, None)
     spec = PlatformSpec(range=4.0, radius=0.24)
-    return Exploration(FRAME, spec, planner("tours"), fusion)
+    return Exploring(FRAME, spec, planner("tours"), fusion)
 
 
 def test_a_robot_takes_a_narrow_way_where_there_is_no_wider_one_and_none_that_its_body_does_not_fit() -> None:

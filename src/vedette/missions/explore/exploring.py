@@ -12,7 +12,7 @@ from vedette.agent.effects import Route
 from vedette.agent.events import Pose, Scan
 from vedette.agent.mates import Mate
 from vedette.domains.mapping.belief import MapBelief, freeze, longest_frontier, planning_factor
-from vedette.domains.mapping.impact import Impact, ImpactCodec, check_claim
+from vedette.domains.mapping.impact import Impact, MapImpactCodec, check_claim
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.planners import Planner
 from vedette.domains.mapping.platform import (
@@ -45,7 +45,7 @@ SERVED_SHARE = 0.4  # a frontier with less than this of its unknown cells left h
 
 
 @dataclass(eq=False)
-class Exploration:
+class Exploring:
     """One robot's share of exploring; ``vedette.agent.mission.GroundMission``."""
 
     frame: GridFrame
@@ -55,7 +55,7 @@ class Exploration:
     strategy: Tour = STAY
     most: Most | None = None  # of any robot in the team; None: not known, so that no claim is too large
     objective: MappingObjective = field(default_factory=MappingObjective)
-    codec: ImpactCodec = field(init=False)
+    codec: MapImpactCodec = field(init=False)
     platform: MappingPlatform = field(init=False)
     log_odds: NDArray[np.int8] = field(init=False)  # (R, C) own evidence
     counts: NDArray[np.int64] = field(init=False)  # (4, BINS) own sightings
@@ -66,7 +66,7 @@ class Exploration:
     _passable: dict[float, tuple[int, NDArray[np.bool_]]] = field(default_factory=dict)  # by clearance
 
     def __post_init__(self) -> None:
-        self.codec = ImpactCodec(self.frame.coarse(planning_factor(self.frame.resolution)).size)
+        self.codec = MapImpactCodec(self.frame.coarse(planning_factor(self.frame.resolution)).size)
         self.platform = self.planner.platform(self.spec)
         self.log_odds = np.zeros(self.frame.shape, np.int8)
         self.counts = empty_counts()
