@@ -97,6 +97,10 @@ LINES: list[tuple[Callable[[], object], str]] = [
         lambda: exhaustive(Sum(), None, [[0.0] * 10] * 7),
         "exhaustive: 10000000 combinations, at most 2000000; shorten the lists",
     ),
+    (
+        lambda: exhaustive(Sum(), None, [[1.0], [2.0, None]]),
+        "candidates[1][1] is None, which is no impact; objective.nothing(belief) is one",
+    ),
     # objective
     (
         lambda: exhaustive(Coverage, W, [[SEE]]),

@@ -156,6 +156,39 @@ def test_an_operator_without_identity_or_with_an_order_is_refused() -> None:
     )
 
 
+class Forgets(CountedCoverage):
+    """Does not return what it made."""
+
+    def __init__(self, what: str) -> None:
+        self.what = what
+
+    def nothing(self, belief: Float) -> Any:
+        return None if self.what == "nothing" else super().nothing(belief)
+
+    def combine(self, a: Any, b: Any) -> Any:
+        return None if self.what == "combine" else super().combine(a, b)
+
+    def remove(self, total: Any, own: Any) -> Any:
+        return None if self.what == "remove" else super().remove(total, own)
+
+    def clip(self, belief: Float, impact: Any, reach: Reach) -> Any:
+        return None if self.what == "clip" else impact
+
+
+@pytest.mark.parametrize("what", ["nothing", "combine", "remove", "clip"])
+def test_an_objective_that_returns_none_is_refused(what: str) -> None:
+    run: Any = (W, [[counted(impact) for impact in own] for own in TEAM], Tree.chain(2))
+    more: dict[str, dict[str, Any]] = {
+        "remove": {"scheme": "jacobi", "inverse": True},
+        "clip": {"reach": [((0.0, 0.0, 1.0, 1.0),)] * 2},
+    }
+    for options in more.values():
+        negotiate(Forgets("no"), *run, **options)
+    with pytest.raises(InputError) as refused:
+        negotiate(Forgets(what), *run, **more.get(what, {}))
+    assert str(refused.value) == f"Forgets.{what} returned None; it must return an impact"
+
+
 class Sightings(Objective[None, list[int]]):
     """Lists joined end to end, of which the order is worth nothing."""
 

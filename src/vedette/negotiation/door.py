@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -84,10 +85,11 @@ def checked_reach(
 
 
 def _box(i: int, box: Box) -> Box:
-    try:
-        x0, y0, x1, y1 = map(float, box)
-    except (TypeError, ValueError):
-        x0, y0, x1, y1 = (float("nan"),) * 4
-    if not (x0 <= x1 and y0 <= y1):
-        raise InputError(f"reach[{i}] has {brief(box)}; a box is lowest x, lowest y, highest x, highest y")
-    return x0, y0, x1, y1
+    """Return a box as plain numbers, which may be infinite."""
+    listed = isinstance(box, tuple | list) or (isinstance(box, np.ndarray) and box.ndim == 1)
+    ends = list(box) if listed else []
+    if len(ends) == 4 and all(is_number(end) or (isinstance(end, float) and math.isinf(end)) for end in ends):
+        x0, y0, x1, y1 = map(float, ends)
+        if x0 <= x1 and y0 <= y1:
+            return x0, y0, x1, y1
+    raise InputError(f"reach[{i}] has {brief(box)}; a box is lowest x, lowest y, highest x, highest y")

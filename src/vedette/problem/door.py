@@ -52,7 +52,10 @@ def check_own(
 def check_impacts(
     objective: Objective[BeliefT, ImpactT], belief: BeliefT, own: Sequence[ImpactT], name: str
 ) -> None:
-    """Raise ``InputError`` for an impact that the objective is not made for."""
+    """Raise ``InputError`` for an impact that is None, or that the objective is not made for."""
+    for k, impact in enumerate(own):
+        if impact is None:
+            raise InputError(f"{name}[{k}] is None, which is no impact; objective.nothing(belief) is one")
     if (wrong := objective.wrong_impact(belief, own)) is not None:
         raise InputError(f"{name}[{wrong[0]}]: {wrong[1]}")
 

@@ -32,7 +32,7 @@ class Trial(Generic[BeliefT, ImpactT]):
     ) -> None:
         """Take candidates that have been checked, and two of them that are not nothing if there are."""
         self._objective, self._name = objective, type(objective).__name__
-        nothing = objective.nothing(belief)
+        nothing = self._impact("nothing", objective.nothing(belief))
         (i, k), (j, m) = _two(candidates, nothing)
         self._a_name, self._b_name = f"candidates[{i}][{k}]", f"candidates[{j}][{m}]"
         a, b = candidates[i][k], candidates[j][m]
@@ -45,7 +45,7 @@ class Trial(Generic[BeliefT, ImpactT]):
     def laws(self) -> None:
         """Raise ``InputError`` if arguments change, nothing or order matters to ``*`` or psi is no number."""
         combine, e, a, b = self._objective.combine, self._nothing, self._a, self._b
-        alone = self._call("combine", combine, e, a)
+        alone = self._impact("combine", self._call("combine", combine, e, a))
         self._watched.append((alone, copied(alone)))
         both, reverse = self._call("combine", combine, a, b), self._call("combine", combine, b, a)
         for impact in (e, both):
@@ -59,14 +59,14 @@ class Trial(Generic[BeliefT, ImpactT]):
         assert isinstance(self._objective, Invertible)
         both = self._objective.combine(self._a, self._b)
         self._watched.append((both, copied(both)))
-        left = self._call("remove", self._objective.remove, both, self._b)
+        left = self._impact("remove", self._call("remove", self._objective.remove, both, self._b))
         removed = f"remove(combine({self._a_name}, {self._b_name}), {self._b_name})"
         self._same(left, self._a, removed, self._a_name)
 
     def clip(self, reach: Reach) -> None:
         """Raise ``InputError`` if ``clip`` changes an argument."""
         assert isinstance(self._objective, Clippable)
-        self._call("clip", self._objective.clip, self._belief, self._b, reach)
+        self._impact("clip", self._call("clip", self._objective.clip, self._belief, self._b, reach))
 
     def _call(self, function: str, run: Callable[..., ResultT], *args: object) -> ResultT:
         """Call a function of the objective, and look whether anything that is known has changed."""
@@ -75,6 +75,12 @@ class Trial(Generic[BeliefT, ImpactT]):
             wrong = f"{self._name}.{function} changes what it is given or has returned"
             raise InputError(f"{wrong}; let it return something new")
         return result
+
+    def _impact(self, function: str, returned: ImpactT) -> ImpactT:
+        """Return what a function of the objective returned; ``InputError`` for None, which is no impact."""
+        if returned is None:
+            raise InputError(f"{self._name}.{function} returned None; it must return an impact")
+        return returned
 
     def _same(self, one: ImpactT, other: ImpactT, left: str, right: str) -> None:
         """Raise ``InputError`` for two impacts that differ, and are worth something else."""
