@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.commands import Command
 from vedette.cli.exploring import closing
 from vedette.cli.options import end
 from vedette.outcome import Outcome
@@ -15,9 +16,10 @@ from vedette.record.explore.summary import ExploreSummary, LeftOut
 
 def summary(outcome: Outcome, left_out: tuple[LeftOut, ...] = ()) -> ExploreSummary:
     return ExploreSummary(
-        completed=outcome.completed, outcome=outcome, seed=1, robots=1, planner="tours", scheme="token",
-        fusion="replicated", world="hall", radio=None, faults=None, time_s=60.0, t50_s=20.0, t90_s=50.0,
-        t95_s=None, t99_s=None, auc_s=30.0, coverage=0.92, map_errors=0, map_error_share=0.0,
+        completed=outcome.completed, outcome=outcome, lost=(), seed=1, robots=1, planner="tours",
+        scheme="token", fusion="replicated", world="hall", radio=None, faults=None, time_s=60.0,
+        t50_s=20.0, t90_s=50.0, t95_s=None, t99_s=None, auc_s=30.0, coverage=0.92, map_errors=0,
+        map_error_share=0.0,
         path_m={"robot-1": 12.0}, overlap=0.0, collisions=0, min_clearance_m=0.2, rounds=9, sweeps=9,
         bound_ratio=None, apart_s=0.0, messages={}, bytes={}, left_out=left_out,
     )  # fmt: skip
@@ -48,3 +50,14 @@ def test_what_is_left_out_is_counted_by_its_reason() -> None:
     spots = [LeftOut(1.0, k, 9, "unreached" if k else "unseeable", "robot-1") for k in (0.0, 1.0, 2.0)]
     lines = closing(summary(Outcome.COMPLETE, tuple(spots)), Path("runs"))
     assert lines[1] == "frontiers left out: 1 unseeable, 2 unreached; summary.json lists them"
+
+
+def test_who_was_lost_is_named_in_the_summary_and_in_the_last_words(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    vedette, maze, folder = Command(monkeypatch, capsys), tmp_path / "maze", tmp_path / "run"
+    ran = vedette("world", "maze", "--seed", 1, "--width", 10, "--height", 10, "--out", maze)
+    assert ran.status == 0, ran.err
+    ran = vedette("explore", maze / "map.yaml", "--robots", 2, "--kill", "2@3", "--out", folder)
+    assert json.loads((folder / "summary.json").read_text())["lost"] == ["robot-2"]
+    assert "lost on the way: robot-2" in ran.out

@@ -19,8 +19,9 @@ from tests.support.search_missions import SMALL
 from vedette.record.summary import Traffic
 
 FIELDS = [
-    "schema_version", "completed", "outcome", "seed", "scenario", "coordination", "scheme", "fusion", "worth",
-    "radio", "faults", "vehicles", "time_s", "found_s", "found_by", "declared_m", "target_m", "error_m",
+    "schema_version", "completed", "outcome", "lost", "seed", "scenario", "coordination", "scheme", "fusion",
+    "worth", "radio", "faults", "vehicles", "time_s",
+    "found_s", "found_by", "declared_m", "target_m", "error_m",
     "detection_then",
     "duration_s", "detection", "t50_s", "t90_s", "mean_time_s", "counted", "bound", "koopman", "path_m",
     "rounds", "sweeps", "bound_ratio", "messages", "bytes", "comparison",

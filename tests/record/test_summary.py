@@ -20,7 +20,8 @@ DOCS = ROOT / "docs" / "outputs.md"
 
 def _summary(**changes: object) -> ExploreSummary:
     figures: dict[str, object] = {
-        "completed": True, "outcome": Outcome.COMPLETE, "seed": 3, "robots": 2, "planner": "tours",
+        "completed": True, "outcome": Outcome.COMPLETE, "lost": (), "seed": 3, "robots": 2,
+        "planner": "tours",
         "scheme": "token", "fusion": "evidence", "world": "office-3", "radio": "12,3", "faults": None,
         "time_s": 0.1 + 0.2, "t50_s": 10.0,
         "t90_s": 20.0, "t95_s": 25.0, "t99_s": None, "auc_s": 12.3456789, "coverage": 0.999, "map_errors": 4,

@@ -40,6 +40,7 @@ class RobotFigures:
 class TeamFigures:
     """The same of a team, as summaries hold them."""
 
+    lost: tuple[str, ...]  # robots that were not alive in the end
     path_m: Mapping[str, float]
     rounds: int  # that the robot with the most of them has ended with a decision
     sweeps: int  # in these
@@ -48,12 +49,13 @@ class TeamFigures:
     bytes: Mapping[str, Traffic]
 
     @classmethod
-    def of(cls, team: Mapping[str, RobotFigures]) -> TeamFigures:
-        """Return the figures of a team by its robots' names."""
+    def of(cls, team: Mapping[str, RobotFigures], alive: Sequence[bool]) -> TeamFigures:
+        """Return the figures of a team by its robots' names; ``alive`` in the same order."""
         rounds = [each.rounds for each in team.values()]
         leader = max(rounds, key=lambda each: each.rounds)
         bounded = sum(each.bounded for each in rounds)
         return cls(
+            lost=tuple(name for name, lives in zip(team, alive, strict=True) if not lives),
             path_m={name: each.travelled_m for name, each in team.items()},
             rounds=leader.rounds,
             sweeps=leader.sweeps,

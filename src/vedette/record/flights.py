@@ -93,4 +93,5 @@ class FlightLog(Generic[SceneT, SnapshotT]):
 
 def team_figures(scene: FlightScene, views: Sequence[FlightView]) -> TeamFigures:
     """Return the figures of a team from its last views."""
-    return TeamFigures.of(dict(zip(scene.vehicles, [view.figures for view in views], strict=True)))
+    figures = dict(zip(scene.vehicles, [view.figures for view in views], strict=True))
+    return TeamFigures.of(figures, [view.sample.alive for view in views])

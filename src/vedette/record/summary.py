@@ -37,6 +37,7 @@ class MissionSummary(Figures):
 
     completed: bool
     outcome: Outcome
+    lost: tuple[str, ...]  # robots that were not alive in the end
     seed: int
 
 

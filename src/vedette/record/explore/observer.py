@@ -133,6 +133,7 @@ class ExploreObserver:
         """Return the figures of the mission, in simulated time; not before the first look."""
         progress, views = self._progress, self._views
         time, team = progress.times[-1], [view.figures for view in views]
+        figures = {view.sample.name: view.figures for view in views}
         wrong, known = map_errors(self._world, self.delivered_map())
         return ExploreSummary(
             completed=outcome.completed,
@@ -157,7 +158,7 @@ class ExploreObserver:
             apart_s=self.apart_s,
             left_out=self._left_out(),
             **vars(self._setting),
-            **vars(TeamFigures.of({view.sample.name: view.figures for view in views})),
+            **vars(TeamFigures.of(figures, [view.sample.alive for view in views])),
         )
 
     def _left_out(self) -> tuple[LeftOut, ...]:
