@@ -143,7 +143,9 @@ def big_team(n: int) -> BigTeam:
 class BigTeam(SiteTeam):
     """Ends once everybody has decided in one round."""
 
-    def _over(self) -> Outcome | None:
+    @property
+    def over(self) -> Outcome | None:
+        """Told by the agents."""
         first = self.agents[0].rounds
         if self.now >= self.setup.max_time:
             return Outcome.TIME_LIMIT

@@ -9,7 +9,7 @@ import pytest
 
 from tests.support.commands import Command
 from vedette.cli.exploring import closing
-from vedette.cli.options import end
+from vedette.cli.running import end
 from vedette.outcome import Outcome
 from vedette.record.explore.summary import ExploreSummary, LeftOut
 

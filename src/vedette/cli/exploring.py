@@ -1,4 +1,4 @@
-"""What the commands that let a team explore share: options, the world and the team, files, the last words."""
+"""What the commands that let a team explore share: options, the world and the team, the last words."""
 
 from __future__ import annotations
 
@@ -9,26 +9,21 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import click
-import numpy as np
 
-from vedette.cli.options import OneOf, Positive, seed_option, with_options, write_figures
+from vedette.cli.options import OneOf, Positive, seed_option, with_options
+from vedette.cli.running import Kind
 from vedette.domains.mapping.planners import DEFAULT, PLANNERS
 from vedette.errors import InputError
-from vedette.maps import map_files, write_map
-from vedette.maps.world import World
 from vedette.missions.explore.assemble import FUSIONS
 from vedette.negotiation import SCHEMES
-from vedette.record.explore.curves import curves_png
-from vedette.record.explore.film import explore_gif
-from vedette.record.explore.observer import ExploreReport
-from vedette.record.explore.progress import progress_png
+from vedette.record.explore.live import ExploreDisplay
+from vedette.record.explore.mcap import ExploreMcapWriter
+from vedette.record.explore.outputs import write_outputs
 from vedette.record.explore.summary import ExploreSummary
-from vedette.record.folder import OutputFolder
+from vedette.run.inputs import ROBOTS, AnyWorld, team_of
 from vedette.sim.starts import parse_starts
-from vedette.sim.worlds import office
 from vedette.team import PlatformSpec, load_team
 
-ROBOTS = 3
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 
 
@@ -85,20 +80,20 @@ def exploring_options(command: CommandT) -> CommandT:
     )
 
 
-def world_of(path: Path | None, resolution: float | None, seed: int) -> World:
-    """Return the world of a map file, or an office.
+def world_named(path: Path | None, resolution: float | None) -> AnyWorld:
+    """Return what MAP and ``--resolution`` say of the world.
 
     Raises:
-        InputError: the map cannot be read, or a resolution is given without one.
+        InputError: a resolution is given without a map.
     """
     if path is not None:
-        return World.from_map(path, resolution)
+        return path, resolution
     if resolution is not None:
         raise InputError("--resolution goes with a MAP that is an image; the default office has 0.1 m")
-    return office(np.random.default_rng(seed))
+    return None
 
 
-def team_of(team: Path | None, robots: int | None, starts: str | None) -> list[PlatformSpec]:
+def team_named(team: Path | None, robots: int | None, starts: str | None) -> list[PlatformSpec]:
     """Return the platforms of ``--team``, ``--robots`` and ``--starts``.
 
     Raises:
@@ -113,27 +108,10 @@ def team_of(team: Path | None, robots: int | None, starts: str | None) -> list[P
             raise InputError(f"--robots is {robots}, but {team} lists {len(specs)}; add platforms to it")
         specs = specs[:robots]
     else:
-        count = robots or len(places) or ROBOTS
-        specs = [PlatformSpec(name=f"robot-{number}") for number in range(1, count + 1)]
+        specs = team_of(robots or len(places) or ROBOTS)
     if len(places) > len(specs):
         raise InputError(f"--starts has {len(places)} places for {len(specs)} robots; leave some out")
     return [replace(spec, start=places[i]) if i < len(places) else spec for i, spec in enumerate(specs)]
-
-
-def inputs_of(map_path: Path | None, team: Path | None, faults: str | None = None) -> list[Path]:
-    """Return the files that a command reads; ``faults`` may be a seed, which is no file."""
-    maps = [] if map_path is None else map_files(map_path)
-    return [*maps, *(Path(name) for name in (team, faults) if name is not None)]
-
-
-def write_outputs(report: ExploreReport, world: World, folder: OutputFolder, animate: bool) -> None:
-    """Write all files of a mission but the run record, which grows while it lasts."""
-    write_figures(report.summary, report.timing, folder)
-    write_map(folder / "map", world.frame, report.classes)
-    progress_png(report.log, folder / "progress.png")
-    curves_png(report.log, report.summary, folder / "curves.png")
-    if animate:
-        explore_gif(report.log, folder / "mission.gif")
 
 
 def closing(summary: ExploreSummary, folder: Path) -> list[str]:
@@ -151,3 +129,6 @@ def closing(summary: ExploreSummary, folder: Path) -> list[str]:
         said = ", ".join(f"{number} {why}" for why, number in count.items())
         lines.insert(1, f"frontiers left out: {said}; summary.json lists them")
     return lines
+
+
+EXPLORING = Kind(ExploreDisplay, ExploreMcapWriter, write_outputs, closing)

@@ -1,23 +1,19 @@
-"""What the commands that run a mission share: kinds of options, options, and how a run ends."""
+"""What the commands that run a mission share: kinds of options, and options."""
 
 from __future__ import annotations
 
 import math
 import re
-import signal
-import threading
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import wraps
 from pathlib import Path
-from typing import Any, NoReturn, TypeVar
+from typing import Any, TypeVar
 
 import click
 
-from vedette.errors import InputError, nearest_name
-from vedette.record.folder import OutputFolder
-from vedette.record.summary import MissionSummary, Timing
-from vedette.sim.faults import Schedule, load_faults
-from vedette.sim.faults.kinds import Skew
+from vedette.errors import InputError
+from vedette.run.inputs import MOST_DELAY, MOST_LOSS, word
 from vedette.sim.radio import Radio, parse_radio
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
@@ -39,10 +35,7 @@ class OneOf(click.ParamType[str]):
 
     def convert(self, value: str, param: click.Parameter | None, ctx: click.Context | None) -> str:
         """Return the word, or refuse it."""
-        if value not in self.words:
-            what = param.name if param is not None and param.name else "name"
-            raise InputError(f"unknown {what} {value!r}: {nearest_name(value, self.words)}")
-        return value
+        return word(param.name if param is not None and param.name else "name", value, self.words)
 
 
 class Positive(click.ParamType[float]):
@@ -95,6 +88,23 @@ class RadioModel(click.ParamType[Radio]):
         return value if isinstance(value, Radio) else parse_radio(value)
 
 
+class Kill(click.ParamType[tuple[int, float]]):
+    """``R@T``."""
+
+    name = "R@T"
+
+    def convert(
+        self, value: str | tuple[int, float], param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[int, float]:
+        """Return the robot's number and the time [s], or refuse them."""
+        if isinstance(value, tuple):
+            return value
+        match = _KILL.fullmatch(value.strip())
+        if match is None:
+            raise InputError(f"--kill must be robot@seconds, such as 2@60; got {value!r}")
+        return int(match[1]), float(match[2])
+
+
 def fault_options(command: CommandT) -> CommandT:
     """``--radio``, ``--faults``, ``--link-delay``, ``--link-loss`` and ``--kill``."""
     return with_options(
@@ -108,23 +118,39 @@ def fault_options(command: CommandT) -> CommandT:
             "--faults", metavar="FILE|SEED", help="What befalls robots and links: a schedule or its seed."
         ),
         click.option(
-            "--link-delay", type=Positive("s", most=0.3), default=0.02, show_default=True,
+            "--link-delay", type=Positive("s", most=MOST_DELAY), default=0.02, show_default=True,
             help="Of a message on a link [s].",
         ),
         click.option(
-            "--link-loss", type=Share(0.9), default=0.0, show_default=True, help="Share of messages lost."
+            "--link-loss", type=Share(MOST_LOSS), default=0.0, show_default=True,
+            help="Share of messages lost.",
         ),
         click.option(
-            "--kill", "kills", multiple=True, metavar="R@T",
+            "--kill", "kills", type=Kill(), multiple=True, metavar="R@T",
             help="Robot R (from 1) dies at T seconds; may be repeated.",
         ),
     )  # fmt: skip
 
 
-def output_options(command: CommandT) -> CommandT:
-    """``--out``, ``--force``, ``--json`` and ``--animate``."""
+@dataclass(frozen=True)
+class Output:
+    """Where results go, and what is said and drawn of them."""
+
+    out: Path | None
+    force: bool
+    as_json: bool
+    animate: bool
+
+
+def output_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """``--out``, ``--force``, ``--json`` and ``--animate``, all as one `Output`."""
+
+    @wraps(command)
+    def taken(out: Path | None, force: bool, as_json: bool, animate: bool, **others: Any) -> Any:
+        return command(output=Output(out, force, as_json, animate), **others)
+
     return with_options(
-        command,
+        taken,
         click.option(
             "--out", type=Path, metavar="DIR",
             help="Folder for the results.  [default: a new one under runs/]",
@@ -133,68 +159,6 @@ def output_options(command: CommandT) -> CommandT:
         click.option("--json", "as_json", is_flag=True, help="Print the summary alone, as JSON."),
         click.option("--animate", is_flag=True, help="Make a GIF of the mission as well."),
     )  # fmt: skip
-
-
-def parse_kills(texts: Sequence[str], robots: int) -> tuple[tuple[int, float], ...]:
-    """Return robot indexes and times [s] of ``--kill R@T``, R from 1 to ``robots``.
-
-    Raises:
-        InputError: not of that form, or no such robot.
-    """
-    return tuple(_kill(text, robots) for text in texts)
-
-
-def parse_faults(text: str | None, robots: int, clocks: bool = True) -> Schedule | None:
-    """Return the schedule of ``--faults FILE|SEED`` for a team; ``clocks``: they may go wrong.
-
-    Raises:
-        InputError: as :func:`vedette.sim.faults.load_faults`, or clocks go wrong that may not.
-    """
-    if text is None:
-        return None
-    schedule = load_faults(text, robots)
-    right = [fault for fault in schedule.faults if not isinstance(fault, Skew)]
-    if clocks or len(right) == len(schedule.faults):
-        return schedule
-    if text.strip().isdecimal():  # a seed asks for chance, within what can be
-        return Schedule(tuple(right))
-    raise InputError(f"{text}: fault skew: vehicles plan by a common clock; leave it out")
-
-
-@contextmanager
-def ending_on_ctrl_c(stop: Callable[[], None]) -> Iterator[None]:
-    """Let the first Ctrl-C call ``stop``, which ends the mission in good order; a second one aborts."""
-
-    def interrupted(*_: object) -> None:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-        stop()
-
-    if threading.current_thread() is not threading.main_thread():  # only the main one may handle signals
-        yield
-        return
-    before = signal.signal(signal.SIGINT, interrupted)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
-
-
-def write_figures(summary: MissionSummary, timing: Timing, folder: OutputFolder) -> None:
-    """Write ``summary.json`` and ``timing.json``."""
-    summary.write(folder / "summary.json")
-    timing.write(folder / "timing.json")
-
-
-def end(summary: MissionSummary, lines: Sequence[str], as_json: bool) -> NoReturn:
-    """Print the summary alone, or lines for people, and leave with the outcome's status."""
-    outcome = summary.outcome
-    if as_json:
-        click.echo(summary.to_json(), nl=False)
-    else:
-        lost = [f"lost on the way: {', '.join(summary.lost)}"] if summary.lost else []
-        why = [] if outcome.completed else [f"why it ended: {outcome.meaning}"]
-        click.echo("\n".join([*lines, *lost, *why]))
-    raise SystemExit(outcome.status)
 
 
 def with_options(command: CommandT, *options: Callable[[CommandT], CommandT]) -> CommandT:
@@ -209,13 +173,3 @@ def _number(value: str | float) -> float:
         return float(value)
     except ValueError:
         return math.nan
-
-
-def _kill(text: str, robots: int) -> tuple[int, float]:
-    match = _KILL.fullmatch(text.strip())
-    if match is None:
-        raise InputError(f"--kill must be robot@seconds, such as 2@60; got {text!r}")
-    robot = int(match[1])
-    if not 1 <= robot <= robots:
-        raise InputError(f"--kill {text}: there is no robot {robot}; they are 1 to {robots}")
-    return robot - 1, float(match[2])

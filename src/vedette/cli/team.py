@@ -6,28 +6,22 @@ import signal
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
 from math import floor
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import FrameType
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 import click
 import numpy as np
 
-from vedette.cli import exploring, searching, tracking
-from vedette.cli.exploring import exploring_options, inputs_of, team_of, world_of
-from vedette.cli.options import (
-    Positive,
-    end,
-    ending_on_ctrl_c,
-    output_options,
-    parse_faults,
-    with_options,
-)
-from vedette.cli.searching import case_of, searching_options
+from vedette.cli.exploring import EXPLORING, exploring_options, team_named, world_named
+from vedette.cli.options import Output, Positive, output_options, with_options
+from vedette.cli.running import ReportT
+from vedette.cli.searching import SEARCHING, searching_options
 from vedette.cli.staging import Stage
-from vedette.cli.tracking import scenario_of, tracking_options
+from vedette.cli.tracking import TRACKING, tracking_options
 from vedette.errors import InputError
 from vedette.missions.explore.options import ExploreOptions
 from vedette.missions.search.assemble import SearchTeam
@@ -43,18 +37,16 @@ from vedette.net.search.watch import SearchWatcher
 from vedette.net.team import TeamWatch, Watcher
 from vedette.net.track.watch import TrackWatcher
 from vedette.net.transport import Operator
-from vedette.record.explore.live import ExploreDisplay
 from vedette.record.explore.log import ExploreScene
-from vedette.record.explore.mcap import ExploreMcapWriter
 from vedette.record.folder import OutputFolder
 from vedette.record.search.curves import ideal
-from vedette.record.search.live import search_display
 from vedette.record.search.log import SearchScene
-from vedette.record.search.mcap import SearchMcapWriter
-from vedette.record.summary import Setting, Timing
-from vedette.record.track.live import track_display
+from vedette.record.summary import Setting
 from vedette.record.track.log import TrackScene
-from vedette.record.track.mcap import TrackMcapWriter
+from vedette.run.inputs import files_of, schedule_of, world_of
+from vedette.run.interrupt import ending_on_ctrl_c
+from vedette.run.searching import case_of, heat_maps
+from vedette.run.tracking import scenario_of
 from vedette.sim.faults import Schedule, faults_text
 from vedette.sim.search.hidden import Hidden
 from vedette.sim.starts import choose_starts
@@ -109,32 +101,25 @@ def explore(
     speed: float,
     lease: float,
     faults: str | None,
-    out: Path | None,
-    force: bool,
-    as_json: bool,
-    animate: bool,
+    output: Output,
 ) -> None:
     """Let a team of agent processes explore MAP: one process a robot, linked by mutual TLS here.
 
     Keys are made for the occasion. MAP and the outputs are as for `vedette explore`. Every robot simulates
     its own body. Exit status: 0 complete, 1 incomplete, 2 bad input, 130 interrupted.
     """
-    world = world_of(map_path, resolution, seed)
-    specs = team_of(team, robots, starts)
+    world, specs = world_of(world_named(map_path, resolution), seed), team_named(team, robots, starts)
     places = choose_starts(world, specs, np.random.default_rng([seed, 1]))
     options = ExploreOptions(planner, scheme, fusion, return_home)
     plan = ExplorePlan(world, specs, places, options, seed, speed, lease)
-    schedule = parse_faults(faults, plan.size, clocks=False)
-    scene = ExploreScene.of(world, [spec.name for spec in specs])
-    with OutputFolder.make(out, force, world.name, inputs_of(map_path, team, faults)) as folder:
-        with ExitStack() as sinks:
-            live = sinks.enter_context(ExploreDisplay(scene, as_json))
-            mcap = sinks.enter_context(ExploreMcapWriter(lambda: folder / "run.mcap", scene))
-            watcher = ExploreWatcher(plan, Setting(seed=seed, faults=faults), (live, mcap, folder))
-            report = _run(plan, watcher, max_time, schedule, folder / "agents")
-        exploring.write_outputs(report, world, folder, animate)
-        closed = exploring.closing(report.summary, folder.path)
-    end(report.summary, closed, as_json)
+    run = _Processes(plan, max_time, schedule_of(faults, plan.size, clocks=False))
+    setting = Setting(seed=seed, faults=faults)
+    EXPLORING.run(
+        ExploreScene.of(world, [spec.name for spec in specs]),
+        output,
+        files_of(map_path, team, faults),
+        lambda sinks, folder: run.watched_by(ExploreWatcher(plan, setting, sinks), folder),
+    )
 
 
 @team.command()
@@ -153,10 +138,7 @@ def track(
     speed: float,
     lease: float,
     faults: str | None,
-    out: Path | None,
-    force: bool,
-    as_json: bool,
-    animate: bool,
+    output: Output,
 ) -> None:
     """Let a team of agent processes follow the targets of SCENARIO: one process a vehicle.
 
@@ -169,19 +151,15 @@ def track(
     options = TrackOptions(coordination, scheme, fusion, objective, continuous)
     plan = FlightsPlan("track", options, scenario_path, len(scenario.vehicles), seed, speed, lease)
     vehicles = TrackTeam(scenario, options, plan.times)
-    schedule = parse_faults(faults, plan.size, clocks=False)
-    scene, truth = TrackScene.of(scenario, name), Targets.of(vehicles, seed)
     limit = scenario.duration + 1.0 if max_time is None else max_time
-    with OutputFolder.make(out, force, name, tracking.inputs_of(scenario_path, faults)) as folder:
-        with ExitStack() as sinks:
-            live = sinks.enter_context(track_display(scene, as_json))
-            mcap = sinks.enter_context(TrackMcapWriter(lambda: folder / "run.mcap", scene))
-            setting = Setting(seed=seed, faults=faults)
-            watcher = TrackWatcher(vehicles, name, setting, truth.at, (live, mcap, folder))
-            report = _run(plan, watcher, limit, schedule, folder / "agents")
-        tracking.write_outputs(report, folder, animate)
-        closed = tracking.closing(report.summary, folder.path)
-    end(report.summary, closed, as_json)
+    run = _Processes(plan, limit, schedule_of(faults, plan.size, clocks=False))
+    setting, truth = Setting(seed=seed, faults=faults), Targets.of(vehicles, seed)
+    TRACKING.run(
+        TrackScene.of(scenario, name),
+        output,
+        files_of(None, scenario_path, faults),
+        lambda sinks, folder: run.watched_by(TrackWatcher(vehicles, name, setting, truth.at, sinks), folder),
+    )
 
 
 @team.command()
@@ -198,10 +176,7 @@ def search(
     speed: float,
     lease: float,
     faults: str | None,
-    out: Path | None,
-    force: bool,
-    as_json: bool,
-    animate: bool,
+    output: Output,
 ) -> None:
     """Let a team of agent processes look for the hidden target of SCENARIO: one process a vehicle.
 
@@ -212,48 +187,44 @@ def search(
     options = SearchOptions(coordination, scheme, fusion)
     plan = FlightsPlan("search", options, scenario_path, len(case.names), seed, speed, lease)
     vehicles = SearchTeam(case, options, plan.times)
-    schedule = parse_faults(faults, plan.size, clocks=False)
     duration = case.scenario.duration if max_time is None else min(max_time, case.scenario.duration)
-    scene, hidden = SearchScene.of(case, duration), Hidden.of(case, seed)
+    run = _Processes(plan, duration, schedule_of(faults, plan.size, clocks=False))
+    setting, hidden = Setting(seed=seed, faults=faults), Hidden.of(case, seed)
     curves = ideal(case, floor(duration / case.scenario.step + 1e-6))
-    with OutputFolder.make(out, force, case.name, searching.inputs_of(case, scenario_path, faults)) as folder:
-        with ExitStack() as sinks:
-            live = sinks.enter_context(search_display(scene, as_json))
-            mcap = sinks.enter_context(SearchMcapWriter(lambda: folder / "run.mcap", scene))
-            setting = Setting(seed=seed, faults=faults)
-            watcher = SearchWatcher(vehicles, duration, setting, hidden.at, curves, (live, mcap, folder))
-            report = _run(plan, watcher, duration, schedule, folder / "agents")
-        searching.write_outputs(report, folder, animate)
-        closed = searching.closing(report.summary, folder.path)
-    end(report.summary, closed, as_json)
+    SEARCHING.run(
+        SearchScene.of(case, duration),
+        output,
+        files_of(None, scenario_path, faults, *heat_maps(case, scenario_path)),
+        lambda sinks, folder: run.watched_by(
+            SearchWatcher(vehicles, duration, setting, hidden.at, curves, sinks), folder
+        ),
+    )
 
 
-class _Report(Protocol):
-    @property
-    def timing(self) -> Timing: ...
+@dataclass(frozen=True)
+class _Processes:
+    """A team that is to be started."""
 
+    plan: TeamPlan
+    max_time: float  # [s]
+    schedule: Schedule | None  # of faults
 
-ReportT = TypeVar("ReportT", bound=_Report)
-
-
-def _run(
-    plan: TeamPlan, watcher: Watcher[ReportT], max_time: float, schedule: Schedule | None, logs: Path
-) -> ReportT:
-    """Run a team of processes to the end of its mission; ``logs``: the folder of what they say."""
-    text = None if schedule is None else faults_text(schedule)
-    with ExitStack() as stack:
-        stack.enter_context(_ending_on_any_signal())
-        secrets = stack.enter_context(TemporaryDirectory(prefix="vedette-team-"))
-        processes = stack.enter_context(TeamProcesses(plan, Path(secrets), logs, text))
-        operator = stack.enter_context(Operator(processes.operator))
-        watch = TeamWatch(plan, processes, operator, watcher, max_time)
-        if schedule is not None:
-            watch.befall = Stage(schedule, processes, watch).befall
-        stack.enter_context(ending_on_ctrl_c(watch.stop))
-        report = watch.run()
-    for line in _remarks(watch, report.timing.real_time_factor, plan.speed):
-        click.echo(f"vedette: {line}", err=True)
-    return report
+    def watched_by(self, watcher: Watcher[ReportT], folder: OutputFolder) -> ReportT:
+        """Run the team to the end of its mission; what it says goes into the folder."""
+        text = None if self.schedule is None else faults_text(self.schedule)
+        with ExitStack() as stack:
+            stack.enter_context(_ending_on_any_signal())
+            secrets = stack.enter_context(TemporaryDirectory(prefix="vedette-team-"))
+            processes = stack.enter_context(TeamProcesses(self.plan, Path(secrets), folder / "agents", text))
+            operator = stack.enter_context(Operator(processes.operator))
+            watch = TeamWatch(self.plan, processes, operator, watcher, self.max_time)
+            if self.schedule is not None:
+                watch.befall = Stage(self.schedule, processes, watch).befall
+            stack.enter_context(ending_on_ctrl_c(watch.stop))
+            report = watch.run()
+        for line in _remarks(watch, report.timing.real_time_factor, self.plan.speed):
+            click.echo(f"vedette: {line}", err=True)
+        return report
 
 
 def _remarks(watch: TeamWatch[Any], pace: float, speed: float) -> Iterator[str]:

@@ -11,6 +11,7 @@ import numpy as np
 
 from vedette.outcome import Outcome
 from vedette.record.files import write_text
+from vedette.record.folder import OutputFolder
 from vedette.record.plain import json_text
 
 SCHEMA_VERSION: Final = 3  # of all JSON; goes up when a field changes its meaning or goes away
@@ -86,3 +87,9 @@ class Timing(Figures):
     round_ms: Spread | None  # wall time of a round from end to end; None: rounds were simulated
     real_time_factor: float  # simulated / wall seconds
     wall_s: float
+
+
+def write_figures(summary: MissionSummary, timing: Timing, folder: OutputFolder) -> None:
+    """Write ``summary.json`` and ``timing.json``."""
+    summary.write(folder / "summary.json")
+    timing.write(folder / "timing.json")

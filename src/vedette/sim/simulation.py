@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from vedette.agent import Agent
 from vedette.agent.body import TICK
 from vedette.agent.effects import Drive, Fly, Job
-from vedette.agent.events import JobDone
+from vedette.agent.events import Event, JobDone
 from vedette.maps import GridFrame
 from vedette.maps.world import World
 from vedette.outcome import Outcome
@@ -42,7 +42,7 @@ def random_streams(seed: int, robots: int) -> list[np.random.Generator]:
 
 
 class Simulation:
-    """One mission; ``run`` steps it to its end."""
+    """One mission; ``step`` takes it on, ``run`` to its end."""
 
     def __init__(self, spawn: Spawn, field: Field, setup: Setup, walls: World | None = None) -> None:
         """Bring the robots of the field to life; ``walls``: what weakens their radios.
@@ -55,6 +55,8 @@ class Simulation:
         self.network: Network = self._planted(spawn) if setup.ideal else self._overlaid(spawn, walls)
         self.clock = Clock()
         self.now = 0.0
+        self._ticks = -1  # that have passed; none has been lived yet, not even that of time 0
+        self.sensed: dict[int, list[Event]] = {}  # by robot, what its agent was told of the world last
         self._jobs: list[tuple[float, int, int, Job]] = []  # when done, number, robot
         self._job_numbers = itertools.count()
         self._kills = sorted(setup.kills, key=lambda kill: kill[1])
@@ -98,29 +100,35 @@ class Simulation:
     def run(self, observe: Callable[[], None], period: float = 1.0) -> Outcome:
         """Run to the end of the mission, calling ``observe`` every ``period`` simulated seconds."""
         next_look = 0.0
-        ticks = 0
         try:
             while True:
-                self._tick()
+                self.step()
                 if self.now >= next_look - 1e-9:
                     observe()
                     next_look += period
-                outcome = self._over()
-                if outcome is not None:
-                    break
-                ticks += 1
-                self._deliver_until(ticks * TICK)
-                self.now = ticks * TICK
-                self.field.advance(self.now, TICK)
+                if (outcome := self.over) is not None:
+                    return outcome
         except KeyboardInterrupt:
-            outcome = Outcome.INTERRUPTED
-        return outcome
+            return Outcome.INTERRUPTED
+
+    def step(self) -> None:
+        """Let the next tick pass, the first time none, and tell every agent what its robot senses then."""
+        if self._ticks < 0:
+            self.clock.start()
+        self._ticks += 1
+        if self._ticks:
+            self._deliver_until(self._ticks * TICK)
+            self.now = self._ticks * TICK
+            self.field.advance(self.now, TICK)
+        self._tick()
 
     def stop(self) -> None:
         """Interrupt the mission at the end of the present tick; may be called from a signal handler."""
         self._stopped = True
 
-    def _over(self) -> Outcome | None:
+    @property
+    def over(self) -> Outcome | None:
+        """How the mission ends as it stands now; None: it goes on."""
         living = self.living
         if not living:
             return Outcome.TEAM_LOST
@@ -142,8 +150,10 @@ class Simulation:
             self.network.killed(robot, self.now)
         for i, act in self.network.tick(self.now):
             self._let(i, act)
+        self.sensed = {}
         for i in self.living:
-            self._let(i, self.network.tell(i, self.field.sense(i, self.now), self.now))
+            self.sensed[i] = self.field.sense(i, self.now)
+            self._let(i, self.network.tell(i, self.sensed[i], self.now))
 
     def _deliver_until(self, time: float) -> None:
         """Deliver messages and finished jobs in order of time."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from vedette.agent.driving import remaining
 from vedette.maps.world import World
+from vedette.outcome import Outcome
 from vedette.record.explore.log import ExploreSnapshot, RobotSample
 from vedette.record.explore.observer import ExploreObserver, ExploreReport
 from vedette.record.explore.views import GroundFigures, RobotView, held_map, left_out
@@ -15,6 +16,7 @@ from vedette.record.log import Sink
 from vedette.sim.explore.simulation import ExploreSetup, ExploreSimulation
 from vedette.sim.starts import choose_starts
 from vedette.sim.views import NOWHERE, figures, setting, state
+from vedette.sim.watched import Watched
 from vedette.team import PlatformSpec, check_team
 
 
@@ -31,15 +33,31 @@ def prepare(world: World, specs: Sequence[PlatformSpec], setup: ExploreSetup) ->
     return ExploreSimulation(world, specs, starts, setup)
 
 
+class ExploreRun(Watched[ExploreReport]):
+    """One exploration, measured as often as its map's size allows."""
+
+    def __init__(self, simulation: ExploreSimulation, sinks: Sequence[Sink[ExploreSnapshot]] = ()) -> None:
+        """Prepare a mission that has not begun; ``sinks`` follow it."""
+        super().__init__(simulation)
+        self.simulation = simulation
+        self._observer = observer_of(simulation, sinks)
+        self._next_look = 0.0  # [s]
+
+    def _look(self) -> None:
+        now = self.simulation.now
+        if now >= self._next_look - 1e-9:
+            self._observer.look(now, views(self.simulation), self.simulation.network.links())
+            self._next_look += self._observer.period
+
+    def _report(self, outcome: Outcome) -> ExploreReport:
+        now = self.simulation.now
+        self._observer.finish(now, views(self.simulation), self.simulation.network.links())
+        return self._observer.report(outcome, self.simulation.clock.timing(now))
+
+
 def explore(simulation: ExploreSimulation, sinks: Sequence[Sink[ExploreSnapshot]] = ()) -> ExploreReport:
     """Run a mission to its end; ``sinks`` follow it, and Ctrl-C ends it in good order."""
-    observer = observer_of(simulation, sinks)
-    simulation.clock.start()
-    outcome = simulation.run(
-        lambda: observer.look(simulation.now, views(simulation), simulation.network.links()), observer.period
-    )
-    observer.finish(simulation.now, views(simulation), simulation.network.links())
-    return observer.report(outcome, simulation.clock.timing(simulation.now))
+    return ExploreRun(simulation, sinks).run()
 
 
 def observer_of(

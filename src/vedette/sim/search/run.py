@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from vedette.agent.body import TICK
+from vedette.outcome import Outcome
 from vedette.record.log import Sink
 from vedette.record.search.curves import ideal
 from vedette.record.search.log import SearchSample, SearchSnapshot
@@ -19,22 +19,33 @@ from vedette.record.search.observer import (
 )
 from vedette.sim.search.simulation import SearchSimulation
 from vedette.sim.views import NOWHERE, figures, flight, setting, state
+from vedette.sim.watched import Watched
+
+
+class SearchRun(Watched[SearchReport]):
+    """One search, measured once a step."""
+
+    def __init__(self, simulation: SearchSimulation, sinks: Sequence[Sink[SearchSnapshot]] = ()) -> None:
+        """Prepare a search that has not begun; ``sinks`` follow it."""
+        super().__init__(simulation)
+        self.simulation = simulation
+        self._observer = observer_of(simulation, sinks)
+
+    def _look(self) -> None:
+        log = self._observer.log
+        if log.due(self.simulation.now):
+            self._observer.look(views(self.simulation, log.step))
+
+    def _report(self, outcome: Outcome) -> SearchReport:
+        simulation, now = self.simulation, self.simulation.now
+        self._observer.finish(now, views(simulation, self._observer.log.step))
+        curves = ideal(simulation.case, simulation.steps)
+        return self._observer.report(outcome, simulation.clock.timing(now), now, curves)
 
 
 def search(simulation: SearchSimulation, sinks: Sequence[Sink[SearchSnapshot]] = ()) -> SearchReport:
     """Run a search to its end; ``sinks`` follow it, and ``simulation.stop`` ends it in good order."""
-    observer = observer_of(simulation, sinks)
-    log = observer.log
-
-    def look() -> None:
-        if log.due(simulation.now):
-            observer.look(views(simulation, log.step))
-
-    simulation.clock.start()
-    outcome = simulation.run(look, TICK)
-    observer.finish(simulation.now, views(simulation, log.step))
-    curves = ideal(simulation.case, simulation.steps)
-    return observer.report(outcome, simulation.clock.timing(simulation.now), simulation.now, curves)
+    return SearchRun(simulation, sinks).run()
 
 
 def observer_of(simulation: SearchSimulation, sinks: Sequence[Sink[SearchSnapshot]] = ()) -> SearchObserver:

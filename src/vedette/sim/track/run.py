@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from vedette.agent.body import TICK
 from vedette.errors import InputError
 from vedette.missions.track.options import COORDINATIONS
 from vedette.missions.track.scenario import TrackScenario
@@ -18,21 +17,34 @@ from vedette.record.track.observer import TrackObserver, TrackReport, TrackView,
 from vedette.record.track.summary import TrackQuality
 from vedette.sim.track.simulation import TrackSetup, TrackSimulation, check_optimum
 from vedette.sim.views import NOWHERE, figures, flight, setting, state
+from vedette.sim.watched import Watched
+
+
+class TrackRun(Watched[TrackReport]):
+    """One tracking mission, measured once a step."""
+
+    def __init__(
+        self, simulation: TrackSimulation, name: str, sinks: Sequence[Sink[TrackSnapshot]] = ()
+    ) -> None:
+        """Prepare a mission that has not begun, by its scenario's name; ``sinks`` follow it."""
+        super().__init__(simulation)
+        self.simulation = simulation
+        self._observer = observer_of(simulation, name, sinks)
+
+    def _look(self) -> None:
+        log = self._observer.log
+        if log.due(self.simulation.now):
+            self._observer.look(views(self.simulation, log.step))
+
+    def _report(self, outcome: Outcome) -> TrackReport:
+        now = self.simulation.now
+        self._observer.finish(views(self.simulation, self._observer.log.step))
+        return self._observer.report(outcome, self.simulation.clock.timing(now), now)
 
 
 def track(simulation: TrackSimulation, name: str, sinks: Sequence[Sink[TrackSnapshot]] = ()) -> TrackReport:
     """Run a mission to its end; ``sinks`` follow it, and ``simulation.stop`` ends it in good order."""
-    observer = observer_of(simulation, name, sinks)
-    log = observer.log
-
-    def look() -> None:
-        if log.due(simulation.now):
-            observer.look(views(simulation, log.step))
-
-    simulation.clock.start()
-    outcome = simulation.run(look, TICK)
-    observer.finish(views(simulation, log.step))
-    return observer.report(outcome, simulation.clock.timing(simulation.now), simulation.now)
+    return TrackRun(simulation, name, sinks).run()
 
 
 def observer_of(

@@ -1,0 +1,156 @@
+"""Exploration from Python: ``explore``, and ``Explore`` to step through it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeAlias, Unpack
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.domains.mapping.impact import Impact
+from vedette.domains.mapping.planners import DEFAULT, PLANNERS
+from vedette.domains.mapping.platform import Tour
+from vedette.maps import GridFrame
+from vedette.missions.explore.assemble import FUSIONS
+from vedette.record.explore.log import ExploreLog, ExploreScene, ExploreSnapshot
+from vedette.record.explore.mcap import ExploreMcapWriter
+from vedette.record.explore.observer import ExploreReport
+from vedette.record.explore.summary import ExploreSummary
+from vedette.record.explore.views import union_map
+from vedette.run.inputs import (
+    ROBOTS,
+    AnyTeam,
+    AnyWorld,
+    Conditions,
+    files_of,
+    setup_of,
+    team_of,
+    word,
+    world_of,
+)
+from vedette.run.mission import Followers, Mission, Progress
+from vedette.run.result import Result
+from vedette.sim.explore.run import ExploreRun, prepare, views
+from vedette.sim.explore.simulation import ExploreSetup
+
+_Mission: TypeAlias = Mission[ExploreSnapshot, Tour, Impact, ExploreReport]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ExploreResult(Result[ExploreReport], ExploreSummary):
+    """The figures of ``summary.json``, the map and the log."""
+
+    @property
+    def map(self) -> NDArray[np.uint8]:
+        """``(R, C)`` what a living robot knows in the end: UNKNOWN, FREE or OCCUPIED; row 0 the lowest y."""
+        return self.report.classes
+
+    @property
+    def frame(self) -> GridFrame:
+        """Where the map lies."""
+        return self.log.scene.frame
+
+    @property
+    def log(self) -> ExploreLog:
+        """Curves, poses and maps over time."""
+        return self.report.log
+
+    def save(self, folder: Path | str, animate: bool = False) -> None:
+        """Write the files of ``vedette explore`` into a folder, all but the run record."""
+        from vedette.record.explore.outputs import write_outputs  # draws: takes a second to import
+
+        with self._folder(folder) as made:
+            write_outputs(self.report, made, animate)
+
+
+class Explore(_Mission):
+    """A team of robots that explores a building in simulation: every robot runs its own agent."""
+
+    def __init__(
+        self,
+        world: AnyWorld = None,
+        team: AnyTeam = ROBOTS,
+        seed: int = 0,
+        *,
+        planner: str = DEFAULT,
+        scheme: str = "token",
+        fusion: str = "replicated",
+        max_time: float = 3600.0,
+        return_home: bool = False,
+        record: str | Path | None = None,
+        **conditions: Unpack[Conditions],
+    ) -> None:
+        """Put a team at its starts.
+
+        Args:
+            world: a World, a map file, ``(image file or solid cells (R, C), resolution [m])``; None: the
+                seed's office of 30 x 20 m.
+            team: so many robots alike, their platforms, or a team file.
+            seed: of the office, the starts and all chance.
+            planner, scheme, fusion: how the team decides, negotiates and shares what it sees.
+            max_time: simulated time limit [s].
+            return_home: whether the robots drive back to their starts in the end.
+            record: a folder for the run record, ``run.mcap``.
+            conditions: see `vedette.run.inputs.Conditions`.
+
+        Raises:
+            InputError: something of it cannot be.
+        """
+        specs = team_of(team)
+        setup = ExploreSetup(
+            **vars(
+                setup_of(len(specs), scheme=scheme, seed=seed, max_time=max_time, clocks=True, **conditions)
+            ),
+            planner=word("planner", planner, list(PLANNERS)),
+            fusion=word("fusion", fusion, list(FUSIONS)),
+            return_home=return_home,
+        )
+        self.world = world_of(world, setup.seed)
+        self.simulation = prepare(self.world, specs, setup)
+        self.scene = ExploreScene.of(self.world, [spec.name for spec in specs])
+        followers = Followers[ExploreSnapshot]()
+        super().__init__(
+            self.simulation,
+            ExploreRun(self.simulation, (followers,)),
+            followers,
+            lambda place: ExploreMcapWriter(place, self.scene),
+            record,
+            files_of(world, team, conditions.get("faults")),
+        )
+
+    @property
+    def map(self) -> NDArray[np.uint8]:
+        """``(R, C)`` what the living robots know together now: UNKNOWN, FREE or OCCUPIED."""
+        return union_map(views(self.simulation))
+
+    def run(self, progress: Callable[[ExploreSnapshot], object] | None = None) -> ExploreResult:
+        """Explore to the end; ``progress`` is called with a snapshot every second."""
+        self.play([] if progress is None else [Progress(progress)])
+        return self.result()
+
+    def result(self) -> ExploreResult:
+        """Return how it went; a mission that goes on is interrupted."""
+        return ExploreResult.of(self.finish(), self.inputs)
+
+
+def explore(
+    world: AnyWorld = None,
+    team: AnyTeam = ROBOTS,
+    seed: int = 0,
+    *,
+    progress: Callable[[ExploreSnapshot], object] | None = None,
+    **options: Any,
+) -> ExploreResult:
+    """Let a team explore a building to the end, as ``vedette explore`` does.
+
+    Args:
+        world, team, seed, options: see `Explore`.
+        progress: called with a snapshot every second of the mission.
+
+    Raises:
+        InputError: something of it cannot be.
+    """
+    return Explore(world, team, seed, **options).run(progress)
