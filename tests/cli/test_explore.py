@@ -350,7 +350,7 @@ def test_ctrl_c_before_the_mission_writes_nothing_and_shows_no_traceback(tmp_pat
         "import vedette.cli.explore, os, signal, sys\n"
         "signal.signal(signal.SIGINT, signal.default_int_handler)\n"  # a background job inherits none
         "def interrupted(*_): os.kill(os.getpid(), signal.SIGINT)\n"
-        "sys.modules['vedette.cli.explore'].world_of = interrupted\n"
+        "sys.modules['vedette.cli.explore'].world_named = interrupted\n"
         "vedette.cli.main()\n"
     )
     ran = subprocess.run(

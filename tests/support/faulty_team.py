@@ -126,7 +126,9 @@ class FaultyTeam(SiteTeam):
             self._looked = self.now
             self._check_idle()
 
-    def _over(self) -> Outcome | None:
+    @property
+    def over(self) -> Outcome | None:
+        """How it ends, once all that was healed agree."""
         if self._healed is None:
             return None
         done = all(self.network.agents[i].done for i in self.living)

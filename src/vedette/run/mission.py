@@ -87,21 +87,22 @@ class Mission(ABC, Generic[SnapshotT, StrategyT, ImpactT, ReportT]):
         self.inputs = tuple(inputs)  # files that it has been read from
         self._running, self._watched, self._followers = simulation, watched, followers
         self._simulation, self._recorder = simulation, recorder
-        self._stopped = False
+        self._stopped = self._begun = False
         self._open = ExitStack()
         self._folder = None if record is None else OutputFolder.make(Path(record), True, "", inputs)
 
     # -- going on -----------------------------------------------------------------------------------
 
     def step(self, ticks: int = 1) -> Outcome | None:
-        """Live through so many ticks of 0.1 s, the first one that of time 0; return ``over``."""
+        """Live through so many ticks of 0.1 s, the first time also the moment 0; return ``over``."""
         if self._folder is not None:
             folder, self._folder = self._open.enter_context(self._folder), None
             self._followers.sinks += [
                 self._open.enter_context(self._recorder(lambda: folder / RECORD)),
                 folder,
             ]
-        for _ in range(ticks):
+        for _ in range(ticks if self._begun else ticks + 1):
+            self._begun = True
             if self._watched.step() is not None:
                 self.finish()
                 break
