@@ -1,4 +1,4 @@
-"""Two vehicles follow three targets for 40 s, step by step, and then beside the other ways of coordination."""
+"""Two vehicles follow three targets for 40 s, step by step; then the ways of coordination compared."""
 
 import numpy as np
 

@@ -108,7 +108,7 @@ def team_named(team: Path | None, robots: int | None, starts: str | None) -> lis
             raise InputError(f"--robots is {robots}, but {team} lists {len(specs)}; add platforms to it")
         specs = specs[:robots]
     else:
-        specs = team_of(robots or len(places) or ROBOTS)
+        specs = list(team_of(robots or len(places) or ROBOTS))
     if len(places) > len(specs):
         raise InputError(f"--starts has {len(places)} places for {len(specs)} robots; leave some out")
     return [replace(spec, start=places[i]) if i < len(places) else spec for i, spec in enumerate(specs)]

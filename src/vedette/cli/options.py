@@ -12,8 +12,7 @@ from typing import Any, TypeVar
 
 import click
 
-from vedette.errors import InputError
-from vedette.run.inputs import MOST_DELAY, MOST_LOSS, word
+from vedette.errors import InputError, check_word
 from vedette.sim.radio import Radio, parse_radio
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
@@ -35,7 +34,8 @@ class OneOf(click.ParamType[str]):
 
     def convert(self, value: str, param: click.Parameter | None, ctx: click.Context | None) -> str:
         """Return the word, or refuse it."""
-        return word(param.name if param is not None and param.name else "name", value, self.words)
+        check_word(param.name if param is not None and param.name else "name", value, self.words)
+        return value
 
 
 class Positive(click.ParamType[float]):
@@ -118,11 +118,11 @@ def fault_options(command: CommandT) -> CommandT:
             "--faults", metavar="FILE|SEED", help="What befalls robots and links: a schedule or its seed."
         ),
         click.option(
-            "--link-delay", type=Positive("s", most=MOST_DELAY), default=0.02, show_default=True,
+            "--link-delay", type=Positive("s", most=0.3), default=0.02, show_default=True,
             help="Of a message on a link [s].",
         ),
         click.option(
-            "--link-loss", type=Share(MOST_LOSS), default=0.0, show_default=True,
+            "--link-loss", type=Share(0.9), default=0.0, show_default=True,
             help="Share of messages lost.",
         ),
         click.option(

@@ -17,12 +17,12 @@ from vedette.record.log import MissionScene, Sink, Timed
 from vedette.record.mcap import Place
 from vedette.record.summary import MissionSummary
 from vedette.run.interrupt import ending_on_ctrl_c
-from vedette.run.mission import RECORD, Mission
-from vedette.run.result import Report
+from vedette.run.mission import RECORD, StepwiseMission
+from vedette.run.result import MissionReport
 
 SceneT = TypeVar("SceneT", bound=MissionScene)
 SnapshotT = TypeVar("SnapshotT", bound=Timed)
-ReportT = TypeVar("ReportT", bound=Report)
+ReportT = TypeVar("ReportT", bound=MissionReport)
 Say = Callable[[str], None]
 
 
@@ -65,7 +65,7 @@ class Kind(Generic[SceneT, SnapshotT, ReportT]):
 
 def simulate(
     kind: Kind[SceneT, SnapshotT, ReportT],
-    mission: Mission[SnapshotT, Any, Any, ReportT],
+    mission: StepwiseMission[SnapshotT, Any, Any, ReportT],
     scene: SceneT,
     output: Output,
     beside: Callable[[ReportT, Say], ReportT] = lambda report, say: report,

@@ -11,10 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.domains.mapping.impact import Impact
-from vedette.domains.mapping.planners import DEFAULT, PLANNERS
+from vedette.domains.mapping.planners import DEFAULT
 from vedette.domains.mapping.platform import Tour
 from vedette.maps import GridFrame
-from vedette.missions.explore.assemble import FUSIONS
 from vedette.record.explore.log import ExploreLog, ExploreScene, ExploreSnapshot
 from vedette.record.explore.mcap import ExploreMcapWriter
 from vedette.record.explore.observer import ExploreReport
@@ -28,19 +27,18 @@ from vedette.run.inputs import (
     files_of,
     setup_of,
     team_of,
-    word,
     world_of,
 )
-from vedette.run.mission import Followers, Mission, Progress
-from vedette.run.result import Result
+from vedette.run.mission import Followers, ProgressSink, StepwiseMission
+from vedette.run.result import MissionResult
 from vedette.sim.explore.run import ExploreRun, prepare, views
 from vedette.sim.explore.simulation import ExploreSetup
 
-_Mission: TypeAlias = Mission[ExploreSnapshot, Tour, Impact, ExploreReport]
+_Mission: TypeAlias = StepwiseMission[ExploreSnapshot, Tour, Impact, ExploreReport]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class ExploreResult(Result[ExploreReport], ExploreSummary):
+class ExploreResult(MissionResult[ExploreReport], ExploreSummary):
     """The figures of ``summary.json``, the map and the log."""
 
     @property
@@ -104,8 +102,8 @@ class Explore(_Mission):
             **vars(
                 setup_of(len(specs), scheme=scheme, seed=seed, max_time=max_time, clocks=True, **conditions)
             ),
-            planner=word("planner", planner, list(PLANNERS)),
-            fusion=word("fusion", fusion, list(FUSIONS)),
+            planner=planner,
+            fusion=fusion,
             return_home=return_home,
         )
         self.world = world_of(world, setup.seed)
@@ -128,7 +126,7 @@ class Explore(_Mission):
 
     def run(self, progress: Callable[[ExploreSnapshot], object] | None = None) -> ExploreResult:
         """Explore to the end; ``progress`` is called with a snapshot every second."""
-        self.play([] if progress is None else [Progress(progress)])
+        self.play([] if progress is None else [ProgressSink(progress)])
         return self.result()
 
     def result(self) -> ExploreResult:

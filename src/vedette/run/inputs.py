@@ -2,30 +2,27 @@
 
 from __future__ import annotations
 
-import math
-import numbers
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, TypeAlias, TypedDict, TypeVar
+from typing import Any, TypeAlias, TypedDict, TypeVar, cast
 
 import msgspec
 import numpy as np
 from numpy.typing import ArrayLike
 
-from vedette.errors import InputError, nearest_name
+from vedette.errors import InputError, brief
 from vedette.maps import GridFrame, map_files
 from vedette.maps.world import World
-from vedette.negotiation import SCHEMES
+from vedette.number import is_number, is_whole
 from vedette.scenario import as_scenario
 from vedette.sim.faults import Schedule, load_faults
 from vedette.sim.faults.kinds import Skew
 from vedette.sim.radio import Radio, parse_radio
-from vedette.sim.simulation import Setup
+from vedette.sim.setup import Setup
 from vedette.sim.worlds import office
-from vedette.team import PlatformSpec, load_team
+from vedette.team import PlatformSpec, check_team, load_team
 
 ROBOTS = 3
-MOST_DELAY, MOST_LOSS = 0.3, 0.9  # of a link [s], [1]
 
 AnyPath: TypeAlias = str | Path
 AnyWorld: TypeAlias = World | AnyPath | tuple[AnyPath | ArrayLike, float | None] | None
@@ -56,42 +53,23 @@ def setup_of(
     link_loss: float = Setup.link_loss,
     kills: Sequence[tuple[int, float]] = (),
 ) -> Setup:
-    """Return what all simulated missions share, checked; ``clocks``: they may go wrong.
+    """Return what all simulated missions share; ``clocks``: they may go wrong.
 
     Raises:
-        InputError: a value cannot be.
+        InputError: as `Setup`, or no radio or no faults can be made of what is given.
     """
-    if isinstance(seed, bool) or not isinstance(seed, numbers.Integral) or seed < 0:
-        raise InputError(f"seed must be a whole number, 0 or more; got {seed!r}")
-    if not 0.0 <= link_loss <= MOST_LOSS:
-        raise InputError(f"link_loss must be 0 to {MOST_LOSS:g}; got {link_loss!r}")
     text = None if faults is None else str(faults)
     return Setup(
-        scheme=word("scheme", scheme, SCHEMES),
-        seed=int(seed),
-        max_time=positive("max_time", max_time, "s"),
-        link_delay=positive("link_delay", link_delay, "s", MOST_DELAY),
+        scheme=scheme,
+        seed=seed,
+        max_time=max_time,
+        link_delay=link_delay,
         link_loss=link_loss,
-        kills=tuple(_kill(robot, time, robots) for robot, time in kills),
+        kills=tuple(_kill(kill, robots) for kill in kills),
         radio=radio if radio is None or isinstance(radio, Radio) else parse_radio(str(radio)),
         faults=schedule_of(text, robots, clocks),
         faults_from=text,
     )
-
-
-def word(what: str, value: str, words: Sequence[str]) -> str:
-    """Return a word of a list; InputError, with the nearest one, for another."""
-    if value not in words:
-        raise InputError(f"unknown {what} {value!r}: {nearest_name(str(value), words)}")
-    return value
-
-
-def positive(what: str, value: float, unit: str, most: float = math.inf) -> float:
-    """Return a finite number above zero; InputError for another, or for one above the most."""
-    if not (isinstance(value, numbers.Real) and 0.0 < value <= most and math.isfinite(value)):
-        limit = "" if math.isinf(most) else f" and at most {most:g}"
-        raise InputError(f"{what} must be above 0{limit} {unit}; got {value!r}")
-    return float(value)
 
 
 def schedule_of(text: str | None, robots: int, clocks: bool) -> Schedule | None:
@@ -111,12 +89,14 @@ def schedule_of(text: str | None, robots: int, clocks: bool) -> Schedule | None:
     raise InputError(f"{text}: fault skew: vehicles plan by a common clock; leave it out")
 
 
-def _kill(robot: int, time: float, robots: int) -> tuple[int, float]:
-    if not 1 <= robot <= robots:
-        raise InputError(f"kill {robot}@{time:g}: there is no robot {robot}; they are 1 to {robots}")
-    if not 0.0 <= time < math.inf:
-        raise InputError(f"kill {robot}@{time:g}: the time must be 0 s or more")
-    return robot - 1, float(time)
+def _kill(kill: tuple[int, float], robots: int) -> tuple[int, float]:
+    """Return a robot's index, by its number from 1, and the time."""
+    match kill:
+        case (int() as robot, time) if 1 <= robot <= robots:
+            return robot - 1, time
+        case (int() as robot, _):
+            raise InputError(f"kills: there is no robot {robot}; they are 1 to {robots}")
+    raise InputError(f"kills: must be pairs of a robot's number and a time [s]; got {brief(kill)}")
 
 
 def world_of(world: AnyWorld, seed: int) -> World:
@@ -136,42 +116,34 @@ def world_of(world: AnyWorld, seed: int) -> World:
             return World.from_map(world)
         case (str() | Path() as path, resolution):
             return World.from_map(path, resolution)
-        case (cells, float() | int() as resolution):
+        case (cells, resolution):
             return _drawn(cells, resolution)
-    raise InputError(
-        f"a world is a World, a map file or (solid cells, resolution); got {type(world).__name__}"
-    )
+    raise InputError(f"a world is a World, a map file or (solid cells, resolution); got {brief(world)}")
 
 
-def _drawn(cells: ArrayLike, resolution: float) -> World:
+def _drawn(cells: object, resolution: object) -> World:
     solid = np.asarray(cells)
     if solid.ndim != 2 or solid.dtype.kind not in "biuf":
         raise InputError(f"solid cells must be a table (R, C) of numbers; got {solid.dtype}{solid.shape}")
     solid = solid != 0
     if solid.all():
         raise InputError("a world must have free space; all cells given are solid")
-    return World(GridFrame(positive("resolution", resolution, "m"), *solid.shape), solid, "cells")
+    if not is_number(resolution) or resolution <= 0.0:
+        raise InputError(f"resolution must be above 0 m; got {brief(resolution)}")
+    return World(GridFrame(float(resolution), *solid.shape), solid, "cells")
 
 
-def team_of(team: AnyTeam) -> list[PlatformSpec]:
+def team_of(team: AnyTeam) -> Sequence[PlatformSpec]:
     """Return the robots of a team: so many alike, those of a file, or the ones given.
 
     Raises:
-        InputError: there are none, or two have one name.
+        InputError: the file cannot be used, or there are none.
     """
     if isinstance(team, str | Path):
         return load_team(team)
-    if isinstance(team, int | np.integer):
-        if team < 1:
-            raise InputError(f"a team has at least 1 robot; got {team}")
-        return [PlatformSpec(name=f"robot-{number}") for number in range(1, int(team) + 1)]
-    specs = list(team)
-    names = [spec.name for spec in specs]
-    if not specs:
-        raise InputError("a team has at least 1 robot; got none")
-    if twice := next((name for name in names if names.count(name) > 1), None):
-        raise InputError(f"the name {twice!r} is used twice; names must differ")
-    return specs
+    if is_whole(team):
+        return check_team([PlatformSpec(name=f"robot-{number}") for number in range(1, team + 1)])
+    return check_team(cast(Sequence[PlatformSpec], team))
 
 
 def described(scenario: ScenarioT | Mapping[str, Any], kind: type[ScenarioT]) -> ScenarioT:

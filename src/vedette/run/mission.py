@@ -58,7 +58,7 @@ class Followers(Generic[SnapshotT]):
 
 
 @dataclass(frozen=True, eq=False)
-class Progress(Generic[SnapshotT]):
+class ProgressSink(Generic[SnapshotT]):
     """A function as a sink."""
 
     tell: Callable[[SnapshotT], object]
@@ -68,7 +68,7 @@ class Progress(Generic[SnapshotT]):
         self.tell(snapshot)
 
 
-class Mission(ABC, Generic[SnapshotT, StrategyT, ImpactT, ReportT]):
+class StepwiseMission(ABC, Generic[SnapshotT, StrategyT, ImpactT, ReportT]):
     """One mission of one domain; nothing happens before its first step.
 
     As a context manager it closes its record, whatever ends the block.

@@ -11,7 +11,7 @@ from vedette.record.folder import OutputFolder
 from vedette.record.summary import Figures, MissionSummary, Timing
 
 
-class Report(Protocol):
+class MissionReport(Protocol):
     """What a mission of any domain leaves."""
 
     @property
@@ -23,11 +23,11 @@ class Report(Protocol):
         """Figures in wall-clock time."""
 
 
-ReportT = TypeVar("ReportT", bound=Report)
+ReportT = TypeVar("ReportT", bound=MissionReport)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Result(Figures, Generic[ReportT]):
+class MissionResult(Figures, Generic[ReportT]):
     """Added to a summary; ``to_json`` and ``write`` make ``summary.json`` of it."""
 
     report: ReportT = field(repr=False)

@@ -15,26 +15,26 @@ from vedette.domains.search.flights import Flight
 from vedette.domains.search.impact import Impact
 from vedette.maps import GridFrame
 from vedette.missions.search.case import SearchCase, default_case, made, read_case
-from vedette.missions.search.options import COORDINATIONS, FUSIONS
 from vedette.missions.search.scenario import Heat, SearchScenario
+from vedette.number import is_number
 from vedette.record.search.log import SearchLog, SearchScene, SearchSnapshot
 from vedette.record.search.mcap import SearchMcapWriter
 from vedette.record.search.observer import SearchReport
 from vedette.record.search.summary import SearchSummary
-from vedette.run.inputs import AnyPath, Conditions, described, files_of, positive, setup_of, word
+from vedette.run.inputs import AnyPath, Conditions, described, files_of, setup_of
 from vedette.run.interrupt import ending_on_ctrl_c
-from vedette.run.mission import Followers, Mission, Progress
-from vedette.run.result import Result
+from vedette.run.mission import Followers, ProgressSink, StepwiseMission
+from vedette.run.result import MissionResult
 from vedette.sim.search.run import SearchRun
 from vedette.sim.search.simulation import SearchSetup, SearchSimulation
 from vedette.sim.search.trials import Running, assessed
 
 AnyScenario: TypeAlias = SearchScenario | Mapping[str, Any] | AnyPath | None
-_Mission: TypeAlias = Mission[SearchSnapshot, Flight, Impact, SearchReport]
+_Mission: TypeAlias = StepwiseMission[SearchSnapshot, Flight, Impact, SearchReport]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class SearchResult(Result[SearchReport], SearchSummary):
+class SearchResult(MissionResult[SearchReport], SearchSummary):
     """The figures of ``summary.json``, the last pdf and the log."""
 
     @property
@@ -90,11 +90,11 @@ class Search(_Mission):
         """
         self.case = case_of(scenario)
         longest = self.case.scenario.duration
-        limit = longest if max_time is None else min(positive("max_time", max_time, "s"), longest)
+        limit = longest if max_time is None or (is_number(max_time) and max_time > longest) else max_time
         setup = SearchSetup(
             **vars(setup_of(len(self.case.names), scheme=scheme, seed=seed, max_time=limit, **conditions)),
-            coordination=word("coordination", coordination, COORDINATIONS),
-            fusion=word("fusion", fusion, FUSIONS),
+            coordination=coordination,
+            fusion=fusion,
         )
         self.simulation = SearchSimulation(self.case, setup)
         self.scene = SearchScene.of(self.case, limit)
@@ -125,7 +125,7 @@ class Search(_Mission):
 
         ``compare`` and ``trials``: what is worked out afterwards, see `assessed`.
         """
-        report = self.play([] if progress is None else [Progress(progress)])
+        report = self.play([] if progress is None else [ProgressSink(progress)])
         return SearchResult.of(self.assessed(report, compare, trials), self.inputs)
 
     def assessed(

@@ -15,28 +15,25 @@ from vedette.domains.tracking.belief import Tracks
 from vedette.domains.tracking.courses import Course
 from vedette.domains.tracking.filter import predict
 from vedette.domains.tracking.impact import Impact
-from vedette.domains.tracking.objective import OBJECTIVES
-from vedette.fusion.gaussian import WAYS
-from vedette.missions.track.options import COORDINATIONS
 from vedette.missions.track.scenario import TrackScenario, checked, default_scenario, read_scenario
 from vedette.record.track.log import TrackLog, TrackScene, TrackSnapshot
 from vedette.record.track.mcap import TrackMcapWriter
 from vedette.record.track.observer import TrackReport
 from vedette.record.track.summary import TrackSummary
-from vedette.run.inputs import AnyPath, Conditions, described, files_of, setup_of, word
+from vedette.run.inputs import AnyPath, Conditions, described, files_of, setup_of
 from vedette.run.interrupt import ending_on_ctrl_c
-from vedette.run.mission import Followers, Mission, Progress
-from vedette.run.result import Result
+from vedette.run.mission import Followers, ProgressSink, StepwiseMission
+from vedette.run.result import MissionResult
 from vedette.sim.track.run import TrackRun, compared
 from vedette.sim.track.run import track as run_beside
 from vedette.sim.track.simulation import TrackSetup, TrackSimulation
 
 AnyScenario: TypeAlias = TrackScenario | Mapping[str, Any] | AnyPath | None
-_Mission: TypeAlias = Mission[TrackSnapshot, Course, Impact, TrackReport]
+_Mission: TypeAlias = StepwiseMission[TrackSnapshot, Course, Impact, TrackReport]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class TrackResult(Result[TrackReport], TrackSummary):
+class TrackResult(MissionResult[TrackReport], TrackSummary):
     """The figures of ``summary.json``, the last tracks and the log."""
 
     @property
@@ -104,9 +101,9 @@ class Track(_Mission):
         size = len(self.scenario.vehicles)
         setup = self._setup = TrackSetup(
             **vars(setup_of(size, scheme=scheme, seed=seed, max_time=limit, **conditions)),
-            coordination=word("coordination", coordination, COORDINATIONS),
-            fusion=word("fusion", fusion, WAYS),
-            objective=None if objective is None else word("objective", objective, list(OBJECTIVES)),
+            coordination=coordination,
+            fusion=fusion,
+            objective=objective,
             continuous=continuous,
         )
         self.simulation = TrackSimulation(self.scenario, setup)
@@ -144,7 +141,7 @@ class Track(_Mission):
 
         ``compare``: do the same with every other way of coordination afterwards.
         """
-        report = self.play([] if progress is None else [Progress(progress)])
+        report = self.play([] if progress is None else [ProgressSink(progress)])
         return TrackResult.of(self.compared(report) if compare else report, self.inputs)
 
     def compared(self, report: TrackReport, say: Callable[[str], object] = lambda text: None) -> TrackReport:
