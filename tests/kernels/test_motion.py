@@ -182,3 +182,21 @@ def test_a_step_of_six_robots_is_quick() -> None:
     for _ in range(100):
         bodies.step(0.1)
     assert (time.thread_time() - start) / 100 < 0.008  # ten times the target: a guard against blunders only
+
+
+def test_a_robot_turns_on_the_spot_at_its_paths_end_and_has_arrived_when_it_faces_as_told() -> None:
+    for facing in (2.5, -2.5, 9.0):
+        bodies = Bodies(OPEN, RESOLUTION, [PlatformSpec()], np.array([(4.0, 5.0, 0.0)]))
+        bodies.command(0, np.array([(4.0, 5.0), (5.0, 5.0)]), facing=facing)
+        taken, there = 0.0, None
+        while not bodies.arrived(0) and taken < 30.0:
+            bodies.step(0.1)
+            taken += 0.1
+            if there is None and np.hypot(*(bodies.poses[0, :2] - (5.0, 5.0))) <= 0.15:
+                there = bodies.poses[0, :2].copy(), taken
+        assert there is not None
+        np.testing.assert_array_equal(bodies.poses[0, :2], there[0])  # it turned on the spot ...
+        turn = abs(np.angle(np.exp(1j * facing)))
+        assert taken - there[1] <= turn / 1.5 + 0.2  # ... the shorter way, as fast as it can
+        assert np.exp(1j * bodies.poses[0, 2]) == pytest.approx(np.exp(1j * facing))
+        assert bodies.stuck_for(0) == 0.0

@@ -124,9 +124,10 @@ class ToyMission:
         """Never."""
         return False
 
-    def reached(self, pose: Pose, mates: Sequence[Mate], now: float) -> None:
+    def reached(self, pose: Pose, mates: Sequence[Mate], now: float) -> bool:
         """On to nothing."""
         self.strategy = None
+        return True
 
     def release(self, now: float) -> None:
         """Drop it."""

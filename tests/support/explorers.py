@@ -33,3 +33,14 @@ def scan_from(pose: Pose, rng: np.random.Generator, mates: tuple[Mate, ...] = ()
     x, y = pose.x - FRAME.origin_x, pose.y - FRAME.origin_y
     ranges = cast_rays(building(), RESOLUTION, x, y, BEAMS, SPEC.range, discs)
     return Scan(BEAMS, ranges + rng.normal(0.0, 0.01, ranges.shape))
+
+
+def exchange(one: Exploring, other: Exploring) -> None:
+    """Let two robots, 0 and 1, tell each other all they have seen."""
+    one.fusion.set_neighbours([1])
+    other.fusion.set_neighbours([0])
+    for step in range(6):
+        for sender, receiver, name in ((one, other, 0), (other, one, 1)):
+            payload = sender.fusion.outgoing(1 - name, float(step))
+            if payload is not None:
+                receiver.fusion.receive(name, payload, float(step))

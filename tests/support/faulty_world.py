@@ -288,9 +288,10 @@ class SiteMission:
         """Tell whether somebody has been there."""
         return self.strategy is not None and bool(self.sites.seen(self.fusion.classes)[self.strategy])
 
-    def reached(self, pose: Pose, mates: Sequence[Mate], now: float) -> None:
+    def reached(self, pose: Pose, mates: Sequence[Mate], now: float) -> bool:
         """On to nothing."""
         self.strategy = None
+        return True
 
     def release(self, now: float) -> None:
         """Drop it."""

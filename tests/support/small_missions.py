@@ -48,6 +48,15 @@ def drawn(picture: str, resolution: float = 0.1, scale: int = 5) -> World:
     return World(GridFrame(resolution, *solid.shape), solid, "drawn")
 
 
+def room_with_a_wall(resolution: float) -> World:
+    """Six metres square inside, with a wall of four metres from one side on through its middle."""
+    inside, thick = round(6.0 / resolution), max(1, round(0.1 / resolution))
+    solid = np.pad(np.zeros((inside, inside), bool), thick, constant_values=True)
+    middle = len(solid) // 2
+    solid[: thick + round(4.0 / resolution), middle : middle + thick] = True
+    return World(GridFrame(resolution, *solid.shape), solid, "room")
+
+
 def robots(n: int, **fields: Any) -> list[PlatformSpec]:
     """Equal robots."""
     return [PlatformSpec(name=f"robot-{i + 1}", **fields) for i in range(n)]

@@ -37,6 +37,7 @@ class Route:
 
     path: NDArray[np.float64]  # (L, 2) [m], team frame
     passable: NDArray[np.bool_]  # (R, C) where the robot's centre may be, over the whole map
+    facing: float | None = None  # heading to turn to at its end [rad], team frame
 
 
 @dataclass(frozen=True, eq=False)

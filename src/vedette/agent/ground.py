@@ -125,8 +125,8 @@ class GroundBehaviour:
             return [self.driver.go(None)]
         if self.state is not State.DRIVING:
             return []
-        self.mission.reached(pose, agent.mates.all(), now)
-        agent.rounds.want()
+        if self.mission.reached(pose, agent.mates.all(), now):
+            agent.rounds.want()
         return self._drive_on(agent, pose, now)
 
     def _stuck(self, agent: Agent, pose: Pose, now: float) -> list[Effect]:

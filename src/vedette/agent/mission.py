@@ -125,8 +125,8 @@ class GroundMission(Mission[BeliefT, StrategyT, ImpactT], Protocol[BeliefT, Stra
     def served(self) -> bool:
         """Tell whether the present goal has lost its point."""
 
-    def reached(self, pose: Pose, mates: Sequence[Mate], now: float) -> None:
-        """Note that the robot is at its goal, and go on to the next one of the strategy."""
+    def reached(self, pose: Pose, mates: Sequence[Mate], now: float) -> bool:
+        """Note that the robot is at its goal, and go on to the next; False: it has to look on from here."""
 
     def release(self, now: float) -> None:
         """Give up the present strategy: the robot cannot carry it out."""

@@ -15,7 +15,10 @@ from vedette.team import PlatformSpec
 SENSING_RANGE = 3.0  # within which a robot feels other bodies' places and velocities [m]
 CLEARANCE_RANGE = 0.5  # beyond a disc's rim, farther walls and discs are not measured [m]
 ARRIVAL = 0.15  # from the path's end: there [m]
+ARRIVAL_OF_RANGE = 0.1  # nearer for a lidar that sees less far, so much of its range ...
+ARRIVAL_TIME = 0.12  # ... but no nearer than the robot drives in this time: steering is no finer [s]
 ARRIVAL_IF_TAKEN = 0.6  # the same where another robot stands on the path's end [m]
+FACING = 1e-6  # from the heading it was told to turn to: it faces there [rad]
 PROGRESS = 0.1  # less path than this done is no progress [m]
 SAME_GOAL = 0.3  # a new path that ends this near to the old one has the same goal [m]
 COURTESY_TO_LATER = 0.1  # the gap one would rather keep to a robot of higher index [m]
@@ -29,6 +32,7 @@ class _Task:
     xy: NDArray[np.float64]  # (L, 2) [m], L >= 2
     arc: NDArray[np.float64]  # (L,) arc length [m]
     traversable: NDArray[np.bool_]  # (R, C) shared with the robot's own map
+    facing: float | None = None  # heading to turn to at the end [rad]
     done: float = 0.0  # arc length reached [m]
     offset: float = 0.0  # sideways offset being followed [m]
     turning: float = 0.0  # turn rate of a robot that turns on the spot [rad/s]
@@ -77,19 +81,25 @@ class Bodies:
         self._courtesy = np.where(earlier, COURTESY_TO_EARLIER, COURTESY_TO_LATER)
 
     def command(
-        self, i: int, path: NDArray[np.float64] | None, traversable: NDArray[np.bool_] | None = None
+        self,
+        i: int,
+        path: NDArray[np.float64] | None,
+        traversable: NDArray[np.bool_] | None = None,
+        facing: float | None = None,
     ) -> None:
         """Let robot ``i`` follow the polyline ``path`` ``(L, 2)`` [m]; None: stand still.
 
         ``traversable`` ``(R, C)``: cells where robot ``i``'s own map allows its centre; held by reference,
-        so that later changes count; None: every cell that is not solid.
+        so that later changes count; None: every cell that is not solid. ``facing``: heading [rad] to turn to
+        on the spot at the end; None: any.
         """
         if path is None or not self.alive[i]:
             self._tasks[i] = None
             return
         xy = _without_repeats(np.asarray(path, dtype=np.float64).reshape(-1, 2), self.poses[i, :2])
         arc = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(xy, axis=0).T))))
-        task = _Task(xy, arc, ~self.solid if traversable is None else traversable, best_left=float(arc[-1]))
+        allowed = ~self.solid if traversable is None else traversable
+        task = _Task(xy, arc, allowed, facing, best_left=float(arc[-1]))
         old = self._tasks[i]
         if old is not None and np.hypot(*(old.xy[-1] - xy[-1])) < SAME_GOAL:
             task.idle, task.offset, task.turning = old.idle, old.offset, old.turning
@@ -102,18 +112,26 @@ class Bodies:
                 self._move(i, dt)
 
     def arrived(self, i: int) -> bool:
-        """Tell whether robot ``i`` is at its path's end, or near it while another robot stands there.
+        """Tell whether robot ``i`` faces as told at its path's end, or near it while another stands there.
 
         A robot that was told to stand still has arrived.
         """
         task = self._tasks[i]
-        if task is None:
-            return True
+        return task is None or (self._at_end(i, task) and abs(self._askew(i, task)) < FACING)
+
+    def _askew(self, i: int, task: _Task) -> float:
+        """How far robot ``i`` has still to turn to face as told [rad]."""
+        turn = 0.0 if task.facing is None else task.facing - float(self.poses[i, 2])
+        return math.remainder(turn, math.tau)
+
+    def _at_end(self, i: int, task: _Task) -> bool:
         end = task.xy[-1]
         x, y, _ = self.poses[i].tolist()
         away = math.hypot(x - end[0], y - end[1])
-        if away > ARRIVAL_IF_TAKEN or away <= ARRIVAL:
-            return away <= ARRIVAL
+        spec = self.specs[i]
+        near = min(ARRIVAL, max(ARRIVAL_OF_RANGE * spec.range, ARRIVAL_TIME * spec.speed))
+        if away > ARRIVAL_IF_TAKEN or away <= near:
+            return away <= near
         others = np.hypot(*(self.poses[:, :2] - end).T) < self.radii + self.specs[i].radius
         others[i] = False
         return bool(others.any())
@@ -133,6 +151,9 @@ class Bodies:
         task, spec = self._tasks[i], self.specs[i]
         if task is None:
             self.velocities[i] = 0.0
+            return
+        if task.facing is not None and self._at_end(i, task):
+            self._turn(i, task, dt)
             return
         x, y, heading = self.poses[i].tolist()
         limits = motion.Limits(spec.radius, spec.speed, spec.turn_rate, dt)
@@ -160,6 +181,13 @@ class Bodies:
         self.velocities[i] = vx, vy
         self.poses[i] = x + vx * dt, y + vy * dt, heading + chosen.turn * dt
         self.travelled[i] += math.hypot(vx, vy) * dt
+
+    def _turn(self, i: int, task: _Task, dt: float) -> None:
+        """Turn on the spot to face as told; nothing can be in a disc's way."""
+        most = self.specs[i].turn_rate * dt
+        self.velocities[i] = 0.0
+        self.poses[i, 2] += min(max(self._askew(i, task), -most), most)
+        task.idle = 0.0
 
     def _sensed(self, i: int) -> NDArray[np.float64]:
         """Rows ``x, y, vx, vy, radius, courtesy`` of the other bodies within 3 m of robot ``i``."""

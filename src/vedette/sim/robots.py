@@ -108,13 +108,15 @@ class Robots:
         if route is None:
             self.bodies.command(i, None)
             return
-        path, passable, localiser = route.path - self.corner, route.passable, self._localisers[i]
+        path, passable, facing = route.path - self.corner, route.passable, route.facing
+        localiser = self._localisers[i]
         if localiser is not None:
-            east, north = localiser.error[:2].tolist()
+            east, north, turn = localiser.error.tolist()
             resolution = self._world.frame.resolution
             path = path - (east, north)
             passable = displaced(passable, round(north / resolution), round(east / resolution))
-        self.bodies.command(i, path, passable)
+            facing = None if facing is None else facing - turn
+        self.bodies.command(i, path, passable, facing)
         self._last_change = now
 
     def advance(self, now: float, dt: float) -> None:

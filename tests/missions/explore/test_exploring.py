@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from tests.support.explorers import HERE, explorer, mate_at, scan_from
+from tests.support.explorers import HERE, exchange, explorer, mate_at, scan_from
 from tests.support.mapping_scenes import FRAME, RESOLUTION, SPEC, building
 from vedette.agent.events import Pose
 from vedette.agent.mates import Mate
@@ -75,16 +75,6 @@ def test_sightings_are_counted_only_of_what_was_unknown() -> None:
     assert not tried[0, int(SPEC.range / 0.25) :].any()
     look(mission, HERE, times=1, seed=1)
     assert (mission.counts[1] - first[1]).sum() < 0.2 * first[1].sum()
-
-
-def exchange(one: Exploring, other: Exploring) -> None:
-    one.fusion.set_neighbours([1])
-    other.fusion.set_neighbours([0])
-    for step in range(6):
-        for sender, receiver, name in ((one, other, 0), (other, one, 1)):
-            payload = sender.fusion.outgoing(1 - name, float(step))
-            if payload is not None:
-                receiver.fusion.receive(name, payload, float(step))
 
 
 def test_two_robots_that_exchange_hold_the_same_map_and_freeze_the_same_belief() -> None:

@@ -10,7 +10,16 @@ from numpy.typing import NDArray
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.impact import NOTHING, Impact
 from vedette.domains.mapping.sightings import SightingModel, beam_model, measured_model
-from vedette.domains.mapping.stops import CLEARANCES, Disc, Ground, Stops, find_stops, survey, unknown_near
+from vedette.domains.mapping.stops import (
+    CLEARANCES,
+    Disc,
+    Ground,
+    Stops,
+    enough_of_sight,
+    find_stops,
+    survey,
+    unknown_near,
+)
 from vedette.kernels import coverage
 from vedette.kernels.coverage import LAYERS
 from vedette.kernels.misses import CERTAIN
@@ -122,14 +131,31 @@ class MappingPlatform:
                     belief, self.ground, self.spec, model, least, tours=self.ahead > 1, close=close
                 )
                 self.stops = self._without_left_alone(stops)
-                if np.isfinite(self.stops.first_leg).any():
+                if self.leads_anywhere:
                     return
+
+    @property
+    def leads_anywhere(self) -> bool:
+        """Tell whether the robot can reach any stop of the round."""
+        return self.stops is not None and bool(np.isfinite(self.stops.first_leg).any())
+
+    def unvisited(self, belief: MapBelief) -> NDArray[np.float64]:
+        """Return ``(K, 2)``, a place on each frontier that no visit has left as it was [m], team frame."""
+        starts = belief.frontier_starts
+        places = belief.frame.centres(belief.frontier_cells[(starts[:-1] + starts[1:]) // 2])
+        left = np.ones(len(places), np.bool_)
+        for spot in (*(each for each in self.given_up if each.visited), *self.told):
+            left &= np.hypot(places[:, 0] - spot.x, places[:, 1] - spot.y) > SAME_PLACE
+        return places[left]
 
     def _update_given_up(self, belief: MapBelief) -> None:
         """Give up frontiers that a visit did not change; take up again those whose surroundings changed."""
 
+        much = 0.5 * enough_of_sight(self.spec) / belief.frame.resolution**2
+
         def unchanged(x: float, y: float, before: int) -> bool:
-            return before - unknown_near(belief.classes, belief.frame, x, y) <= max(2, before // 8)
+            seen = before - unknown_near(belief.classes, belief.frame, x, y)
+            return seen <= max(2, min(before // 8, much))
 
         self.given_up = [spot for spot in self.given_up if unchanged(spot.x, spot.y, spot.unknown)]
         self.told = [spot for spot in self.told if unchanged(spot.x, spot.y, spot.unknown)]

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.domains.mapping.beams import apart, between
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.blur import blurred
 from vedette.domains.mapping.impact import MIN_SHARE, quantise
@@ -18,6 +19,8 @@ from vedette.team import PlatformSpec
 
 LEAST_SHARE = 0.0008  # of the area known to be free that a stop must promise ...
 ENOUGH = 0.35  # ... but no more than this [m^2]
+NEARBY = 0.6  # along either axis from a frontier's middle, a cell is near it [m]
+LEAST_OF_SIGHT = 0.05  # of the area that one scan can see at most: enough for any stop
 GAP = 2.0  # a gap that the body does not fit through must promise so many times as much
 MOST_STOPS = 40  # nearest first; the rest waits for a later round
 VIEW_REACH = 0.8  # how far from a frontier to look for a place to see it from [sensor ranges]
@@ -72,7 +75,7 @@ def block(passable: NDArray[np.bool_], frame: GridFrame, disc: Disc, radius: flo
 
 def unknown_near(classes: NDArray[np.uint8], frame: GridFrame, x: float, y: float) -> int:
     """Count the unknown cells in a square of about 1.2 m around a point."""
-    reach = max(1, round(0.6 / frame.resolution))
+    reach = max(1, round(NEARBY / frame.resolution))
     row, col = frame.cell(x, y)
     window = classes[max(0, row - reach) : row + reach + 1, max(0, col - reach) : col + reach + 1]
     return int(np.count_nonzero(window == UNKNOWN))
@@ -98,8 +101,7 @@ def find_stops(
     Legs between stops are worked out for ``tours`` only; else they are infinite.
     """
     frame = belief.frame
-    view = min(CLOSE_VIEW, VIEW_REACH * spec.range) if close else VIEW_REACH * spec.range
-    reach = max(2, round(view / frame.resolution))
+    reach = max(2, round(_from_where(spec, frame.resolution, close) / frame.resolution))
     targets, views = coverage.viewpoints(
         ground.field, belief.classes, belief.frontier_cells, belief.frontier_starts, reach
     )
@@ -113,7 +115,8 @@ def find_stops(
         np.diff(starts) > 0
     )
     lengths = np.diff(belief.frontier_starts)[keep] * frame.resolution
-    enough = area * frame.resolution**2 >= _least(belief, lengths <= 2.0 * spec.radius + 1e-9, least_area)
+    least = _least(belief, lengths <= 2.0 * spec.radius + 1e-9, least_area)
+    enough = area * frame.resolution**2 >= np.minimum(least, enough_of_sight(spec))
     starts, cells, shares = _select(starts, cells, shares, enough)
     targets, views = targets[enough], views[enough]
     target_points, view_points = frame.centres(targets), frame.centres(views)
@@ -125,6 +128,18 @@ def find_stops(
         ground.field.ravel()[views] / np.float32(spec.speed),
         _legs(belief, ground, views) / np.float32(spec.speed) if tours else _no_legs(len(views)),
     )
+
+
+def _from_where(spec: PlatformSpec, resolution: float, close: bool) -> float:
+    """Return from how far a frontier is looked at [m]; no nearer than the robot gets to it."""
+    far = VIEW_REACH * spec.range
+    nearest = spec.radius + CLEARANCES[0] + 2.0 * resolution
+    return min(max(min(CLOSE_VIEW, far) if close else far, nearest), spec.range)
+
+
+def enough_of_sight(spec: PlatformSpec) -> float:
+    """Return an area that is always worth a visit to a robot that sees so little [m^2]."""
+    return float(LEAST_OF_SIGHT * 0.5 * np.radians(spec.view) * spec.range**2)
 
 
 def _footprints(
@@ -151,9 +166,10 @@ def _footprints(
 
 
 def _rays(spec: PlatformSpec, resolution: float) -> int:
-    """As many rays in a full turn as the lidar has beams; more than one a cell at full range tell nothing."""
-    beams = spec.beams * 360.0 / spec.view
-    return int(min(np.ceil(2 * np.pi * spec.range / resolution), np.ceil(beams)))
+    """As many rays in a full turn as a look takes; more than one a cell at full range tell nothing."""
+    looks = apart(spec, VIEW_REACH * spec.range, resolution)
+    rays = spec.beams * 360.0 / spec.view if looks == between(spec) else 2 * np.pi / looks
+    return int(min(np.ceil(2 * np.pi * spec.range / resolution), np.ceil(rays)))
 
 
 def _select(

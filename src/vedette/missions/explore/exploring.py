@@ -24,10 +24,21 @@ from vedette.domains.mapping.platform import (
     Tour,
 )
 from vedette.domains.mapping.sightings import BIN, BINS, empty_counts
-from vedette.domains.mapping.stops import CLEARANCES, MOST_STOPS, Disc, block, unknown_near
+from vedette.domains.mapping.stops import (
+    CLEARANCES,
+    MOST_STOPS,
+    NEARBY,
+    VIEW_REACH,
+    Disc,
+    block,
+    unknown_near,
+)
 from vedette.fusion import Fusion
 from vedette.kernels import distance, frontier, lidar
 from vedette.maps import GridFrame
+from vedette.maps.disc import cells_under
+from vedette.missions.explore.looking import Looking
+from vedette.missions.explore.resort import LastResort
 from vedette.team import Most, PlatformSpec
 
 GAIN_HIT, GAIN_MISS, CLAMP = 4, 2, 20  # log-odds of one observation and of all [0.2 nats]
@@ -38,6 +49,7 @@ COUNTS_PERIOD = 10.0  # the model's counts are shared at most so often [s]
 BLUR = 1.0  # a return lies within so many deviations of where it seems to [1]
 MATE_MARGIN = 0.15  # a return this near a mate's rim is the mate; more by two deviations of the pose [m]
 THERE = 0.35  # a robot this near a stop's viewpoint is at it; more by two deviations of its pose [m]
+WELL_SEEN = 0.5  # nothing is concluded from a look at what is nearer the end of the lidar's range ... [m]
 IN_THE_WAY = 1.0  # a mate this near a frontier may hide it [m]
 AVOID_TIME = 20.0  # a stop that could not be carried out is left alone for so long, longer each time [s]
 TRIES = 4  # a stop that could not be carried out so often is given up
@@ -62,6 +74,8 @@ class Exploring:
     _changed: list[NDArray[np.int64]] = field(default_factory=list)  # cells whose own class changed
     _counts_due: float = 0.0
     _learned: tuple[float, float, NDArray[np.int8]] | None = None  # where it last learned; its evidence then
+    _looking: Looking = field(init=False)
+    _resort: LastResort = field(init=False)
     _released: list[tuple[float, float]] = field(default_factory=list)  # stops that could not be carried out
     _passable: dict[float, tuple[int, NDArray[np.bool_]]] = field(default_factory=dict)  # by clearance
 
@@ -70,6 +84,8 @@ class Exploring:
         self.platform = self.planner.platform(self.spec)
         self.log_odds = np.zeros(self.frame.shape, np.int8)
         self.counts = empty_counts()
+        self._looking = Looking(self.spec, self.frame.resolution)
+        self._resort = LastResort(self._looking)
 
     # -- evidence -----------------------------------------------------------------------------------
 
@@ -90,6 +106,16 @@ class Exploring:
             changed = lidar.integrate_scan(*beams, GAIN_HIT, GAIN_MISS, CLAMP, nudge)
         if len(changed):
             self._changed.append(changed)
+        self._stand(pose)
+        self._looking.add(pose, scan.angles)
+
+    def _stand(self, pose: Pose) -> None:
+        """Where the robot stands is free, as far as it has not seen what is there."""
+        under = cells_under(self.frame, pose.x, pose.y, self.spec.radius - 2.0 * pose.deviation)
+        unseen = under[self.log_odds.flat[under] == 0]
+        if len(unseen):
+            self.log_odds.flat[unseen] = -GAIN_MISS
+            self._changed.append(unseen)
 
     def _learn(
         self,
@@ -175,7 +201,7 @@ class Exploring:
         return freeze(
             self.fusion.classes,
             self.frame,
-            reach=self.spec.range,
+            reach=max(self.spec.range, NEARBY + self.frame.resolution),
             extent=longest_frontier(self.spec.range),
             hidden=self.planner.hidden,
             return_price=self.planner.return_price,
@@ -187,13 +213,18 @@ class Exploring:
     def prepare(
         self, belief: MapBelief, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float
     ) -> None:
-        """Find the stops of a round and restate the present tour over them."""
+        """Find the stops of a round and restate the present tour over them; else what is left to try."""
         team = [(mate.robot, mate.x, mate.y) for mate in mates if not mate.silent(now)]
         self.platform.place(
             pose.x, pose.y, self._discs(pose, mates, blocked, now), [(-1, pose.x, pose.y), *team], now
         )
         self.platform.prepare(belief)
         self.strategy = self.platform.carry_over(self.strategy)
+        if self.platform.leads_anywhere:
+            self._resort.goal = None
+        elif self.platform.ground is not None:
+            unvisited = self.platform.unvisited(belief)
+            self._resort.consider(pose, belief.frame, self.platform.ground, len(unvisited) > 0)
 
     def _discs(self, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float) -> list[Disc]:
         """Mates that stand in the way: the silent ones, and for a robot that is blocked all those near it."""
@@ -215,9 +246,9 @@ class Exploring:
     # -- driving ------------------------------------------------------------------------------------
 
     def goal(self) -> tuple[float, float] | None:
-        """Return the next viewpoint of the tour."""
+        """Return the next viewpoint of the tour; without one, where there is something left to try."""
         if not len(self.strategy):
-            return None
+            return self._resort.goal
         x, y = self.strategy.views[0].tolist()
         return x, y
 
@@ -231,29 +262,46 @@ class Exploring:
     def _unknown_at(self, target: NDArray[np.float64]) -> int:
         return unknown_near(self.fusion.classes, self.frame, *target)
 
-    def reached(self, pose: Pose, mates: Sequence[Mate], now: float) -> None:
+    def reached(self, pose: Pose, mates: Sequence[Mate], now: float) -> bool:
         """Go on to the tour's next stop; the next round sees whether this one changed the map.
 
-        A stop that a mate kept the robot from, or stands in front of, has not been visited.
+        False: the robot has not yet looked where it was planned to look. A stop that a mate kept the robot
+        from, or stands in front of, or whose frontier is out of the lidar's range, has not been visited.
         """
         if not len(self.strategy):
-            return
+            return self._resort.goal is None or self._resort.reached(pose)
         x, y = self.strategy.targets[0].tolist()
         away = np.hypot(pose.x - self.strategy.views[0, 0], pose.y - self.strategy.views[0, 1])
         in_the_way = any(
             np.hypot(mate.x - x, mate.y - y) < IN_THE_WAY for mate in mates if not mate.silent(now)
         )
-        if away > THERE + 2.0 * pose.deviation or in_the_way:
+        beyond = np.hypot(pose.x - x, pose.y - y) > max(
+            self.spec.range - WELL_SEEN, VIEW_REACH * self.spec.range
+        )
+        if away > THERE + 2.0 * pose.deviation or in_the_way or beyond:
             self._put_off(now)
+        elif not self.served() and self._facing(pose) is not None:
+            return False
         else:
             self.platform.visited.append((x, y, int(self.strategy.unknown[0])))
         self.strategy = self.strategy.after_first()
+        return True
+
+    def _facing(self, pose: Pose) -> float | None:
+        """Return the heading to turn to next where the robot goes; None: it has looked as planned."""
+        if not len(self.strategy):
+            return self._resort.facing(pose)
+        ahead = self.strategy.targets[0] - self.strategy.views[0]
+        distance = float(np.hypot(*ahead))
+        if distance < self.frame.resolution:
+            return self._resort.facing(pose)
+        return self._looking.toward(pose, float(np.arctan2(ahead[1], ahead[0])), distance)
 
     def release(self, now: float) -> None:
         """Drop the tour; leave its first stop alone for a while, after some tries until the map changes."""
         if len(self.strategy):
             self._put_off(now)
-        self.strategy = STAY
+        self.strategy, self._resort.goal = STAY, None
 
     def _put_off(self, now: float) -> None:
         """Leave the first stop alone, longer after each try; after the last one until the map changes."""
@@ -268,8 +316,8 @@ class Exploring:
             self._released = [spot for spot, same in zip(self._released, near, strict=True) if not same]
 
     def nothing_left(self, value: float, now: float) -> bool:
-        """Tell whether nothing reachable is worth seeing, now or in a while."""
-        return value <= 0.0 and not self._postponed(now)
+        """Tell whether nothing reachable is worth seeing, now or in a while, and nothing is left to try."""
+        return value <= 0.0 and self._resort.goal is None and not self._postponed(now)
 
     def _postponed(self, now: float) -> bool:
         """Tell whether a stop of the last round is left alone for a while only."""
@@ -301,7 +349,8 @@ class Exploring:
             if len(cells):
                 path = self.frame.centres(distance.shortcut(passable, cells))
                 path[0] = pose.x, pose.y
-                return Route(path, passable)
+                there = np.hypot(pose.x - goal[0], pose.y - goal[1]) <= THERE
+                return Route(path, passable, self._facing(pose) if there and goal == self.goal() else None)
         return None
 
     def _cell(self, x: float, y: float) -> int:

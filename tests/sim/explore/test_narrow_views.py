@@ -1,0 +1,46 @@
+"""Robots that see little look round, and explore a room as others do."""
+
+from __future__ import annotations
+
+import itertools
+
+import pytest
+
+from tests.support.small_missions import robots, room_with_a_wall, run
+
+
+def check_explored(resolution: float, view: float, beams: int, n: int) -> None:
+    """A team of such robots knows at least 99 % of the room and says that it is complete."""
+    _, report = run(
+        room_with_a_wall(resolution), robots(n, view=float(view), beams=beams), seed=1, max_time=3600.0
+    )
+    summary = report.summary
+    assert summary.outcome.value == "complete"
+    assert summary.coverage >= 0.99
+    assert summary.collisions == 0
+    assert {spot.why for spot in summary.left_out} <= {"unseeable"}
+    assert any(length > 1.0 for length in summary.path_m.values())
+
+
+@pytest.mark.parametrize(
+    ("resolution", "view", "beams", "n"),
+    [
+        (0.05, 90, 360, 1),
+        (0.05, 180, 360, 1),
+        (0.05, 270, 360, 1),
+        (0.05, 360, 16, 1),
+        (0.03, 30, 64, 3),
+        (0.07, 360, 8, 1),
+        (0.1, 45, 8, 3),
+    ],
+)
+def test_a_narrow_view_or_few_beams_suffice(resolution: float, view: float, beams: int, n: int) -> None:
+    check_explored(resolution, view, beams, n)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("n", [1, 3])
+@pytest.mark.parametrize("resolution", [0.02, 0.03, 0.05, 0.07, 0.1])
+def test_every_view_and_number_of_beams_suffices(resolution: float, n: int) -> None:
+    for view, beams in itertools.product((30, 60, 90, 180, 270, 360), (8, 16, 64, 360)):
+        check_explored(resolution, view, beams, n)
