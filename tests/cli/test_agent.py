@@ -149,7 +149,7 @@ def test_a_robot_without_neighbours_explores_alone_over_plain_tcp_with_a_warning
 def state_of(path: Path) -> str | None:
     """What ``vedette status`` says that a robot does; None: no answer."""
     shown = CliRunner().invoke(status_command, [str(path), "--json", "--wait", "1"])
-    said = json.loads(shown.output)["robot-1"]
+    said = json.loads(shown.output)["robots"]["robot-1"]
     assert shown.exit_code == (1 if said is None else 0)
     return None if said is None else str(said["state"])
 
