@@ -12,7 +12,7 @@ from typing import Any
 from bench import machine
 from bench.figures.missions import Mission
 from vedette.errors import InputError
-from vedette.record.files import write_json
+from vedette.record.files import write_text
 
 DOCS = Path(__file__).parents[2] / "docs"
 FILE = DOCS / "figures.json"
@@ -32,7 +32,7 @@ def load() -> dict[str, Record]:
 
 def save(records: Mapping[str, Record]) -> None:
     """Write the recorded missions."""
-    write_json(FILE, records)
+    write_text(FILE, json.dumps(records, indent=2, allow_nan=False, ensure_ascii=False) + "\n")
 
 
 def provenance() -> dict[str, str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import signal
 import socket
 import subprocess
@@ -16,6 +15,7 @@ from msgspec import yaml
 
 from tests.support.commands import Command
 from tests.support.net_team import issue, real_time, wait_until
+from tests.support.schemas import valid
 from tests.support.small_missions import TWO_ROOMS, drawn
 from vedette.cli.status import status as status_command
 from vedette.net.endpoints import free_port
@@ -149,7 +149,7 @@ def test_a_robot_without_neighbours_explores_alone_over_plain_tcp_with_a_warning
 def state_of(path: Path) -> str | None:
     """What ``vedette status`` says that a robot does; None: no answer."""
     shown = CliRunner().invoke(status_command, [str(path), "--json", "--wait", "1"])
-    said = json.loads(shown.output)["robots"]["robot-1"]
+    said = valid("status", shown.output)["robots"]["robot-1"]
     assert shown.exit_code == (1 if said is None else 0)
     return None if said is None else str(said["state"])
 

@@ -17,6 +17,7 @@ GOLDEN: dict[str, Any] = {
     "schema_version": 3,
     "completed": True,
     "outcome": "complete",
+    "lost": [],
     "seed": 7,
     "robots": 2,
     "planner": "tours",

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import os
 from pathlib import Path
 
 import pytest
 
 from vedette.errors import InputError
-from vedette.record.files import atomic_path, new_directory, output_directory, write_json, write_text
+from vedette.record.files import atomic_path, new_directory, output_directory, write_text
 
 
 def test_a_missing_folder_is_created_with_its_parents(tmp_path: Path) -> None:
@@ -106,11 +105,3 @@ def test_a_failed_write_leaves_the_old_file_and_no_scrap(tmp_path: Path) -> None
 def test_a_write_into_a_missing_folder_is_bad_input(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="cannot write"):
         write_text(tmp_path / "no" / "file.txt", "text")
-
-
-def test_json_keeps_key_order_and_refuses_nan(tmp_path: Path) -> None:
-    write_json(tmp_path / "a.json", {"b": 1, "a": [1.5, None]})
-    assert list(json.loads((tmp_path / "a.json").read_text())) == ["b", "a"]
-    with pytest.raises(ValueError, match="JSON"):
-        write_json(tmp_path / "b.json", {"x": float("nan")})
-    assert not (tmp_path / "b.json").exists()

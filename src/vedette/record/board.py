@@ -83,14 +83,19 @@ def team_table(
     vehicles: Sequence[VehicleSample],
     columns: Sequence[tuple[str, Sequence[str]]],
 ) -> Table:
-    """Return a table with a line for each of ``what`` there are: sign, name, and the columns with titles."""
+    """Return a table with a line for each of ``what`` there are: sign, name, state, and the given columns."""
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim", pad_edge=False)
-    for title in ("", what, *(title for title, _ in columns)):
+    for title in ("", what, "state", *(title for title, _ in columns)):
         table.add_column(title, no_wrap=True, justify="right" if title.endswith("(m)") else "left")
     for i, vehicle in enumerate(vehicles):
         mark = Text(f" {sign(i, vehicle.alive)} ", badge(i))
-        table.add_row(mark, scene.vehicles[i], *(column[i] for _, column in columns))
+        table.add_row(mark, scene.vehicles[i], vehicle.state, *(column[i] for _, column in columns))
     return table
+
+
+def states(scene: MissionScene, vehicles: Sequence[VehicleSample]) -> str:
+    """Return what everybody does, in a line."""
+    return "  ".join(f"{name} {each.state}" for name, each in zip(scene.vehicles, vehicles, strict=True))
 
 
 def figures_line(*pairs: tuple[str, str]) -> Text:

@@ -49,9 +49,10 @@ class TeamFigures:
     bytes: Mapping[str, Traffic]
 
     @classmethod
-    def of(cls, team: Mapping[str, RobotFigures], alive: Sequence[bool]) -> TeamFigures:
-        """Return the figures of a team by its robots' names; ``alive`` in the same order."""
-        rounds = [each.rounds for each in team.values()]
+    def of(cls, names: Sequence[str], figures: Sequence[RobotFigures], alive: Sequence[bool]) -> TeamFigures:
+        """Return the figures of a team from those of its robots, and which of them live."""
+        team = dict(zip(names, figures, strict=True))
+        rounds = [each.rounds for each in figures]
         leader = max(rounds, key=lambda each: each.rounds)
         bounded = sum(each.bounded for each in rounds)
         return cls(

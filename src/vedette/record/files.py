@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import itertools
-import json
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
 
 from vedette.errors import InputError
 from vedette.maps.atomic import atomic_path
 
-__all__ = ["atomic_path", "new_directory", "output_directory", "write_json", "write_text"]
+__all__ = ["atomic_path", "new_directory", "output_directory", "write_text"]
 
 
 def output_directory(path: Path | str, force: bool = False, inputs: Iterable[Path] = ()) -> Path:
@@ -72,8 +70,3 @@ def write_text(path: Path | str, text: str) -> None:
     """Write ``text`` as UTF-8, atomically."""
     with atomic_path(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
-
-
-def write_json(path: Path | str, value: Any) -> None:
-    """Write ``value`` as indented JSON, keys in their given order, atomically; NaN is refused."""
-    write_text(path, json.dumps(value, indent=2, allow_nan=False, ensure_ascii=False) + "\n")

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Generic, Protocol, TypeVar
+from typing import Generic, TypeVar
 
 import numpy as np
 
 from vedette.agent.body import TICK
-from vedette.record.figures import RobotFigures, TeamFigures
 from vedette.record.log import Floats, MissionScene, Sink, VehicleSample
 
 
@@ -21,28 +20,12 @@ class FlightScene(MissionScene):
     dt: float  # step [s]
 
 
-class FlightSnapshot(Protocol):
+@dataclass(frozen=True, eq=False)
+class FlightSnapshot:
     """A mission at one step."""
 
-    @property
-    def t(self) -> float:
-        """Simulated time [s]."""
-
-    @property
-    def vehicles(self) -> Sequence[VehicleSample]:
-        """By index in the team."""
-
-
-class FlightView(Protocol):
-    """What can be told of one vehicle from outside."""
-
-    @property
-    def sample(self) -> VehicleSample:
-        """Where it is and what it does."""
-
-    @property
-    def figures(self) -> RobotFigures:
-        """What it has counted."""
+    t: float  # [s]
+    vehicles: Sequence[VehicleSample]  # by index in the team
 
 
 SceneT = TypeVar("SceneT", bound=FlightScene)
@@ -89,9 +72,3 @@ class FlightLog(Generic[SceneT, SnapshotT]):
         """Return where everybody was up to a time, (k, n, 2) [m]."""
         places = [[(vehicle.x, vehicle.y) for vehicle in s.vehicles] for s in self.until(until)]
         return np.array(places, np.float64).reshape(len(places), len(self.scene.vehicles), 2)
-
-
-def team_figures(scene: FlightScene, views: Sequence[FlightView]) -> TeamFigures:
-    """Return the figures of a team from its last views."""
-    figures = dict(zip(scene.vehicles, [view.figures for view in views], strict=True))
-    return TeamFigures.of(figures, [view.sample.alive for view in views])

@@ -77,28 +77,20 @@ def _figures(summary: ExploreSummary, simulation: ExploreSimulation) -> dict[str
     resolution = simulation.world.frame.resolution
     seen = [np.count_nonzero(mission.log_odds) * resolution**2 for mission in simulation.missions]
     paths = list(summary.path_m.values())
+
+    def told(*names: str) -> dict[str, Value]:
+        return {name: getattr(summary, name) for name in names}
+
     return {
-        "outcome": summary.outcome.value,
-        "completed": summary.completed,
+        **told("outcome", "completed"),
         "error": "",
-        "coverage": summary.coverage,
-        "t50_s": summary.t50_s,
-        "t90_s": summary.t90_s,
-        "t95_s": summary.t95_s,
-        "t99_s": summary.t99_s,
-        "time_s": summary.time_s,
-        "auc_s": summary.auc_s,
+        **told("coverage", "t50_s", "t90_s", "t95_s", "t99_s", "time_s", "auc_s"),
         "path_m": float(np.mean(paths)),
         "path_max_m": max(paths),
-        "overlap": summary.overlap,
+        **told("overlap"),
         "seen_mean_m2": float(np.mean(seen)),
         "seen_std_m2": float(np.std(seen)),
-        "map_error_share": summary.map_error_share,
-        "collisions": summary.collisions,
-        "min_clearance_m": summary.min_clearance_m,
-        "rounds": summary.rounds,
-        "sweeps": summary.sweeps,
-        "bound_ratio": summary.bound_ratio,
+        **told("map_error_share", "collisions", "min_clearance_m", "rounds", "sweeps", "bound_ratio"),
         **_sent("messages", summary.messages),
         **_sent("bytes", summary.bytes),
     }
@@ -116,12 +108,9 @@ def _limits(best: Limit) -> dict[str, Value]:
 
 
 def _timing(timing: Timing) -> dict[str, Value]:
-    planning, answer = timing.planning_ms, timing.answer_ms
     return {
-        "planning_p50_ms": None if planning is None else planning.p50,
-        "planning_p95_ms": None if planning is None else planning.p95,
-        "planning_max_ms": None if planning is None else planning.max,
-        "answer_p95_ms": None if answer is None else answer.p95,
+        **{f"planning_{name}_ms": getattr(timing.planning_ms, name, None) for name in ("p50", "p95", "max")},
+        "answer_p95_ms": None if timing.answer_ms is None else timing.answer_ms.p95,
         "real_time_factor": timing.real_time_factor,
         "wall_s": timing.wall_s,
     }

@@ -132,8 +132,8 @@ class ExploreObserver:
     def summary(self, outcome: Outcome) -> ExploreSummary:
         """Return the figures of the mission, in simulated time; not before the first look."""
         progress, views = self._progress, self._views
-        time, team = progress.times[-1], [view.figures for view in views]
-        figures = {view.sample.name: view.figures for view in views}
+        team, alive = zip(*((view.figures, view.sample.alive) for view in views), strict=True)
+        time = progress.times[-1]
         wrong, known = map_errors(self._world, self.delivered_map())
         return ExploreSummary(
             completed=outcome.completed,
@@ -158,7 +158,7 @@ class ExploreObserver:
             apart_s=self.apart_s,
             left_out=self._left_out(),
             **vars(self._setting),
-            **vars(TeamFigures.of(figures, [view.sample.alive for view in views])),
+            **vars(TeamFigures.of(self.log.scene.vehicles, team, alive)),
         )
 
     def _left_out(self) -> tuple[LeftOut, ...]:

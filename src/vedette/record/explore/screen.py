@@ -69,12 +69,8 @@ def _team(snapshot: ExploreSnapshot) -> Text:
 
 def _robots(scene: ExploreScene, robots: Sequence[RobotSample], travelled: Sequence[float]) -> Table:
     goals = ["" if robot.goal is None else f"{robot.goal[0]:.1f}, {robot.goal[1]:.1f}" for robot in robots]
-    columns = [
-        ("state", [robot.state for robot in robots]),
-        ("goal (m)", goals),
-        ("driven (m)", [f"{metres:.1f}" for metres in travelled]),
-    ]
-    return team_table("robot", scene, robots, columns)
+    driven = [f"{metres:.1f}" for metres in travelled]
+    return team_table("robot", scene, robots, [("goal (m)", goals), ("driven (m)", driven)])
 
 
 class HalfBlocks:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.record.search.curves import CountedCurve
+from vedette.record.log import Floats
 from vedette.record.search.summary import Counted
 
 _NORMAL = 1.959963984540054  # 97.5 % quantile
@@ -22,34 +22,31 @@ class Trials:
     of: str  # "looks": at which the vehicles looked as they would; "runs": each looked for in earnest
     mistaken: int = 0
 
+    def curve(self, steps: int) -> Floats:
+        """Return the share found by the end of each step, (steps + 1,)."""
+        counts = np.bincount(self.steps, minlength=steps + 2)[: steps + 1]
+        return np.asarray(counts.cumsum() / len(self.steps))
 
-def counted_curve(steps: int, trials: Trials) -> CountedCurve:
-    """Return the share found by the end of each step."""
-    count = len(trials.steps)
-    share = np.bincount(trials.steps, minlength=steps + 2)[: steps + 1].cumsum() / count
-    return CountedCurve(share, dkw(count), count, trials.of)
-
-
-def counted(times: NDArray[np.float64], trials: Trials) -> Counted:
-    """Return the figures of the trials of a search whose steps end at ``times`` (K + 1,) [s]."""
-    steps, count = len(times) - 1, len(trials.steps)
-    found = int(np.count_nonzero(trials.steps <= steps))
-    low, high = wilson(found, count)
-    spent = times[np.minimum(trials.steps, steps)]
-    mean = float(spent.mean())
-    half = _NORMAL * float(spent.std(ddof=1)) / math.sqrt(count) if count > 1 else None
-    return Counted(
-        count,
-        trials.of,
-        found / count,
-        low,
-        high,
-        mean,
-        None if half is None else mean - half,
-        None if half is None else mean + half,
-        dkw(count),
-        trials.mistaken,
-    )
+    def figures(self, times: Floats) -> Counted:
+        """Return what they say of a search whose steps end at ``times`` (K + 1,) [s]."""
+        steps, count = len(times) - 1, len(self.steps)
+        found = int(np.count_nonzero(self.steps <= steps))
+        low, high = wilson(found, count)
+        spent = times[np.minimum(self.steps, steps)]
+        mean = float(spent.mean())
+        half = _NORMAL * float(spent.std(ddof=1)) / math.sqrt(count) if count > 1 else None
+        return Counted(
+            trials=count,
+            of=self.of,
+            detection=found / count,
+            detection_low=low,
+            detection_high=high,
+            mean_time_s=mean,
+            mean_time_low_s=None if half is None else mean - half,
+            mean_time_high_s=None if half is None else mean + half,
+            band=dkw(count),
+            mistaken=self.mistaken,
+        )
 
 
 def dkw(trials: int, confidence: float = 0.95) -> float:

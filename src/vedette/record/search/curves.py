@@ -20,16 +20,6 @@ Looks: TypeAlias = Sequence[Mapping[int, Floats]]
 
 
 @dataclass(frozen=True, eq=False)
-class CountedCurve:
-    """The share of trials that had found their target, and the half width of a band around it."""
-
-    detection: Floats  # (K + 1,)
-    band: float  # 95 % for the whole curve at once
-    trials: int
-    of: str  # "looks" or "runs"
-
-
-@dataclass(frozen=True, eq=False)
 class Curves:
     """By the end of each step; (K + 1,) each."""
 
@@ -37,7 +27,7 @@ class Curves:
     bound: Floats  # no team can do better, docs/search.md (V52)
     koopman: Floats  # the swept area allocated at best, (V51): no bound for definite-range sensors
     detection: Mapping[str, Floats] = field(default_factory=dict)  # predicted, by coordination
-    counted: CountedCurve | None = None
+    counted: Floats | None = None  # share of the trials that had found their target
 
 
 def predicted(pdf: TargetPdf, detectors: Sequence[Detector], looks: Looks, steps: int) -> Floats:

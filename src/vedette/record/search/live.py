@@ -10,7 +10,7 @@ from rich.console import Console, RenderableType
 from rich.style import Style
 from rich.text import Text
 
-from vedette.record.board import board, figures_line, framed, share_bar, team_table
+from vedette.record.board import board, figures_line, framed, share_bar, states, team_table
 from vedette.record.display import Display
 from vedette.record.search.log import SearchScene, SearchSnapshot
 
@@ -28,11 +28,9 @@ def search_display(
 
 def line(scene: SearchScene, snapshot: SearchSnapshot) -> str:
     """Return a snapshot in one line."""
-    states = "  ".join(
-        f"{name} {vehicle.state}" for name, vehicle in zip(scene.vehicles, snapshot.vehicles, strict=True)
-    )
+    team = states(scene, snapshot.vehicles)
     detection = f"detection {100 * snapshot.detection:5.1f} %"
-    return f"{snapshot.t:7.1f} s  {detection}  entropy {snapshot.entropy:5.2f} nat  {states}"
+    return f"{snapshot.t:7.1f} s  {detection}  entropy {snapshot.entropy:5.2f} nat  {team}"
 
 
 def screen(scene: SearchScene, console: Console, snapshot: SearchSnapshot) -> RenderableType:
@@ -43,8 +41,7 @@ def screen(scene: SearchScene, console: Console, snapshot: SearchSnapshot) -> Re
         "" if vehicle.goal is None else f"{vehicle.goal[0]:.0f}, {vehicle.goal[1]:.0f}"
         for vehicle in snapshot.vehicles
     ]
-    states = [vehicle.state for vehicle in snapshot.vehicles]
-    table = team_table("vehicle", scene, snapshot.vehicles, [("state", states), ("afterwards to (m)", goals)])
+    table = team_table("vehicle", scene, snapshot.vehicles, [("afterwards to (m)", goals)])
     x0, x1, y0, y1 = scene.frame.extent
     picture = board(console, scene, (x0, y0, x1, y1), _GROUND, head)
     if picture is None:
@@ -58,13 +55,15 @@ def screen(scene: SearchScene, console: Console, snapshot: SearchSnapshot) -> Re
 def _shades(mass: NDArray[np.float32], lines: int, columns: int) -> NDArray[np.int64]:
     """Return the shade (lines, columns) of each character, the lowest line first: the mean of its cells."""
     summed = np.pad(mass.astype(np.float64).cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
-    row, col = (_edges(n, parts) for n, parts in zip(mass.shape, (lines, columns), strict=True))
-    total = np.diff(np.diff(summed[row][:, col], axis=0), axis=1)
-    mean = total / np.maximum(np.diff(row)[:, None] * np.diff(col), 1)
+    row, row_end = _cells(mass.shape[0], lines)
+    col, col_end = _cells(mass.shape[1], columns)
+    wide = summed[:, col_end] - summed[:, col]
+    mean = np.maximum(wide[row_end] - wide[row], 0.0) / ((row_end - row)[:, None] * (col_end - col))
     share: NDArray[np.float64] = (mean / max(float(mean.max()), 1e-300)) ** _POWER
     return np.minimum((share * len(_SHADES)).astype(np.int64), len(_SHADES) - 1)
 
 
-def _edges(cells: int, parts: int) -> NDArray[np.int64]:
-    edges = np.linspace(0, cells, parts + 1)
-    return np.rint(edges).astype(np.int64)
+def _cells(count: int, parts: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the first cell of each part and the one after its last; each part has one at least."""
+    edges = np.arange(parts + 1) * count // parts
+    return edges[:-1], np.maximum(edges[1:], edges[:-1] + 1)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from vedette.domains.search.bounds import sweep_width
 from vedette.maps import GridFrame
 from vedette.missions.search.case import SearchCase
-from vedette.record.flights import FlightLog, FlightScene
+from vedette.record.flights import FlightLog, FlightScene, FlightSnapshot
 from vedette.record.log import Floats, VehicleSample, evenly
 
 _BUDGET = 64 << 20  # bytes of pdfs that are kept
@@ -49,10 +49,9 @@ class SearchSample(VehicleSample):
 
 
 @dataclass(frozen=True, eq=False)
-class SearchSnapshot:
+class SearchSnapshot(FlightSnapshot):
     """The search at one moment."""
 
-    t: float  # [s]
     vehicles: tuple[SearchSample, ...]
     mass: NDArray[np.float32]  # (R, C) probability of each cell, as the first living vehicle knows it
     entropy: float  # of that [nat]

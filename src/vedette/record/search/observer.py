@@ -18,8 +18,7 @@ from vedette.missions.search.assemble import SearchTeam
 from vedette.missions.search.case import SearchCase
 from vedette.missions.search.searching import Declared, SearchPlan
 from vedette.outcome import Outcome
-from vedette.record.figures import RobotFigures
-from vedette.record.flights import team_figures
+from vedette.record.figures import RobotFigures, TeamFigures
 from vedette.record.log import Floats, Sink
 from vedette.record.search.curves import Curves, Looks, missed
 from vedette.record.search.log import SearchLog, SearchSample, SearchScene, SearchSnapshot
@@ -108,6 +107,7 @@ class SearchObserver:
         ended = ended_as(outcome, place, self._team.plan, self._truth.place)
         found = place is not None and ended is Outcome.FOUND
         at = None if place is None else (place.x, place.y)
+        figures, alive = zip(*((view.figures, view.sample.alive) for view in self._views), strict=True)
         return SearchSummary(
             completed=ended.completed,
             outcome=ended,
@@ -126,7 +126,7 @@ class SearchObserver:
             koopman=IdealSearch.of(curves.times, curves.koopman),
             **vars(self._setting),
             **structs.asdict(self._team.options),
-            **vars(team_figures(scene, self._views)),
+            **vars(TeamFigures.of(scene.vehicles, figures, alive)),
         )
 
 

@@ -10,7 +10,7 @@ from rich.console import Console, RenderableType
 from rich.style import Style
 from rich.text import Text
 
-from vedette.record.board import Board, board, figures_line, framed, team_table
+from vedette.record.board import Board, board, figures_line, framed, states, team_table
 from vedette.record.display import Display
 from vedette.record.track.log import TrackScene, TrackSnapshot
 from vedette.record.track.panel import SIGMA
@@ -29,11 +29,9 @@ def track_display(
 
 def line(scene: TrackScene, snapshot: TrackSnapshot) -> str:
     """Return a snapshot in one line."""
-    states = "  ".join(
-        f"{name} {vehicle.state}" for name, vehicle in zip(scene.vehicles, snapshot.vehicles, strict=True)
-    )
+    team = states(scene, snapshot.vehicles)
     error = math.sqrt(snapshot.squared_error)
-    return f"{snapshot.t:7.1f} s  entropy {snapshot.entropy:6.1f} nat  error {error:5.1f} m  {states}"
+    return f"{snapshot.t:7.1f} s  entropy {snapshot.entropy:6.1f} nat  error {error:5.1f} m  {team}"
 
 
 def screen(scene: TrackScene, console: Console, snapshot: TrackSnapshot) -> RenderableType:
@@ -48,9 +46,7 @@ def screen(scene: TrackScene, console: Console, snapshot: TrackSnapshot) -> Rend
         " ".join(f"{_NAMES[t % len(_NAMES)]}:{scene.targets[t]}" for t in vehicle.seen)
         for vehicle in snapshot.vehicles
     ]
-    states = [vehicle.state for vehicle in snapshot.vehicles]
-    columns = [("sensor", scene.sensors), ("state", states), ("sees", sees)]
-    table = team_table("vehicle", scene, snapshot.vehicles, columns)
+    table = team_table("vehicle", scene, snapshot.vehicles, [("sensor", scene.sensors), ("sees", sees)])
     picture = board(console, scene, scene.area, _GROUND, [head])
     if picture is None:
         return framed(scene, head, table)

@@ -9,7 +9,7 @@ import numpy as np
 
 from vedette.domains.tracking.sensors import SENSORS
 from vedette.missions.track.scenario import TrackScenario
-from vedette.record.flights import FlightLog, FlightScene
+from vedette.record.flights import FlightLog, FlightScene, FlightSnapshot
 from vedette.record.log import Floats, VehicleSample
 
 
@@ -48,10 +48,9 @@ class TrackSample(VehicleSample):
 
 
 @dataclass(frozen=True, eq=False)
-class TrackSnapshot:
+class TrackSnapshot(FlightSnapshot):
     """The mission at one step: estimates with all evidence up to it that has gone round by the next step."""
 
-    t: float  # [s]
     vehicles: tuple[TrackSample, ...]
     holder: int  # the vehicle whose tracks these are: the first that lives
     truth: Floats  # (T, 4) x, y, vx, vy [m, m, m/s, m/s]

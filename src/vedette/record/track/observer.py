@@ -18,8 +18,7 @@ from vedette.domains.tracking.filter import nees, predict
 from vedette.missions.track.assemble import TrackTeam
 from vedette.missions.track.scenario import TrackScenario
 from vedette.outcome import Outcome
-from vedette.record.figures import RobotFigures
-from vedette.record.flights import team_figures
+from vedette.record.figures import RobotFigures, TeamFigures
 from vedette.record.log import Floats, Sink
 from vedette.record.summary import Setting, Timing
 from vedette.record.track.log import TrackLog, TrackSample, TrackScene, TrackSnapshot
@@ -105,6 +104,7 @@ class TrackObserver:
     def _summary(self, outcome: Outcome, now: float) -> TrackSummary:
         log, scene, team = self.log, self.log.scene, self._team
         options = structs.replace(team.options, objective=team.options.objective or team.scenario.objective)
+        figures, alive = zip(*((view.figures, view.sample.alive) for view in self._views), strict=True)
         return TrackSummary(
             completed=outcome.completed,
             outcome=outcome,
@@ -119,7 +119,7 @@ class TrackObserver:
             **vars(self._setting),
             **structs.asdict(options),
             **TrackQuality.of(log).of_team(),
-            **vars(team_figures(scene, self._views)),
+            **vars(TeamFigures.of(scene.vehicles, figures, alive)),
         )
 
 

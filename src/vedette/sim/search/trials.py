@@ -19,7 +19,7 @@ from vedette.domains.search.detectors import Detector
 from vedette.missions.search.case import SearchCase
 from vedette.missions.search.options import COORDINATIONS
 from vedette.outcome import Outcome
-from vedette.record.search.counting import Trials, counted, counted_curve
+from vedette.record.search.counting import Trials
 from vedette.record.search.curves import Looks, predicted
 from vedette.record.search.observer import SearchReport, ended_as
 from vedette.record.search.summary import SearchQuality
@@ -136,10 +136,10 @@ def _joined(
         outcome=outcome,
         completed=outcome.completed,
         **({} if own is None else vars(own)),
-        counted=None if trials is None else counted(times, trials),
+        counted=None if trials is None else trials.figures(times),
         comparison=comparison,
     )
-    curve = None if trials is None else counted_curve(len(times) - 1, trials)
+    curve = None if trials is None else trials.curve(len(times) - 1)
     curves = replace(report.curves, detection=detection, counted=curve)
     return replace(report, summary=summary, curves=curves)
 
