@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 import warnings
 from collections.abc import Iterator
@@ -12,7 +11,9 @@ from typing import Any
 
 import click
 
+from vedette.cli.pipes import readers_may_leave
 from vedette.errors import InputError, InputWarning
+from vedette.interrupt import ending_on_any_signal
 from vedette.outcome import Outcome
 
 BAD_INPUT = 2
@@ -46,7 +47,15 @@ def commands() -> None:
 
 
 def main() -> None:
-    """Run the command line: one clear line and status 2 for bad input, 130 for Ctrl-C, never a traceback."""
+    """Run the command line: one clear line and status 2 for bad input, never a traceback.
+
+    The status is 130 for Ctrl-C, SIGTERM and SIGHUP.
+    """
+    with ending_on_any_signal(), readers_may_leave(_say):
+        _main()
+
+
+def _main() -> None:
     try:
         with _remarks():
             sys.exit(commands.main(standalone_mode=False))
@@ -56,9 +65,6 @@ def main() -> None:
         text = error.format_message() if isinstance(error, click.ClickException) else str(error)
         _say(text)
         sys.exit(BAD_INPUT)
-    except BrokenPipeError:  # the reader of our output has gone
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(1)
 
 
 @contextmanager

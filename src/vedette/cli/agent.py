@@ -13,6 +13,7 @@ import click
 
 from vedette.cli.options import Positive
 from vedette.errors import InputError
+from vedette.interrupt import ENDINGS
 from vedette.net.config import load_config
 from vedette.net.start import agent_process
 
@@ -30,7 +31,7 @@ WATCH_PERIOD = 1.0  # [s]
 )
 @click.option("--starter", type=int, hidden=True, help="Stop when this process, the parent, ends.")
 def agent(config_path: Path, speed: float, starter: int | None) -> None:
-    """Run the robot that CONFIG.yaml describes, with the neighbours it names, until SIGTERM or Ctrl-C.
+    """Run the robot that CONFIG.yaml describes, with the neighbours it names, until Ctrl-C or SIGTERM.
 
     docs/how-to/network.md explains the file. Exit status: 0 stopped, 2 bad input.
     """
@@ -39,8 +40,9 @@ def agent(config_path: Path, speed: float, starter: int | None) -> None:
         process = agent_process(config, config_path.resolve().parent, speed)
     except InputError as error:
         raise InputError(f"{config_path}: {error}") from error
-    for number in (signal.SIGTERM, signal.SIGINT):
-        signal.signal(number, lambda *_: process.stop())
+    for number in ENDINGS:
+        if number == signal.SIGINT or signal.getsignal(number) is not signal.SIG_IGN:  # as nohup has SIGHUP
+            signal.signal(number, lambda *_: process.stop())
     if starter is not None:
         threading.Thread(target=_outlive, args=(starter, process.stop), daemon=True).start()
     if config.links.insecure:

@@ -21,6 +21,7 @@ from vedette.record.explore.mcap import ExploreMcapWriter
 from vedette.record.explore.outputs import write_outputs
 from vedette.record.explore.summary import ExploreSummary
 from vedette.run.inputs import ROBOTS, AnyWorld, team_of
+from vedette.run.mission import RECORD
 from vedette.sim.starts import parse_starts
 from vedette.team import PlatformSpec, load_team
 
@@ -131,4 +132,5 @@ def closing(summary: ExploreSummary, folder: Path) -> list[str]:
     return lines
 
 
-EXPLORING = Kind(ExploreDisplay, ExploreMcapWriter, write_outputs, closing)
+LEAVES = (RECORD, "summary.json", "timing.json", "map.yaml", "map.pgm", "progress.png", "curves.png")
+EXPLORING = Kind(ExploreDisplay, ExploreMcapWriter, write_outputs, closing, LEAVES)

@@ -15,6 +15,7 @@ from rich.console import Console
 from rich.live import Live
 from rich.text import Text
 
+from vedette.cli.ends import aborted
 from vedette.cli.options import seed_option
 from vedette.errors import InputError
 from vedette.outcome import Outcome
@@ -49,6 +50,7 @@ def reproduce(out: Path | None, quick: bool, seed: int, force: bool) -> None:
     with (
         OutputFolder.make(out, force, "reproduce") as folder,
         LineProgress(Console(stderr=True)) as progress,
+        aborted("the report is not written"),
     ):
         result = run_all(folder.path, QUICK if quick else FULL, seed, source, progress)
     click.echo(_closing(result))

@@ -10,13 +10,14 @@ from typing import Any, Generic, NoReturn, TypeVar
 
 import click
 
+from vedette.cli.ends import telling_what_is_missing
 from vedette.cli.options import Output
+from vedette.interrupt import ending_on_ctrl_c
 from vedette.record.display import Display
 from vedette.record.folder import OutputFolder
 from vedette.record.log import MissionScene, Sink, Timed
 from vedette.record.mcap import Place
 from vedette.record.summary import MissionSummary
-from vedette.run.interrupt import ending_on_ctrl_c
 from vedette.run.mission import RECORD, StepwiseMission
 from vedette.run.result import MissionReport
 
@@ -34,6 +35,7 @@ class Kind(Generic[SceneT, SnapshotT, ReportT]):
     recorder: Callable[[Place, SceneT], AbstractContextManager[Sink[SnapshotT]]]
     write: Callable[[ReportT, OutputFolder, bool], None]
     closing: Callable[[Any, Path], list[str]]  # takes the summary
+    leaves: tuple[str, ...]  # names of the files that a mission leaves
 
     def run(
         self,
@@ -52,7 +54,11 @@ class Kind(Generic[SceneT, SnapshotT, ReportT]):
             play: runs it, followed by the sinks; there is a folder for more.
             beside: adds to the report what is worked out afterwards, and says so.
         """
-        with OutputFolder.make(output.out, output.force, scene.name, inputs) as folder:
+        leaves = [*self.leaves, *(["mission.gif"] if output.animate else [])]
+        with (
+            OutputFolder.make(output.out, output.force, scene.name, inputs) as folder,
+            telling_what_is_missing(folder, leaves),
+        ):
             with ExitStack() as sinks:
                 live = sinks.enter_context(self.display(scene, output.as_json))
                 record = sinks.enter_context(self.recorder(lambda: folder / RECORD, scene))
@@ -70,7 +76,7 @@ def simulate(
     output: Output,
     beside: Callable[[ReportT, Say], ReportT] = lambda report, say: report,
 ) -> NoReturn:
-    """Run a simulated mission as `Kind.run` does; the first Ctrl-C ends it in good order."""
+    """Run a simulated mission as `Kind.run` does; the first Ctrl-C ends it in good order, a second aborts."""
     with ending_on_ctrl_c(mission.stop):
         kind.run(scene, output, mission.inputs, lambda sinks, folder: mission.play(sinks), beside)
 

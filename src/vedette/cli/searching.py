@@ -16,6 +16,7 @@ from vedette.record.search.live import search_display
 from vedette.record.search.mcap import SearchMcapWriter
 from vedette.record.search.outputs import write_outputs
 from vedette.record.search.summary import SearchSummary
+from vedette.run.mission import RECORD
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 
@@ -67,4 +68,5 @@ def closing(summary: SearchSummary, folder: Path) -> list[str]:
     return lines
 
 
-SEARCHING = Kind(search_display, SearchMcapWriter, write_outputs, closing)
+LEAVES = (RECORD, "summary.json", "timing.json", "pdf.png", "detection.png")
+SEARCHING = Kind(search_display, SearchMcapWriter, write_outputs, closing, LEAVES)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, cast
 import click
 from rich.console import Console
 
+from vedette.cli.ends import aborted
 from vedette.cli.options import OneOf
 from vedette.maps import map_files
 from vedette.outcome import Outcome
@@ -73,7 +74,8 @@ def _conducted(path: Path, folder: Path, jobs: int, backend: Backend) -> Conduct
     with locked(folder):
         conducted = conduct(runs, store, Workers(jobs, backend), Console())
         if conducted.results:
-            write_outputs(conducted, path, spec.reference or spec.planners[0], folder, made)
+            with aborted("not all of the report and its tables is written; what is done is kept"):
+                write_outputs(conducted, path, spec.reference or spec.planners[0], folder, made)
     return conducted
 
 

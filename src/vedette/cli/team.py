@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import signal
-import threading
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack
 from dataclasses import dataclass
 from math import floor
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from types import FrameType
 from typing import Any, TypeVar
 
 import click
@@ -23,6 +20,7 @@ from vedette.cli.searching import SEARCHING, searching_options
 from vedette.cli.staging import Stage
 from vedette.cli.tracking import TRACKING, tracking_options
 from vedette.errors import InputError
+from vedette.interrupt import ending_on_ctrl_c
 from vedette.missions.explore.options import ExploreOptions
 from vedette.missions.search.assemble import SearchTeam
 from vedette.missions.search.options import SearchOptions
@@ -44,7 +42,6 @@ from vedette.record.search.log import SearchScene
 from vedette.record.summary import Setting
 from vedette.record.track.log import TrackScene
 from vedette.run.inputs import files_of, schedule_of, world_of
-from vedette.run.interrupt import ending_on_ctrl_c
 from vedette.run.searching import case_of, heat_maps
 from vedette.run.tracking import scenario_of
 from vedette.sim.faults import Schedule, faults_text
@@ -54,7 +51,6 @@ from vedette.sim.track.targets import Targets
 
 SPEED = 3.0  # more costs mission time, as thoughts and messages take as long as ever: 5 % at 5, 16 % at 10
 KEPT_UP = 0.8  # of the speed asked for; less is worth a remark
-_ENDINGS = (signal.SIGTERM, signal.SIGHUP)
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 
 
@@ -213,7 +209,6 @@ class _Processes:
         """Run the team to the end of its mission; what it says goes into the folder."""
         text = None if self.schedule is None else faults_text(self.schedule)
         with ExitStack() as stack:
-            stack.enter_context(_ending_on_any_signal())
             secrets = stack.enter_context(TemporaryDirectory(prefix="vedette-team-"))
             processes = stack.enter_context(TeamProcesses(self.plan, Path(secrets), folder / "agents", text))
             operator = stack.enter_context(Operator(processes.operator))
@@ -233,27 +228,3 @@ def _remarks(watch: TeamWatch[Any], pace: float, speed: float) -> Iterator[str]:
         yield f"{robot_name(robot)} failed: {said}; see {watch.team.log_of(robot)}"
     if 0 < pace < KEPT_UP * speed:
         yield f"this host kept up {pace:.1f} times real time; robots think better at a --speed below"
-
-
-@contextmanager
-def _ending_on_any_signal() -> Iterator[None]:
-    """Let what ends a process do what Ctrl-C does, so that no agent is left behind."""
-
-    def end(number: int, frame: FrameType | None) -> None:
-        on_ctrl_c = signal.getsignal(signal.SIGINT)
-        if not callable(on_ctrl_c):  # ignored: the shell has put us in the background
-            raise KeyboardInterrupt
-        on_ctrl_c(number, frame)
-
-    if threading.current_thread() is not threading.main_thread():  # only the main one may handle signals
-        yield
-        return
-    before = {number: signal.getsignal(number) for number in _ENDINGS}
-    for number, handler in before.items():
-        if handler is not signal.SIG_IGN:  # as nohup has it
-            signal.signal(number, end)
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

@@ -18,6 +18,7 @@ from vedette.record.track.live import track_display
 from vedette.record.track.mcap import TrackMcapWriter
 from vedette.record.track.outputs import write_outputs
 from vedette.record.track.summary import TrackSummary
+from vedette.run.mission import RECORD
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 
@@ -77,4 +78,5 @@ def closing(summary: TrackSummary, folder: Path) -> list[str]:
     return lines
 
 
-TRACKING = Kind(track_display, TrackMcapWriter, write_outputs, closing)
+LEAVES = (RECORD, "summary.json", "timing.json", "tracks.png", "entropy.png")
+TRACKING = Kind(track_display, TrackMcapWriter, write_outputs, closing, LEAVES)

@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 from vedette.agent import Agent
 from vedette.agent.events import Event
+from vedette.interrupt import ending_on_ctrl_c
 from vedette.outcome import Outcome
 from vedette.record.folder import OutputFolder
 from vedette.record.log import Sink
 from vedette.record.mcap import Place
-from vedette.run.interrupt import ending_on_ctrl_c
 from vedette.sim.simulation import Simulation
 from vedette.sim.views import state
 from vedette.sim.watched import Watched

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from vedette.agent.flight import step_of
 from vedette.domains.search.flights import Flight
 from vedette.domains.search.impact import Impact
+from vedette.interrupt import ending_on_ctrl_c
 from vedette.maps import GridFrame
 from vedette.missions.search.case import SearchCase, default_case, made, read_case
 from vedette.missions.search.scenario import Heat, SearchScenario
@@ -22,7 +23,6 @@ from vedette.record.search.mcap import SearchMcapWriter
 from vedette.record.search.observer import SearchReport
 from vedette.record.search.summary import SearchSummary
 from vedette.run.inputs import AnyPath, Conditions, described, files_of, setup_of
-from vedette.run.interrupt import ending_on_ctrl_c
 from vedette.run.mission import Followers, ProgressSink, StepwiseMission
 from vedette.run.result import MissionResult
 from vedette.sim.search.run import SearchRun

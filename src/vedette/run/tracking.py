@@ -15,13 +15,13 @@ from vedette.domains.tracking.belief import Tracks
 from vedette.domains.tracking.courses import Course
 from vedette.domains.tracking.filter import predict
 from vedette.domains.tracking.impact import Impact
+from vedette.interrupt import ending_on_ctrl_c
 from vedette.missions.track.scenario import TrackScenario, checked, default_scenario, read_scenario
 from vedette.record.track.log import TrackLog, TrackScene, TrackSnapshot
 from vedette.record.track.mcap import TrackMcapWriter
 from vedette.record.track.observer import TrackReport
 from vedette.record.track.summary import TrackSummary
 from vedette.run.inputs import AnyPath, Conditions, described, files_of, setup_of
-from vedette.run.interrupt import ending_on_ctrl_c
 from vedette.run.mission import Followers, ProgressSink, StepwiseMission
 from vedette.run.result import MissionResult
 from vedette.sim.track.run import TrackRun, compared

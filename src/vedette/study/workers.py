@@ -64,7 +64,7 @@ class Workers:
     def _parallel(self, jobs: int, runs: Iterable[Run]) -> Iterator[tuple[Run, RunResult]]:
         """Yield what comes back; a single job is done in this process, a cluster does as many as it can."""
         local = self.backend == "loky"
-        own = {"backend": "loky", "initializer": ignore_ctrl_c, "idle_worker_timeout": IDLE} if local else {}
+        own = {"backend": "loky", "initializer": ignore_endings, "idle_worker_timeout": IDLE} if local else {}
         parallel = Parallel(
             n_jobs=jobs if local else -1, return_as="generator_unordered", batch_size=1, **own
         )
@@ -78,9 +78,10 @@ def _named(work: Work, run: Run) -> tuple[Run, RunResult]:
     return run, work(run)
 
 
-def ignore_ctrl_c() -> None:
-    """Leave Ctrl-C to the process that gives out the work."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+def ignore_endings() -> None:
+    """Leave Ctrl-C, and what else ends a study, to the process that gives out the work."""
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_IGN)
 
 
 @contextmanager
