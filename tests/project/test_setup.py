@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import ast
 import os
+import re
 import subprocess
 import sys
 import tomllib
 from pathlib import Path
 
 import pytest
+import yaml
 
 from tests.support.places import ROOT
 
@@ -185,3 +187,17 @@ def test_make_help_names_every_target_a_reader_needs() -> None:
     )
     named = {line.split()[1] for line in result.stdout.splitlines()}
     assert named >= {"explore", "test", "test-all", "check", "bench", "missions", "build", "clean", "help"}
+
+
+def test_the_hooks_that_git_may_call_are_make_targets_that_the_check_calls_too() -> None:
+    [local] = yaml.safe_load((ROOT / ".pre-commit-config.yaml").read_text(encoding="utf-8"))["repos"]
+    entries = [hook["entry"].split() for hook in local["hooks"]]
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    [check] = re.findall(r"^check: (.*?) ##", makefile, flags=re.MULTILINE)
+    assert entries == [["make", target] for target in check.split()]
+    assert all(hook["language"] == "system" and not hook["pass_filenames"] for hook in local["hooks"])
+
+
+def test_the_hooks_configuration_is_one_that_pre_commit_reads() -> None:
+    command = [sys.executable, "-m", "pre_commit", "validate-config", str(ROOT / ".pre-commit-config.yaml")]
+    subprocess.run(command, check=True, capture_output=True, timeout=60)
