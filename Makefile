@@ -20,7 +20,7 @@ INSTALLED := $(VENV)/.installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help explore test test-all check lint types contracts rust-lint bench fuzz missions figures schemas api dist build ready ready-dev clean
+.PHONY: help explore test test-all check lint types contracts rust-lint bench fuzz missions figures schemas docs dist build ready ready-dev clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -67,9 +67,9 @@ figures: ready-dev ## Run the missions that the documents quote; record their fi
 schemas: ready-dev ## Write the schema of every JSON that is written into docs/schemas
 	@PYTHONPATH=. $(PY) tools/schemas.py docs/schemas
 
-api: ready-dev ## Write the API reference from the docstrings into build/api
-	@$(PY) tools/api_reference.py build/api
-	@echo "open build/api/index.html"
+docs: ready-dev ## Build the documentation site, API reference included, into build/docs
+	@$(PY) tools/site/build.py build/docs
+	@echo "open build/docs/index.html"
 
 dist: ready-dev ## Build the sdist, and wheels for x86-64 and aarch64, into dist/
 	@$(PIP) install -c constraints.txt 'ziglang>=0.17,<0.18'
