@@ -28,7 +28,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the folder of the whole site."""
     folder = tmp_path_factory.mktemp("site") / "docs"
     done = run(SITE / "build.py", folder)
-    assert (done.returncode, done.stderr) == (0, "")
+    assert (done.returncode, done.stderr) == (0, ""), done.stderr
     return folder
 
 
