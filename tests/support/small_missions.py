@@ -57,6 +57,23 @@ def room_with_a_wall(resolution: float) -> World:
     return World(GridFrame(resolution, *solid.shape), solid, "room")
 
 
+def two_rooms(width: float, resolution: float, *, bent: bool = False) -> World:
+    """Two rooms of 3 x 3 m, and between them a corridor of 1.5 m, straight or with two bends."""
+    room, length, wide, wall = round(3.0 / resolution), round(1.5 / resolution), round(width / resolution), 2
+    solid = np.ones((room + 2 * wall, 2 * room + length + 2 * wall), bool)
+    solid[wall:-wall, wall : wall + room] = solid[wall:-wall, -wall - room : -wall] = False
+    begins, ends, middle = wall + room, wall + room + length, wall + room // 2
+    if not bent:
+        low = middle - wide // 2
+        solid[low : low + wide, begins:ends] = False
+        return World(GridFrame(resolution, *solid.shape), solid, "rooms")
+    aside, half = round(0.6 / resolution), begins + length // 2
+    solid[middle - aside : middle - aside + wide, begins : half + wide] = False
+    solid[middle - aside : middle + aside + wide, half : half + wide] = False
+    solid[middle + aside : middle + aside + wide, half:ends] = False
+    return World(GridFrame(resolution, *solid.shape), solid, "rooms")
+
+
 def robots(n: int, **fields: Any) -> list[PlatformSpec]:
     """Equal robots."""
     return [PlatformSpec(name=f"robot-{i + 1}", **fields) for i in range(n)]

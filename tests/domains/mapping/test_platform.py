@@ -175,6 +175,27 @@ def test_a_frontier_whose_visit_changed_the_map_is_not_given_up() -> None:
     assert reachable_near(platform, x, y).all()
 
 
+def test_a_frontier_that_a_look_from_afar_did_not_change_is_looked_at_from_close_by() -> None:
+    platform = ready()
+    stops = stops_of(platform)
+    apart = np.hypot(*(stops.targets - stops.views).T)
+    k = int(np.argmax(np.where(np.isfinite(stops.first_leg), apart, 0.0)))
+    assert apart[k] > 2.0
+    (x, y), unknown = stops.targets[k].tolist(), int(stops.unknown[k])
+    platform.glimpsed.append((x, y, unknown))
+    placed(platform, frozen())
+    near = np.hypot(*(stops_of(platform).targets - (x, y)).T) < 0.4
+    assert (np.hypot(*(stops_of(platform).targets - stops_of(platform).views)[near].T) <= 1.0).all()
+    assert not platform.given_up
+    assert [(spot.x, spot.y) for spot in platform.closer] == [(x, y)]
+    others = np.hypot(*(stops.targets - (x, y)).T) > 0.6
+    kept = np.hypot(*(stops_of(platform).targets - (x, y)).T) > 0.6
+    np.testing.assert_array_equal(stops_of(platform).views[kept], stops.views[others])
+    platform.glimpsed.append((x, y, 2 * unknown))
+    placed(platform, frozen())
+    assert len(platform.closer) == 1  # that look changed the map
+
+
 def test_an_avoided_frontier_is_left_alone_for_its_time() -> None:
     platform = ready()
     x, y = stops_of(platform).targets[2].tolist()

@@ -6,7 +6,8 @@ import itertools
 
 import pytest
 
-from tests.support.small_missions import robots, room_with_a_wall, run
+from tests.support.small_missions import robots, room_with_a_wall, run, two_rooms
+from vedette.team import PlatformSpec
 
 
 def check_explored(resolution: float, view: float, beams: int, n: int) -> None:
@@ -36,6 +37,14 @@ def check_explored(resolution: float, view: float, beams: int, n: int) -> None:
 )
 def test_a_narrow_view_or_few_beams_suffice(resolution: float, view: float, beams: int, n: int) -> None:
     check_explored(resolution, view, beams, n)
+
+
+def test_what_a_glance_from_afar_does_not_show_is_looked_at_from_close_by() -> None:
+    world = two_rooms(0.48, 0.02, bent=True)
+    _, report = run(world, [PlatformSpec(start=(1.0, 1.0))], seed=1)
+    assert report.summary.completed
+    assert report.summary.coverage >= 0.99
+    assert report.summary.collisions == 0
 
 
 @pytest.mark.slow

@@ -12,6 +12,7 @@ from vedette.domains.mapping.impact import NOTHING, Impact
 from vedette.domains.mapping.sightings import SightingModel, beam_model, measured_model
 from vedette.domains.mapping.stops import (
     CLEARANCES,
+    LEFT_ALONE,
     Disc,
     Ground,
     Stops,
@@ -28,7 +29,6 @@ from vedette.team import PlatformSpec
 LEAST_AREA = 0.08  # a stop must promise this much [m^2]
 HYSTERESIS = 0.03  # a new strategy must gain this share more than the present one
 STICKINESS = 0.1  # to turn away from the stop under way must gain this share more
-LEFT_ALONE = 0.5  # a frontier this near a place that is left alone is left alone too [m]
 SAME_PLACE = 1.2  # a frontier this near a stop of the last round is the same one [m]
 
 
@@ -61,6 +61,9 @@ _NONE = np.empty(0, np.int64)
 STAY = Tour(np.empty((0, 2)), np.empty((0, 2)), np.empty(0), _NONE, _NONE)
 
 
+Visit = tuple[float, float, int]  # x, y [m] of a frontier, unknown cells near it when it was planned
+
+
 @dataclass(frozen=True)
 class GivenUp:
     """A frontier that a visit did not change: left alone until the map near it does."""
@@ -86,7 +89,9 @@ class MappingPlatform:
     obstacles: list[Disc] = field(default_factory=list)
     team: list[tuple[int, float, float]] = field(default_factory=list)  # id, x, y of all, itself included
     now: float = 0.0
-    visited: list[tuple[float, float, int]] = field(default_factory=list)  # x, y, unknown near it before
+    visited: list[Visit] = field(default_factory=list)  # from close by, since the last round
+    glimpsed: list[Visit] = field(default_factory=list)  # likewise, but from afar
+    closer: list[GivenUp] = field(default_factory=list)  # in vain so: to be visited from close by
     given_up: list[GivenUp] = field(default_factory=list)  # by this robot
     told: list[GivenUp] = field(default_factory=list)  # by anybody, as of the last round
     avoided: list[tuple[float, float, float]] = field(default_factory=list)  # x, y, until [s]
@@ -128,7 +133,14 @@ class MappingPlatform:
             self.ground = survey(belief, self.spec, self.x, self.y, self.obstacles, clearance)
             for close in (False, True):
                 stops = find_stops(
-                    belief, self.ground, self.spec, model, least, tours=self.ahead > 1, close=close
+                    belief,
+                    self.ground,
+                    self.spec,
+                    model,
+                    least,
+                    tours=self.ahead > 1,
+                    close=close,
+                    closer=[(spot.x, spot.y) for spot in self.closer],
                 )
                 self.stops = self._without_left_alone(stops)
                 if self.leads_anywhere:
@@ -149,7 +161,10 @@ class MappingPlatform:
         return places[left]
 
     def _update_given_up(self, belief: MapBelief) -> None:
-        """Give up frontiers that a visit did not change; take up again those whose surroundings changed."""
+        """Give up frontiers that a visit did not change; take up again those whose surroundings changed.
+
+        A visit from afar that changed nothing calls for one from close by.
+        """
 
         much = 0.5 * enough_of_sight(self.spec) / belief.frame.resolution**2
 
@@ -157,13 +172,21 @@ class MappingPlatform:
             seen = before - unknown_near(belief.classes, belief.frame, x, y)
             return seen <= max(2, min(before // 8, much))
 
+        def in_vain(visits: list[Visit]) -> list[GivenUp]:
+            spots = [(x, y, unknown_near(belief.classes, belief.frame, x, y)) for x, y, _ in visits]
+            return [
+                GivenUp(x, y, now)
+                for (x, y, now), (_, _, before) in zip(spots, visits, strict=True)
+                if now and unchanged(x, y, before)
+            ]
+
         self.given_up = [spot for spot in self.given_up if unchanged(spot.x, spot.y, spot.unknown)]
         self.told = [spot for spot in self.told if unchanged(spot.x, spot.y, spot.unknown)]
-        for x, y, before in self.visited:
-            now_unknown = unknown_near(belief.classes, belief.frame, x, y)
-            if now_unknown and unchanged(x, y, before):
-                self.given_up.append(GivenUp(x, y, now_unknown))
+        self.closer = [spot for spot in self.closer if unchanged(spot.x, spot.y, spot.unknown)]
+        self.given_up += in_vain(self.visited)
+        self.closer += in_vain(self.glimpsed)
         self.visited.clear()
+        self.glimpsed.clear()
 
     def _without_left_alone(self, stops: Stops) -> Stops:
         """Make the stops at given-up or avoided places unreachable, which keeps the arrays aligned."""

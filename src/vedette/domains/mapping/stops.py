@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +23,7 @@ ENOUGH = 0.35  # ... but no more than this [m^2]
 NEARBY = 0.6  # along either axis from a frontier's middle, a cell is near it [m]
 LEAST_OF_SIGHT = 0.05  # of the area that one scan can see at most: enough for any stop
 GAP = 2.0  # a gap that the body does not fit through must promise so many times as much
+LEFT_ALONE = 0.5  # what holds for a place holds for frontiers this near it [m]
 MOST_STOPS = 40  # nearest first; the rest waits for a later round
 VIEW_REACH = 0.8  # how far from a frontier to look for a place to see it from [sensor ranges]
 CLOSE_VIEW = 1.0  # the same where the farther place leads nowhere [m]
@@ -90,21 +92,24 @@ def find_stops(
     *,
     tours: bool = True,
     close: bool = False,
+    closer: Sequence[tuple[float, float]] = (),
 ) -> Stops:
     """Turn the belief's frontiers into stops that reveal at least ``least_area`` [m^2] in expectation.
 
     In a large building a stop must promise more than in a small one, and a gap that the body does not fit
     through more than another: behind most of them is the inside of a wall or of furniture, and nothing leads
     on.  docs/theory.md (V66)
-    A frontier is looked at from the nearest place that sees its middle, however slantingly, or, if ``close``,
-    from one within a metre.
+    A frontier is looked at from the nearest place that sees its middle, however slantingly, or, if ``close``
+    or by one of the places ``closer`` [m], from one within a metre.
     Legs between stops are worked out for ``tours`` only; else they are infinite.
     """
     frame = belief.frame
-    reach = max(2, round(_from_where(spec, frame.resolution, close) / frame.resolution))
+    reach = max(2, round(seen_from(spec, frame.resolution, close) / frame.resolution))
     targets, views = coverage.viewpoints(
         ground.field, belief.classes, belief.frontier_cells, belief.frontier_starts, reach
     )
+    if len(closer) and not close:
+        views = _from_close_by(belief, ground, spec, targets, views, closer)
     keep = np.flatnonzero(views >= 0)
     legs = ground.field.ravel()[views[keep]]
     keep = np.sort(keep[np.argsort(legs, kind="stable")[:MOST_STOPS]])
@@ -130,7 +135,26 @@ def find_stops(
     )
 
 
-def _from_where(spec: PlatformSpec, resolution: float, close: bool) -> float:
+def _from_close_by(
+    belief: MapBelief,
+    ground: Ground,
+    spec: PlatformSpec,
+    targets: NDArray[np.int64],
+    views: NDArray[np.int64],
+    places: Sequence[tuple[float, float]],
+) -> NDArray[np.int64]:
+    """Return the viewpoints, those of frontiers by the places within a metre."""
+    middles, starts = belief.frame.centres(targets), belief.frontier_starts
+    reach = round(seen_from(spec, belief.frame.resolution, close=True) / belief.frame.resolution)
+    views = views.copy()
+    for k in np.flatnonzero((np.hypot(*(middles[:, None] - places).T) < LEFT_ALONE).any(axis=0)):
+        cells = belief.frontier_cells[starts[k] : starts[k + 1]]
+        bounds = np.array([0, len(cells)])
+        _, views[k : k + 1] = coverage.viewpoints(ground.field, belief.classes, cells, bounds, max(2, reach))
+    return views
+
+
+def seen_from(spec: PlatformSpec, resolution: float, close: bool) -> float:
     """Return from how far a frontier is looked at [m]; no nearer than the robot gets to it."""
     far = VIEW_REACH * spec.range
     nearest = spec.radius + CLEARANCES[0] + 2.0 * resolution

@@ -15,22 +15,17 @@ from vedette.domains.mapping.belief import MapBelief, freeze, longest_frontier, 
 from vedette.domains.mapping.impact import Impact, MapImpactCodec, check_claim
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.planners import Planner
-from vedette.domains.mapping.platform import (
-    LEFT_ALONE,
-    SAME_PLACE,
-    STAY,
-    GivenUp,
-    MappingPlatform,
-    Tour,
-)
+from vedette.domains.mapping.platform import SAME_PLACE, STAY, GivenUp, MappingPlatform, Tour
 from vedette.domains.mapping.sightings import BIN, BINS, empty_counts
 from vedette.domains.mapping.stops import (
     CLEARANCES,
+    LEFT_ALONE,
     MOST_STOPS,
     NEARBY,
     VIEW_REACH,
     Disc,
     block,
+    seen_from,
     unknown_near,
 )
 from vedette.fusion import Fusion
@@ -283,7 +278,10 @@ class Exploring:
         elif not self.served() and self._facing(pose) is not None:
             return False
         else:
-            self.platform.visited.append((x, y, int(self.strategy.unknown[0])))
+            close = seen_from(self.spec, self.frame.resolution, close=True) + self.frame.resolution
+            afar = np.hypot(*(self.strategy.targets[0] - self.strategy.views[0])) > close
+            visits = self.platform.glimpsed if afar else self.platform.visited
+            visits.append((x, y, int(self.strategy.unknown[0])))
         self.strategy = self.strategy.after_first()
         return True
 
