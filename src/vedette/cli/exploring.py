@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 import click
 
 from vedette.cli.options import OneOf, Positive, seed_option, with_options
+from vedette.cli.pairs import tell_moved
 from vedette.cli.running import Kind
 from vedette.domains.mapping.planners import DEFAULT, PLANNERS
 from vedette.errors import InputError
@@ -112,6 +113,7 @@ def team_named(team: Path | None, robots: int | None, starts: str | None) -> lis
         specs = list(team_of(robots or len(places) or ROBOTS))
     if len(places) > len(specs):
         raise InputError(f"--starts has {len(places)} places for {len(specs)} robots; leave some out")
+    tell_moved(places, specs)
     return [replace(spec, start=places[i]) if i < len(places) else spec for i, spec in enumerate(specs)]
 
 

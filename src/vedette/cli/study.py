@@ -14,6 +14,7 @@ from rich.console import Console
 
 from vedette.cli.ends import aborted
 from vedette.cli.options import OneOf
+from vedette.errors import InputError
 from vedette.maps import map_files
 from vedette.outcome import Outcome
 from vedette.record.lock import locked
@@ -46,6 +47,8 @@ def study(spec_name: str, out: Path | None, jobs: int | None, backend: str) -> N
     broke, 2 bad input, 130 interrupted.
     """
     chosen = cast(Backend, backend)
+    if chosen == "dask" and jobs is not None and os.environ.get("DASK_SCHEDULER_ADDRESS"):
+        raise InputError("--jobs: the cluster at DASK_SCHEDULER_ADDRESS has workers of its own; leave it out")
     require(chosen)
     path = find_spec(spec_name)
     folder = Path("runs") / f"study-{path.stem}" if out is None else out

@@ -15,6 +15,7 @@ import numpy as np
 
 from vedette.cli.exploring import EXPLORING, exploring_options, team_named, world_named
 from vedette.cli.options import Output, Positive, output_options, with_options
+from vedette.cli.pairs import check_scheme, tell_duration, tell_what_needs_links
 from vedette.cli.running import ReportT
 from vedette.cli.searching import SEARCHING, searching_options
 from vedette.cli.staging import Stage
@@ -104,6 +105,7 @@ def explore(
     Keys are made for the occasion. MAP and the outputs are as for `vedette explore`. Every robot simulates
     its own body. Exit status: 0 complete, 1 incomplete, 2 bad input, 130 interrupted.
     """
+    check_scheme(planner, scheme)
     world, specs = world_of(world_named(map_path, resolution), seed), team_named(team, robots, starts)
     places = choose_starts(world, specs, np.random.default_rng([seed, 1]))
     options = ExploreOptions(planner, scheme, fusion, return_home)
@@ -144,6 +146,8 @@ def track(
     if coordination == "optimum":
         raise InputError("--coordination optimum: nobody on a network can work it out; see `vedette track`")
     scenario, name = scenario_of(scenario_path)
+    tell_what_needs_links(coordination)
+    tell_duration(max_time, scenario.duration)
     options = TrackOptions(coordination, scheme, fusion, objective, continuous)
     plan = FlightsPlan("track", options, scenario_path, len(scenario.vehicles), seed, speed, lease)
     vehicles = TrackTeam(scenario, options, plan.times)
@@ -180,6 +184,8 @@ def search(
     status: 0 found, 1 not found in time or declared where it is not, 2 bad input, 130 interrupted.
     """
     case = case_of(scenario_path)
+    tell_what_needs_links(coordination)
+    tell_duration(max_time, case.scenario.duration)
     options = SearchOptions(coordination, scheme, fusion)
     plan = FlightsPlan("search", options, scenario_path, len(case.names), seed, speed, lease)
     vehicles = SearchTeam(case, options, plan.times)

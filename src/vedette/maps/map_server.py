@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 
 import numpy as np
 import yaml
 from numpy.typing import NDArray
 
-from vedette.errors import InputError, nearest_name
+from vedette.errors import InputError, InputWarning, nearest_name
 from vedette.maps.atomic import atomic_path
 from vedette.maps.classes import classes_of_pair, classes_of_plain
 from vedette.maps.frame import GridFrame
@@ -37,7 +38,8 @@ def read_map(path: Path | str, resolution: float | None = None) -> tuple[GridFra
         InputError: the path is missing, a folder, unreadable or not a map, or a value in it is out of range.
 
     Warns:
-        InputWarning: grey that map savers write for unknown is free, or the yaw is more than a whole turn.
+        InputWarning: grey that map savers write for unknown is free, the yaw is more than a whole turn, or
+            ``resolution`` overrides another.
     """
     path = Path(path)
     if resolution is not None:
@@ -47,6 +49,9 @@ def read_map(path: Path | str, resolution: float | None = None) -> tuple[GridFra
     if not _is_pair(path):
         return _read_plain(path, resolution)
     meta = read_meta(path)
+    if resolution is not None and meta.resolution not in (None, resolution):
+        said = f"--resolution {resolution:g} replaces that of {path}, {meta.resolution:g} m"
+        warnings.warn(said, InputWarning, stacklevel=2)
     resolution = resolution if resolution is not None else meta.resolution
     if resolution is None:
         raise InputError(f"{path}: no resolution; add 'resolution: 0.05' [m per pixel] or give --resolution")
