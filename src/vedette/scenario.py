@@ -22,14 +22,16 @@ _PLACE = re.compile(r"(?P<what>.*?)(?: - at `\$(?P<place>[^`]*)`)?")
 _STEP = re.compile(r"\.([^.\[\]]+)|\[(\d+)\]")
 
 
-def load_scenario(path: Path | str, kind: type[T]) -> T:
+def load_scenario(path: Path | str, kind: type[T], what: str = "scenario") -> T:
     """Read a YAML file as a value of ``kind``, a ``msgspec.Struct`` that forbids unknown fields.
+
+    ``what`` the file is goes into messages.
 
     Raises:
         InputError: unreadable, not YAML, a field that is unknown (with the nearest valid name), missing, of
             the wrong type or out of its range, or a number that is not finite; the line names file and field.
     """
-    content = read_yaml(Path(path), "scenario", "a scenario is 'field: value' pairs")
+    content = read_yaml(Path(path), what, f"a {what} is 'field: value' pairs")
     return as_scenario({} if content is None else content, kind, str(path))
 
 

@@ -286,7 +286,7 @@ def test_the_operator_is_told_who_answers_on_what_tree_and_strangers_change_noth
         after = all_of(team)
         assert set(after) == set(before) == {"robot-1", "robot-2"}
         assert after["robot-1"]["number"] == before["robot-1"]["number"]
-        assert [link["robot"] for link in after["robot-1"]["links"]] == [1]  # type: ignore[attr-defined]
+        assert [link["robot"] for link in after["robot-1"]["links"]] == [2]  # type: ignore[attr-defined]
         assert "overlay" in ask(team).output  # in the column of what was dropped
         os.kill(team.processes[1].pid, signal.SIGKILL)
         wait_until(lambda: size_of(ask(team, "--json", "--wait", 0.5)) == 1, START)

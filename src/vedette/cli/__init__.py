@@ -12,7 +12,7 @@ from typing import Any
 import click
 
 from vedette.cli.pipes import readers_may_leave
-from vedette.errors import InputError, InputWarning
+from vedette.errors import InputError, InputWarning, check_word
 from vedette.interrupt import ending_on_any_signal
 from vedette.outcome import Outcome
 
@@ -28,6 +28,14 @@ class _Commands(click.Group):
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names of all commands."""
         return list(COMMANDS)
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Return the command that is asked for; for another word, the nearest one is offered."""
+        if not ctx.resilient_parsing and not args[0].startswith("-"):
+            check_word("command", args[0], COMMANDS)
+        return super().resolve_command(ctx, args)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Return a command, which is named as its module is."""
@@ -58,9 +66,12 @@ def main() -> None:
 def _main() -> None:
     try:
         with _remarks():
-            sys.exit(commands.main(standalone_mode=False))
+            sys.exit(commands.main(prog_name="vedette", standalone_mode=False))
     except (click.Abort, KeyboardInterrupt):
         sys.exit(Outcome.INTERRUPTED.status)
+    except click.exceptions.NoArgsIsHelpError as error:  # nothing was asked for: what can be
+        click.echo(error.format_message(), err=True)
+        sys.exit(BAD_INPUT)
     except (click.ClickException, InputError) as error:
         text = error.format_message() if isinstance(error, click.ClickException) else str(error)
         _say(text)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import click
 
-from vedette.cli.options import Positive
+from vedette.cli.options import FILE, Positive
 from vedette.errors import InputError
 from vedette.interrupt import ENDINGS
 from vedette.net.config import load_config
@@ -21,7 +21,7 @@ WATCH_PERIOD = 1.0  # [s]
 
 
 @click.command()
-@click.argument("config_path", metavar="CONFIG.yaml", type=Path)
+@click.argument("config_path", metavar="CONFIG.yaml", type=FILE)
 @click.option(
     "--speed",
     type=Positive("times real time", most=50.0),

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 import click
 
-from vedette.cli.options import OneOf, Positive, seed_option, with_options
+from vedette.cli.options import FILE, OneOf, Positive, seed_option, with_options
 from vedette.cli.pairs import tell_moved
 from vedette.cli.running import Kind
 from vedette.domains.mapping.planners import DEFAULT, PLANNERS
@@ -33,7 +33,7 @@ def exploring_options(command: CommandT) -> CommandT:
     """``MAP`` and what says who explores it, and how."""
     return with_options(
         command,
-        click.argument("map_path", metavar="[MAP]", required=False, type=Path),
+        click.argument("map_path", metavar="[MAP]", required=False, type=FILE),
         click.option(
             "--resolution",
             type=Positive("m per pixel"),
@@ -46,7 +46,7 @@ def exploring_options(command: CommandT) -> CommandT:
             help=f"Size of the team.  [default: {ROBOTS}, or the team file's]",
         ),
         click.option(
-            "--team", type=Path, metavar="FILE", help="Team file: bodies, lidars and starts of the robots."
+            "--team", type=FILE, metavar="FILE", help="Team file: bodies, lidars and starts of the robots."
         ),
         click.option(
             "--starts",

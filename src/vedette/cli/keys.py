@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from vedette.cli.options import FILE
 from vedette.errors import InputError
 from vedette.net.keys import CA_KEY, DAYS, add_robots, issue_team
 from vedette.net.names import OPERATOR
@@ -14,7 +15,7 @@ from vedette.net.names import OPERATOR
 
 @click.command()
 @click.argument("team")
-@click.argument("folder", metavar="DIR", type=Path)
+@click.argument("folder", metavar="DIR", type=FILE)
 @click.option("--robots", type=int, metavar="N", help="Make DIR, with the keys of a new team of N robots.")
 @click.option("--add", type=int, metavar="K", help="Add keys for K more robots to the team in DIR.")
 @click.option("--days", type=int, default=DAYS, show_default=True, help="For how long they are valid.")

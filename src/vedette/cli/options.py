@@ -11,11 +11,14 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import click
+from click.shell_completion import CompletionItem
 
 from vedette.errors import InputError, check_word
 from vedette.sim.radio import Radio, parse_radio
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
+
+FILE = click.Path(path_type=Path, readable=False)  # what it is, its reader says; a shell completes it
 
 _KILL = re.compile(r"(\d+)@(\d+(?:\.\d*)?)")
 
@@ -36,6 +39,12 @@ class OneOf(click.ParamType[str]):
         """Return the word, or refuse it."""
         check_word(param.name if param is not None and param.name else "name", value, self.words)
         return value
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        """Offer the words that begin so."""
+        return [CompletionItem(word) for word in self.words if word.startswith(incomplete)]
 
 
 class Positive(click.ParamType[float]):
@@ -152,7 +161,7 @@ def output_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return with_options(
         taken,
         click.option(
-            "--out", type=Path, metavar="DIR",
+            "--out", type=FILE, metavar="DIR",
             help="Folder for the results.  [default: a new one under runs/]",
         ),
         click.option("--force", is_flag=True, help="Write into DIR although it exists."),

@@ -16,7 +16,7 @@ from rich.live import Live
 from rich.text import Text
 
 from vedette.cli.ends import aborted
-from vedette.cli.options import seed_option
+from vedette.cli.options import FILE, seed_option
 from vedette.errors import InputError
 from vedette.outcome import Outcome
 from vedette.record.folder import OutputFolder
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.option(
-    "--out", type=Path, metavar="DIR", help="Folder for the results.  [default: a new one under runs/]"
+    "--out", type=FILE, metavar="DIR", help="Folder for the results.  [default: a new one under runs/]"
 )
 @click.option("--quick", is_flag=True, help="Smaller teams, fewer cases and missions: about a minute.")
 @seed_option("all chance, and the offices")

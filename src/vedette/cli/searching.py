@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import click
 
-from vedette.cli.options import OneOf, Positive, seed_option, with_options
+from vedette.cli.options import FILE, OneOf, Positive, seed_option, with_options
 from vedette.cli.running import Kind
 from vedette.missions.search.options import COORDINATIONS, FUSIONS
 from vedette.negotiation import SCHEMES
@@ -25,7 +25,7 @@ def searching_options(command: CommandT) -> CommandT:
     """``SCENARIO`` and what says how its vehicles search."""
     return with_options(
         command,
-        click.argument("scenario_path", metavar="[SCENARIO]", required=False, type=Path),
+        click.argument("scenario_path", metavar="[SCENARIO]", required=False, type=FILE),
         seed_option("the hidden target and all chance"),
         click.option(
             "--coordination",

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from vedette.cli.options import Positive
+from vedette.cli.options import FILE, Positive
 from vedette.errors import InputError
 from vedette.net.access import Access
 from vedette.net.config import ADMITTED, load_config
@@ -19,8 +19,8 @@ from vedette.outcome import Outcome
 
 
 @click.command()
-@click.argument("config_paths", metavar="CONFIG.yaml...", nargs=-1, required=True, type=Path)
-@click.option("--keys", type=Path, metavar="DIR", help="The operator's folder of `vedette keys`.")
+@click.argument("config_paths", metavar="CONFIG.yaml...", nargs=-1, required=True, type=FILE)
+@click.option("--keys", type=FILE, metavar="DIR", help="The operator's folder of `vedette keys`.")
 @click.option(
     "--wait",
     type=Positive("s", most=60.0),

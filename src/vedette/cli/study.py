@@ -13,7 +13,7 @@ import click
 from rich.console import Console
 
 from vedette.cli.ends import aborted
-from vedette.cli.options import OneOf
+from vedette.cli.options import FILE, OneOf
 from vedette.errors import InputError
 from vedette.maps import map_files
 from vedette.outcome import Outcome
@@ -31,7 +31,7 @@ BROKE = 1
 
 @click.command()
 @click.argument("spec_name", metavar="SPEC")
-@click.option("--out", type=Path, metavar="DIR", help="Folder of the study.  [default: runs/study-SPEC]")
+@click.option("--out", type=FILE, metavar="DIR", help="Folder of the study.  [default: runs/study-SPEC]")
 @click.option(
     "--jobs", type=click.IntRange(1, 1024), metavar="N", help="Processes.  [default: one for each core]"
 )

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import click
 
-from vedette.cli.options import OneOf, Positive, seed_option, with_options
+from vedette.cli.options import FILE, OneOf, Positive, seed_option, with_options
 from vedette.cli.running import Kind
 from vedette.domains.tracking.objective import OBJECTIVES
 from vedette.fusion.gaussian import WAYS
@@ -27,7 +27,7 @@ def tracking_options(command: CommandT) -> CommandT:
     """``SCENARIO`` and what says how its vehicles track."""
     return with_options(
         command,
-        click.argument("scenario_path", metavar="[SCENARIO]", required=False, type=Path),
+        click.argument("scenario_path", metavar="[SCENARIO]", required=False, type=FILE),
         seed_option("the targets' true ways and all chance"),
         click.option(
             "--coordination",

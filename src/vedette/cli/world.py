@@ -7,15 +7,15 @@ from pathlib import Path
 import click
 import numpy as np
 
-from vedette.errors import InputError, nearest_name
+from vedette.cli.options import FILE, OneOf
 from vedette.record.folder import OutputFolder
 from vedette.sim.worlds import GENERATORS
 
 
 @click.command()
-@click.argument("kind", metavar="office|cave|maze")
+@click.argument("kind", type=OneOf(list(GENERATORS)))
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Which one to make.")
-@click.option("--out", type=Path, required=True, metavar="DIR", help="New folder for the map.")
+@click.option("--out", type=FILE, required=True, metavar="DIR", help="New folder for the map.")
 @click.option("--width", type=float, default=30.0, show_default=True, help="Size in x [m].")
 @click.option("--height", type=float, default=20.0, show_default=True, help="Size in y [m].")
 @click.option("--resolution", type=float, default=0.1, show_default=True, help="Side of a cell [m].")
@@ -25,8 +25,6 @@ def world(
 ) -> None:
     """Generate an office, a cave or a maze: DIR gets map.yaml and map.pgm, as ROS map_server reads them,
     and preview.png. The same seed and size give the same world."""
-    if kind not in GENERATORS:
-        raise InputError(f"unknown kind of world {kind!r}; {nearest_name(kind, GENERATORS)}")
     made = GENERATORS[kind](np.random.default_rng(seed), width, height, resolution)
     with OutputFolder.make(out, force, kind) as folder:
         path = made.save(folder.path)

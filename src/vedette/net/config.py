@@ -118,7 +118,7 @@ def load_config(path: Path | str) -> AgentConfig:
     Raises:
         InputError: as :func:`vedette.scenario.load_scenario`, or a name or number that cannot be.
     """
-    config = load_scenario(path, AgentConfig)
+    config = load_scenario(path, AgentConfig, "robot's file")
     try:
         _check_missions(config)
         if config.mission == "explore":

@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from msgspec.structs import replace
 from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
@@ -41,8 +42,22 @@ class TeamStatus(Figures):
 
 
 def team_status(told: Mapping[int, Condition | None]) -> TeamStatus:
-    """Return what ``vedette status --json`` prints."""
-    return TeamStatus(robots={robot_name(robot): said for robot, said in told.items()})
+    """Return what ``vedette status --json`` prints: robots by their numbers, which count from 1."""
+    return TeamStatus(
+        robots={robot_name(robot): None if said is None else _numbered(said) for robot, said in told.items()}
+    )
+
+
+def _numbered(said: Condition) -> Condition:
+    """Return what a robot said with robots' numbers in the place of their indices."""
+    return replace(
+        said,
+        robot=said.robot + 1,
+        root=said.root + 1,
+        parent=None if said.parent is None else said.parent + 1,
+        neighbours=tuple(robot + 1 for robot in said.neighbours),
+        links=tuple(replace(link, robot=link.robot + 1) for link in said.links),
+    )
 
 
 def status_table(told: Mapping[int, Condition | None]) -> RenderableType:
@@ -71,7 +86,7 @@ def _row(said: Condition, digest: int) -> list[str]:
         said.state if said.refusal is None else f"refused: {said.refusal}",
         "-" if said.known is None else f"{100 * said.known:.1f} %",
         "same" if said.digest == digest else "differs",
-        f"{robot_name(said.root)}, {said.size} robots, {said.age:.0f} s old",
+        f"{robot_name(said.root)}, {said.size} robot{'s' * (said.size != 1)}, {said.age:.0f} s old",
         parent,
         str(said.rounds) if said.decided is None else f"{said.rounds}, {said.decided:.0f} s ago",
         dropped or "none",
@@ -90,15 +105,16 @@ def _link(link: LinkReport) -> list[str]:
 
 def _verdict(told: Mapping[int, Condition | None]) -> str:
     answered = [said for said in told.values() if said is not None]
+    if not answered:
+        return "none answered"
+    count = f"{len(answered)} of {len(told)} answered"
+    if len(answered) == 1:  # there is nobody to agree with
+        return count
     trees = len({said.number for said in answered})
     maps = len({said.digest for said in answered})
     together = "on one tree" if trees == 1 else f"on {trees} trees"
     agree = "hold the same map" if maps == 1 else f"hold {maps} different maps"
-    return (
-        f"{len(answered)} of {len(told)} answered; they are {together} and {agree}"
-        if answered
-        else "none answered"
-    )
+    return f"{count}; {'they' if len(answered) == len(told) else 'these'} are {together} and {agree}"
 
 
 def _read(robot: int, payload: bytes) -> Condition | None:

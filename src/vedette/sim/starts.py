@@ -211,9 +211,8 @@ def _place(
                 places.keep_clear(place, 2 * radius + gap)
         if len(placed) == len(specs):
             return
-    raise InputError(
-        f"{len(specs)} robots do not fit in {world.name}; only {len(placed)} do: use fewer or smaller ones"
-    )
+    room = f"only {len(placed)} {'does' if len(placed) == 1 else 'do'}"
+    raise InputError(f"{len(specs)} robots do not fit in {world.name}; {room}: use fewer or smaller ones")
 
 
 class _Places:

@@ -1,0 +1,62 @@
+"""What ``vedette status`` tells of what robots told."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from msgspec.structs import replace
+from rich.console import Console
+
+from tests.fuzz.decoders import conditions
+from tests.support.schemas import valid
+from vedette.net.report import Condition
+from vedette.net.status import status_table, team_status
+
+(FIRST,) = conditions()  # robot 0, root, with the neighbours 1 and 2
+SECOND = replace(FIRST, robot=1, parent=0, neighbours=(0,), size=1)
+CONSOLE = Console(width=300)
+
+
+def said(told: dict[int, Condition | None]) -> list[str]:
+    """Lines of the table."""
+    with CONSOLE.capture() as shown:
+        CONSOLE.print(status_table(told))
+    return shown.get().splitlines()
+
+
+@pytest.mark.parametrize(
+    ("told", "verdict"),
+    [
+        ({0: FIRST, 1: SECOND}, "2 of 2 answered; they are on one tree and hold the same map"),
+        ({0: FIRST, 1: SECOND, 2: None}, "2 of 3 answered; these are on one tree and hold the same map"),
+        (
+            {0: FIRST, 1: replace(SECOND, number=9, digest=1)},
+            "2 of 2 answered; they are on 2 trees and hold 2 different maps",
+        ),
+        ({0: FIRST, 1: None}, "1 of 2 answered"),
+        ({0: FIRST}, "1 of 1 answered"),
+        ({0: None, 1: None}, "none answered"),
+    ],
+)
+def test_agreement_is_told_of_two_that_answered_or_more(
+    told: dict[int, Condition | None], verdict: str
+) -> None:
+    assert said(told)[-1].strip() == verdict
+
+
+def test_a_tree_of_one_robot_is_told_in_the_singular() -> None:
+    (row,) = [line for line in said({1: SECOND}) if "robot-2" in line and "old" in line]
+    assert "robot-1, 1 robot, " in row
+
+
+def test_in_json_robots_count_from_1_wherever_they_are_named() -> None:
+    text = team_status({0: FIRST, 1: SECOND, 2: None}).to_json()
+    valid("status", text.encode())
+    robots = json.loads(text)["robots"]
+    assert [robots[name] and robots[name]["robot"] for name in robots] == [1, 2, None]
+    assert list(robots) == ["robot-1", "robot-2", "robot-3"]
+    assert (robots["robot-1"]["parent"], robots["robot-2"]["parent"]) == (None, 1)
+    assert robots["robot-1"]["neighbours"] == [2, 3]
+    assert robots["robot-1"]["root"] == 1
+    assert [link["robot"] for link in robots["robot-1"]["links"]] == [2]
