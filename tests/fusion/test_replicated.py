@@ -6,7 +6,7 @@ import time
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -66,6 +66,7 @@ def explore(net: Network, rng: np.random.Generator, seconds: int) -> None:
 
 
 @settings(deadline=None, max_examples=12)
+@example(seed=298598, n=3, tree=False)  # one comes to hold another's evidence by the third alone
 @given(seed=st.integers(0, 10**6), n=st.integers(2, 5), tree=st.booleans())
 def test_lossy_repeating_reordering_links_give_everybody_the_brute_force_sum(
     seed: int, n: int, tree: bool

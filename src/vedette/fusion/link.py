@@ -85,10 +85,9 @@ class EvidenceLink(Generic[NewsT]):
             self._owes_greeting |= payload.greeting.wants
         for key, version in payload.have.items():
             self._holds(key, version, now)
-        for key, news in payload.sections:
-            if key != self.key:
-                self._owed.add(key)
-                self._holds(key, news.version, now)
+        for key, news in payload.sections:  # our own among them, where it came to them by another way
+            self._owed.add(key)
+            self._holds(key, news.version, now)
 
     def tell(
         self, held: Mapping[Key, int], streams: Iterable[Stream[NewsT]], now: float
