@@ -84,8 +84,8 @@ def test_processes_track_as_well_as_the_simulation(tmp_path: Path) -> None:
     assert told["outcome"] == "complete"
     assert told["steps"] == 120
     assert told["rounds"] > 90
-    assert told["quality"]["entropy_mean_nat"] < 39.0  # 36.4 simulated; with shared beliefs alone 38.9
-    assert 0.6 < told["quality"]["nees"] < 1.6
+    assert told["entropy_mean_nat"] < 39.0  # 36.4 simulated; with shared beliefs alone 38.9
+    assert 0.6 < told["nees"] < 1.6
 
 
 @pytest.mark.slow
@@ -113,6 +113,6 @@ def test_a_tracking_team_gets_over_a_crash_a_restart_a_freeze_and_a_partition(tm
     told = summary(tmp_path / "out")
     assert result.exit_code == 0, result.output
     assert told["outcome"] == "complete"
-    assert told["quality"]["entropy_mean_nat"] < 48.0  # 57.5 without any coordination
-    assert 0.5 < told["quality"]["nees"] < 1.8
+    assert told["entropy_mean_nat"] < 48.0  # 57.5 without any coordination
+    assert 0.5 < told["nees"] < 1.8
     assert all(way > 800.0 for way in told["path_m"].values())  # of 2400 m

@@ -23,7 +23,7 @@ LOWEST = "\n".join(  # NumPy 1.26.4 among them: what Ubuntu 24.04, and ROS Jazzy
 MACHINES = {"x86_64": 62, "aarch64": 183}  # e_machine of an ELF file
 MISSION = ("explore", "--robots", "2", "--seed", "1", "--max-time", "20", "--out", "short", "--json")
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-NEGOTIATION = re.search(r"```python\n(.*?)```\n\n```text\n(.*?)```", README, re.DOTALL)
+NEGOTIATION = re.search(r"```python\n((?:(?!```).)*)```\n\n```text\n(.*?)```", README, re.DOTALL)
 
 
 def run(*command: str | Path, cwd: Path = ROOT, status: int = 0) -> str:
