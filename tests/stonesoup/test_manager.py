@@ -366,6 +366,19 @@ def test_bad_properties_are_told_in_one_line(properties: dict[str, Any], message
         manager(made, **properties).choose_actions(made.tracks, THEN)
 
 
+def test_a_time_before_that_of_a_track_is_told_in_one_line_and_its_own_time_is_none() -> None:
+    made = small(1, 2, 0)
+    late = datetime.timedelta(seconds=1)
+    with pytest.raises(
+        InputError, match="lies before track .*give the time at which the actions end"
+    ) as caught:
+        manager(made).choose_actions(made.tracks, START - late)
+    assert "\n" not in str(caught.value)
+    for track in made.tracks:
+        assert track.state.timestamp == START
+    assert manager(made).choose_actions(made.tracks, START)
+
+
 def test_no_sensors_no_covariance_and_a_second_best_are_told_in_one_line() -> None:
     made = small(1, 2, 0)
     with pytest.raises(InputError, match="no sensors"):

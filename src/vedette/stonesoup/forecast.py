@@ -28,7 +28,7 @@ def forecast(tracks: Iterable[Any], predictor: Any, timestamp: datetime.datetime
     """Predict every track once.
 
     Raises:
-        InputError: a track without a Gaussian state, or states of different size.
+        InputError: a track without a Gaussian state or of a later time, or states of different size.
     """
     predicted = []
     for track in tracks:
@@ -38,6 +38,11 @@ def forecast(tracks: Iterable[Any], predictor: Any, timestamp: datetime.datetime
             kind = type(track.state).__name__
             raise InputError(
                 f"track {track.id} has a {kind}; give it a state with a covariance (GaussianState)"
+            )
+        if track.state.timestamp is not None and timestamp < track.state.timestamp:
+            raise InputError(
+                f"timestamp {timestamp} lies before track {track.id}, which is of {track.state.timestamp}; "
+                "give the time at which the actions end"
             )
         state = predictor.predict(track.state, timestamp=timestamp)
         mean = np.asarray(state.mean, dtype=np.float64).ravel()
