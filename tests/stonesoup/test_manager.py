@@ -370,7 +370,7 @@ def test_a_time_before_that_of_a_track_is_told_in_one_line_and_its_own_time_is_n
     made = small(1, 2, 0)
     late = datetime.timedelta(seconds=1)
     with pytest.raises(
-        InputError, match="lies before track .*give the time at which the actions end"
+        InputError, match=r"lies before track .*give the time at which the actions end"
     ) as caught:
         manager(made).choose_actions(made.tracks, START - late)
     assert "\n" not in str(caught.value)
