@@ -132,13 +132,16 @@ def test_a_file_that_is_not_there_and_a_speed_that_cannot_be_are_told_in_one_lin
 # -- a robot on its own ------------------------------------------------------------------------------------
 
 
-def test_a_robot_without_neighbours_explores_alone_over_plain_tcp_with_a_warning(folder: Path) -> None:
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP], ids=lambda n: n.name)
+def test_a_robot_without_neighbours_explores_alone_over_plain_tcp_with_a_warning(
+    folder: Path, number: signal.Signals
+) -> None:
     links = {"insecure": True, "keys": None, "listen": [f"tcp/127.0.0.1:{free_port()}"]}
     path = config(folder, "alone.yaml", links=links)
     command = [sys.executable, "-m", "vedette", "agent", str(path), "--speed", "10"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as agent:
         wait_until(lambda: state_of(path) == "done", 2 * START)
-        agent.send_signal(signal.SIGTERM)
+        agent.send_signal(number)
         out, err = agent.communicate(timeout=START)
     assert agent.returncode == 0
     assert err == "vedette: links are plain TCP: whoever reaches the port can read and write\n"

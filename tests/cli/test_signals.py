@@ -12,7 +12,17 @@ from pathlib import Path
 import pytest
 
 from tests.support.commands import check_files, start
+from tests.support.net_team import wait_until
+from tests.support.schemas import valid
 
+MANY = 60  # runs
+STUDY = f"""
+planners: [nearest]
+worlds: [{{kind: maze, seeds: {list(range(MANY))}, width: 10, height: 10}}]
+robots: [1]
+platform: {{beams: 90, rate: 2}}
+setup: {{max_time: 25}}
+"""
 CODE = "from vedette.__main__ import main; main()"
 
 
@@ -42,6 +52,38 @@ def test_a_signal_ends_a_mission_as_ctrl_c_does(tmp_path: Path, number: signal.S
     assert b"interrupted" in out
     check_files(tmp_path / "out", "explore")
     assert json.loads((tmp_path / "out" / "summary.json").read_text())["outcome"] == "interrupted"
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP], ids=lambda n: n.name)
+def test_a_signal_ends_a_study_which_keeps_what_is_done_and_goes_on(
+    tmp_path: Path, number: signal.Signals
+) -> None:
+    (tmp_path / "tiny.yaml").write_text(STUDY)
+    process = start(["study", "tiny.yaml", "--jobs", "2", "--out", "out"], tmp_path)
+    results = tmp_path / "out" / "runs"
+    wait_until(lambda: process.poll() is not None or len(list(results.glob("*.json"))) > 0, 60.0)
+    process.send_signal(number)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 130, err
+    assert b"Traceback" not in err
+    assert b"interrupted; what is done is kept" in out
+    done = {path.name: path.read_bytes() for path in results.glob("*.json")}
+    assert 0 < len(done) < MANY
+    assert f"{MANY - len(done)} runs to go".encode() in out
+    assert (tmp_path / "out" / "report.html").exists()
+    for content in done.values():
+        valid("study-run", content)
+
+
+def test_a_signal_ends_a_reproduction_whose_report_is_written(tmp_path: Path) -> None:
+    process = start(["reproduce", "--quick", "--out", "out"], tmp_path)
+    assert process.stderr is not None
+    next(line for line in process.stderr if b"[ 1/" in line)
+    process.send_signal(signal.SIGTERM)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 130, err
+    assert b"interrupted; missing: " in out
+    assert (tmp_path / "out" / "report.html").exists()
 
 
 def test_under_nohup_a_terminal_that_closes_ends_nothing(maze: Path, tmp_path: Path) -> None:
