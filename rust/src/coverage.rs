@@ -14,36 +14,47 @@ use pyo3::prelude::*;
 use footprint::{footprints, Sensor};
 use impact::{combine, marginal, miss_table};
 use tours::{best_tour, most_any_tour_adds, Stops};
-use viewpoints::viewpoints;
+use viewpoints::{viewpoints, Ground};
+
+use crate::visibility::checked_cell;
 
 pub const LAYERS: usize = 32;
 const STEPS_PER_NAT: f64 = 16.0;
+const UNKNOWN: u8 = 0;
 const FREE: u8 = 1;
 const OCCUPIED: u8 = 2;
 
 type Sparse = (Vec<u32>, Vec<u8>);
 type PySparse<'py> = (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray1<u8>>);
 
+type PyViews<'py> =
+    (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i64>>, f64, bool);
+
 #[pyfunction(name = "viewpoints")]
 fn py_viewpoints<'py>(
     py: Python<'py>,
     field: PyReadonlyArray2<'py, f32>,
+    source: i64,
+    resolution: f64,
     classes: PyReadonlyArray2<'py, u8>,
     cells: PyReadonlyArray1<'py, i64>,
     starts: PyReadonlyArray1<'py, i64>,
     reach: i64,
-) -> PyResult<(Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<i64>>)> {
-    let [rows, cols] = [classes.as_array().nrows(), classes.as_array().ncols()];
-    let (representatives, views) = viewpoints(
-        field.as_slice()?,
-        classes.as_slice()?,
-        rows,
-        cols,
-        cells.as_slice()?,
-        starts.as_slice()?,
-        reach,
-    );
-    Ok((representatives.into_pyarray(py), views.into_pyarray(py)))
+    most: usize,
+    work: u64,
+) -> PyResult<PyViews<'py>> {
+    let (field, classes_flat) = (field.as_slice()?, classes.as_slice()?);
+    let ground = Ground { field, source: checked_cell(source, field.len())?, resolution };
+    let cols = classes.as_array().ncols();
+    let (cells, starts) = (cells.as_slice()?, starts.as_slice()?);
+    let found = viewpoints(&ground, classes_flat, cols, cells, starts, reach, most, work);
+    Ok((
+        found.clusters.into_pyarray(py),
+        found.targets.into_pyarray(py),
+        found.views.into_pyarray(py),
+        found.horizon,
+        found.cut_short,
+    ))
 }
 
 type PyFootprints<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<u32>>, Bound<'py, PyArray1<f32>>);

@@ -95,11 +95,15 @@ LAYERS: int
 
 def viewpoints(
     field: NDArray[np.float32],
+    source: int,
+    resolution: float,
     classes: NDArray[np.uint8],
     cells: NDArray[np.int64],
     starts: NDArray[np.int64],
     reach: int,
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]: ...
+    most: int,
+    work: int,
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], float, bool]: ...
 def footprints(
     classes: NDArray[np.uint8],
     views: NDArray[np.int64],

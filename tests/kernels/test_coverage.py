@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from vedette.domains.mapping import layers
 from vedette.kernels import coverage
 from vedette.kernels.coverage import LAYERS, Footprints, TourProblem
+from vedette.kernels.distance import distance_field
 from vedette.kernels.frontier import find_frontiers
 from vedette.kernels.reference import coverage as reference
 from vedette.kernels.reference.coverage import Sparse
@@ -21,6 +22,7 @@ from vedette.maps import FREE, OCCUPIED, UNKNOWN
 
 seeds = st.integers(0, 2**32 - 1)
 CELLS = 30
+ENDLESS = 2**63
 
 
 def random_map(rng: np.random.Generator) -> NDArray[np.uint8]:
@@ -89,20 +91,80 @@ def random_tour(problem: TourProblem, rng: np.random.Generator, max_stops: int) 
     return [int(stop) for stop in rng.permutation(reachable)[: rng.integers(0, max_stops + 1)]]
 
 
+Scene = tuple[NDArray[np.float32], int, NDArray[np.uint8], NDArray[np.int64], NDArray[np.int64], int]
+
+
+def random_scene(rng: np.random.Generator) -> Scene:
+    """Draw a map and its frontiers, a reach, a place and a field of ways [m] from there to some cells."""
+    porous = rng.random() < 0.3
+    classes = porous_map(rng) if porous else random_map(rng)
+    share = rng.choice([0.001, 0.01] if porous else [0.1, 0.5, 1.0])
+    stands = (classes == FREE) & (rng.random(classes.shape) < share)
+    source = int(rng.integers(classes.size))  # the robot's own place may not be free
+    stands.flat[source] = True
+    way = distance_field(np.ones(classes.shape, bool), source, 0.1)
+    if rng.random() < 0.5:
+        way *= rng.uniform(1.0, 3.0, way.shape).astype(np.float32)  # by detours
+    cells, starts = find_frontiers(classes, 1, int(rng.integers(2, 12)))
+    reach = int(rng.integers(0, 40 if porous else 9))
+    return np.where(stands, way, np.inf).astype(np.float32), source, classes, cells, starts, reach
+
+
 @settings(deadline=None, max_examples=60)
 @given(seeds)
 def test_viewpoints_equal_trying_every_reachable_cell(seed: int) -> None:
     rng = np.random.default_rng(seed)
-    porous = rng.random() < 0.3
-    classes = porous_map(rng) if porous else random_map(rng)
-    share = rng.choice([0.001, 0.01] if porous else [0.1, 0.5, 1.0])
-    field = np.where((classes == FREE) & (rng.random(classes.shape) < share), 1.0, np.inf).astype(np.float32)
-    field.flat[rng.integers(field.size)] = 0.0  # the robot's own place may not be free
-    cells, starts = find_frontiers(classes, 1, int(rng.integers(2, 12)))
-    reach = int(rng.integers(0, 40 if porous else 9))
-    found = coverage.viewpoints(field, classes, cells, starts, reach)
-    for kernel, twin in zip(found, reference.viewpoints(field, classes, cells, starts, reach), strict=True):
-        np.testing.assert_array_equal(kernel, twin)
+    field, source, classes, cells, starts, reach = random_scene(rng)
+    most = int(rng.integers(1, 40))
+    found = coverage.viewpoints(field, source, 0.1, classes, cells, starts, reach, most, ENDLESS)
+    targets, views = reference.viewpoints(field, classes, cells, starts, reach)
+    seen = np.flatnonzero(views >= 0)
+    ways = field.ravel()[views[seen]]
+    nearest = np.sort(seen[np.argsort(ways, kind="stable")[:most]])
+    np.testing.assert_array_equal(found.clusters, nearest)
+    np.testing.assert_array_equal(found.targets, targets[nearest])
+    np.testing.assert_array_equal(found.views, views[nearest])
+    missing = np.setdiff1d(seen, nearest)
+    assert np.all(field.ravel()[views[missing]] >= found.horizon)
+    assert len(found) == most or found.horizon == np.inf
+    assert not found.cut_short
+
+
+@settings(deadline=None, max_examples=60)
+@given(seeds)
+def test_viewpoints_within_the_horizon_of_limited_work_are_all_there(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    field, source, classes, cells, starts, reach = random_scene(rng)
+    whole = coverage.viewpoints(field, source, 0.1, classes, cells, starts, reach, len(cells) + 1, ENDLESS)
+    some = coverage.viewpoints(
+        field, source, 0.1, classes, cells, starts, reach, int(rng.integers(1, 40)), int(rng.integers(0, 200))
+    )
+    assert whole.horizon == np.inf
+    there = np.isin(whole.clusters, some.clusters)
+    np.testing.assert_array_equal(whole.only(there).clusters, some.clusters)
+    np.testing.assert_array_equal(whole.only(there).views, some.views)
+    missing = field.ravel()[whole.only(~there).views]
+    assert np.all(missing >= some.horizon)
+    if not some.cut_short:
+        assert np.all(missing >= field.ravel()[some.views].max(initial=0.0))
+
+
+def test_work_that_is_done_leaves_the_farthest_frontiers_out() -> None:
+    classes = np.full((9, 400), FREE, np.uint8)
+    classes[4, ::9] = UNKNOWN
+    field = distance_field(classes == FREE, 0, 0.1)
+    cells, starts = find_frontiers(classes, 1, 12)
+    scene = field, 0, 0.1, classes, cells, starts, 20
+    whole = coverage.viewpoints(*scene, len(starts), ENDLESS)
+    assert whole.horizon == np.inf
+    assert len(whole) == len(starts) - 1
+    nothing = coverage.viewpoints(*scene, len(starts), 0)
+    assert len(nothing) == 0
+    assert nothing.horizon == 0.0
+    assert nothing.cut_short
+    few = coverage.viewpoints(*scene, 3, ENDLESS)
+    assert few.clusters.tolist() == [0, 1, 2]
+    assert 0.0 < few.horizon < np.inf
 
 
 @settings(deadline=None, max_examples=60)
@@ -258,7 +320,9 @@ def test_a_frontier_whose_middle_nobody_can_see_is_seen_by_another_of_its_cells(
     field = np.full(classes.shape, np.inf, np.float32)
     field[18:26, 1:59] = 1.0  # where the robot can stand
     cells = np.array([10 * 60 + col for col in range(10, 54)], np.int64)
-    (middle,), (view,) = coverage.viewpoints(field, classes, cells, np.array([0, len(cells)]), 20)
+    starts = np.array([0, len(cells)])
+    found = coverage.viewpoints(field, 20 * 60 + 5, 0.1, classes, cells, starts, 20, 1, ENDLESS)
+    (middle,), (view,) = found.targets, found.views
     assert view >= 0
     assert field.flat[view] == 1.0
     row, col = divmod(int(middle), 60)

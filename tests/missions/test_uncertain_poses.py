@@ -19,6 +19,7 @@ from vedette.agent.events import Pose, Scan
 from vedette.domains.mapping.blur import blurred, displacement
 from vedette.domains.mapping.sightings import measured_model
 from vedette.domains.mapping.stops import CLEARANCES, find_stops, survey
+from vedette.domains.mapping.views import look
 from vedette.kernels import lidar
 from vedette.kernels.frontier import traversable
 from vedette.kernels.reference import lidar as reference_lidar
@@ -207,7 +208,7 @@ def footprints(spec: PlatformSpec) -> tuple[Any, Any]:
     belief = frozen()
     ground = survey(belief, spec, -0.5, 7.1, [], CLEARANCES[0])
     model = measured_model(belief.counts, RESOLUTION, 40, by_distance=False)
-    return belief, find_stops(belief, ground, spec, model, 0.08)
+    return belief, find_stops(belief, ground, spec, model, 0.08, look(belief, ground, spec))
 
 
 def random_rows(

@@ -25,7 +25,7 @@ from vedette import Coverage, InputError
 from vedette.domains.mapping import impact as mapping
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.platform import STAY, MappingPlatform
-from vedette.domains.mapping.stops import MOST_STOPS
+from vedette.domains.mapping.views import MOST_STOPS
 from vedette.domains.search import impact as search
 from vedette.domains.search import worth
 from vedette.domains.search.platform import SearchPlatform

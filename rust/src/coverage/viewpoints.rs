@@ -1,5 +1,7 @@
 //! Where to look at a frontier from.
 
+use std::collections::BinaryHeap;
+
 use super::FREE;
 use crate::planes::Planes;
 use crate::shadow::{Corners, Shadows};
@@ -7,33 +9,84 @@ use crate::shadow::{Corners, Shadows};
 /// Members of a cluster that are tried for a viewpoint.
 const TRIES: usize = 4;
 
-/// For each cluster: its representative, the member nearest the centroid of those tried that can be seen,
-/// and the nearest reachable cell, at most `reach` cells away, that sees it; -1 where there is none.
+/// Where a robot can drive.
+pub struct Ground<'a> {
+    pub field: &'a [f32], // path length from the robot [m], infinite where it cannot stand
+    pub source: usize,    // the robot's own cell
+    pub resolution: f64,  // [m]
+}
+
+/// The clusters that can be looked at, in their order, and from where.
+#[derive(Default)]
+pub struct Views {
+    pub clusters: Vec<i64>,
+    pub targets: Vec<i64>, // of those tried, the member nearest the centroid that can be seen
+    pub views: Vec<i64>,   // the nearest reachable cell that sees it
+    pub horizon: f64,      // no view is missing to which the way is shorter [m]
+    pub cut_short: bool,   // the work was done before nobody farther could matter
+}
+
+/// The clusters seen from reachable cells at most `reach` cells away: the `most` to whose views the way is shortest.
+///
+/// The nearest are worked out first, and no more once nobody farther can matter or the `work`, counted in pieces
+/// of lines looked at, is done.
 pub fn viewpoints(
-    field: &[f32],
+    ground: &Ground,
     classes: &[u8],
-    rows: usize,
     cols: usize,
     cells: &[i64],
     starts: &[i64],
     reach: i64,
-) -> (Vec<i64>, Vec<i64>) {
+    most: usize,
+    work: u64,
+) -> Views {
+    let rows = classes.len() / cols.max(1);
     let blocked = Planes::of(classes, rows, cols, |class| class != FREE);
-    let reachable = Planes::of(field, rows, cols, f32::is_finite);
+    let reachable = Planes::of(ground.field, rows, cols, f32::is_finite);
     let mut shadows = Shadows::new(&blocked, &reachable, reach, Corners::RowsFirst);
-    let mut representatives = Vec::with_capacity(starts.len());
-    let mut views = Vec::with_capacity(starts.len());
-    for bounds in starts.windows(2) {
-        let members = spread(&cells[bounds[0] as usize..bounds[1] as usize], cols as i64);
-        let seen = members.iter().find_map(|&member| {
-            let view = nearest_view(&mut shadows, &reachable, cols, member as usize, reach);
-            view.map(|view| (member, view as i64))
+    let mut found: BinaryHeap<(u32, usize, usize, usize)> = BinaryHeap::new(); // leg, cluster, target, view
+    let (mut horizon, mut cut_short) = (f64::INFINITY, false);
+    for (squared, cluster) in nearest_first(ground.source, cols, cells, starts) {
+        let at_least = ground.resolution * ((squared as f64).sqrt() - reach as f64 - 1.0);
+        let worst =
+            found.peek().filter(|_| found.len() == most).map(|&(leg, ..)| f64::from(f32::from_bits(leg)));
+        let needless = worst.is_some_and(|worst| at_least > worst);
+        if needless || shadows.work >= work {
+            horizon = horizon.min(at_least.max(0.0));
+            cut_short = !needless;
+            break;
+        }
+        let members = spread(&cells[starts[cluster] as usize..starts[cluster + 1] as usize], cols as i64);
+        let seen = members.into_iter().find_map(|target| {
+            let view = nearest_view(&mut shadows, &reachable, cols, target as usize, reach)?;
+            Some((ground.field[view].to_bits(), cluster, target as usize, view))
+            // bits sort as lengths do
         });
-        let (representative, view) = seen.unwrap_or((members[0], -1));
-        representatives.push(representative);
-        views.push(view);
+        found.extend(seen);
+        if found.len() > most {
+            let dropped = found.pop().map_or(0, |(leg, ..)| leg);
+            horizon = horizon.min(f64::from(f32::from_bits(dropped)));
+        }
     }
-    (representatives, views)
+    let mut found = found.into_vec();
+    found.sort_unstable_by_key(|&(_, cluster, ..)| cluster);
+    Views {
+        clusters: found.iter().map(|&(_, cluster, ..)| cluster as i64).collect(),
+        targets: found.iter().map(|&(_, _, target, _)| target as i64).collect(),
+        views: found.iter().map(|&(.., view)| view as i64).collect(),
+        horizon,
+        cut_short,
+    }
+}
+
+/// The clusters by the squared distance of their nearest member from the source [cells].
+fn nearest_first(source: usize, cols: usize, cells: &[i64], starts: &[i64]) -> Vec<(i64, usize)> {
+    let (row, col) = ((source / cols.max(1)) as i64, (source % cols.max(1)) as i64);
+    let squared = |&cell: &i64| (cell / cols as i64 - row).pow(2) + (cell % cols as i64 - col).pow(2);
+    let nearest = |bounds: &[i64]| cells[bounds[0] as usize..bounds[1] as usize].iter().map(squared).min();
+    let mut order: Vec<_> = starts.windows(2).filter_map(nearest).zip(0..).collect();
+    order.sort_unstable();
+    order
 }
 
 /// The member of a cluster nearest its centroid, then those farthest from all before, so that one of them is

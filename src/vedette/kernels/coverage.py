@@ -34,6 +34,25 @@ class Footprints:
 
 
 @dataclass(frozen=True, eq=False)
+class Viewpoints:
+    """Which of some clusters of cells can be looked at, and from where."""
+
+    clusters: NDArray[np.int64]  # (N,) ascending
+    targets: NDArray[np.int64]  # (N,) of the members tried, the one nearest the centroid that can be seen
+    views: NDArray[np.int64]  # (N,) the nearest reachable cell that sees it
+    horizon: float  # none is missing to which the way is shorter [m]; infinite: none is missing
+    cut_short: bool  # the work was done before it was certain that these are the nearest
+
+    def __len__(self) -> int:
+        return len(self.clusters)
+
+    def only(self, which: NDArray[np.int64] | NDArray[np.bool_]) -> Viewpoints:
+        """Return some of them."""
+        some = self.clusters[which], self.targets[which], self.views[which]
+        return Viewpoints(*some, self.horizon, self.cut_short)
+
+
+@dataclass(frozen=True, eq=False)
 class TourProblem:
     """One platform's choice of a tour against the others' impact."""
 
@@ -57,24 +76,32 @@ class TourProblem:
 
 def viewpoints(
     field: NDArray[np.float32],
+    source: int,
+    resolution: float,
     classes: NDArray[np.uint8],
     cells: NDArray[np.int64],
     starts: NDArray[np.int64],
     reach: int,
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """For each cluster of cells: its representative, and the nearest reachable cell that sees it.
+    most: int,
+    work: int,
+) -> Viewpoints:
+    """Find from where clusters of cells can be looked at: the ``most`` to whose views the way is shortest.
+
+    The nearest are worked out first, until nobody farther can matter or the work is done.
 
     Args:
         field: (R, C) path length from the platform [m], inf where it cannot stand.
+        source: flat cell of the platform.
+        resolution: cell side [m].
         classes: (R, C) cell classes.
         cells, starts: clusters as ``find_frontiers`` returns them.
-        reach: how far from the representative to look [cells].
-
-    Returns:
-        (K,) the member nearest each centroid of those that can be seen from somewhere, and (K,) the
-        viewpoint's cell, -1 where no member can be.
+        reach: how far from a cluster's member to look for a view [cells].
+        most: clusters to return.
+        work: how much to do before giving up on what is left [pieces of lines looked at].
     """
-    return _kernels.viewpoints(field, classes, cells, starts, reach)
+    return Viewpoints(
+        *_kernels.viewpoints(field, source, resolution, classes, cells, starts, reach, most, work)
+    )
 
 
 def footprints(

@@ -14,7 +14,7 @@ from vedette.domains.mapping import layers
 from vedette.domains.mapping.baselines.cost_utility import expected_areas
 from vedette.domains.mapping.belief import MapBelief, freeze
 from vedette.domains.mapping.impact import MIN_SHARE
-from vedette.domains.mapping.outlook import RAYS, SIGHT, mean_promise
+from vedette.domains.mapping.outlook import RAYS, SIGHT, mean_promise, members_in_the_middle
 from vedette.domains.mapping.planners import DEFAULT, PLANNERS, planner
 from vedette.domains.mapping.platform import LEAST_AREA, LEFT_ALONE, STAY, MappingPlatform
 from vedette.domains.mapping.sightings import empty_counts, measured_model
@@ -27,7 +27,9 @@ from vedette.domains.mapping.stops import (
     find_stops,
     survey,
 )
+from vedette.domains.mapping.views import look
 from vedette.kernels.coverage import LAYERS
+from vedette.kernels.frontier import find_frontiers
 from vedette.kernels.reference import coverage as reference_coverage
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 
@@ -98,6 +100,15 @@ def test_a_team_turns_when_its_frontiers_promise_less() -> None:
     assert not at_turn(0.0).gathering
 
 
+@pytest.mark.parametrize("seed", range(10))
+def test_the_member_in_the_middle_is_the_one_nearest_the_centroid(seed: int) -> None:
+    classes = np.random.default_rng(seed).integers(0, 2, (17, 31)).astype(np.uint8)
+    cells, starts = find_frontiers(classes, 1, 9)
+    everywhere = np.zeros(classes.shape, np.float32)
+    nearest, _ = reference_coverage.viewpoints(everywhere, classes, cells, starts, 0)
+    assert members_in_the_middle(cells, starts, 31).tolist() == nearest.tolist()
+
+
 def test_before_the_turn_a_round_is_that_of_the_papers_rate() -> None:
     before = at_turn(0.0)
     rate = PLANNERS["rate"]
@@ -163,9 +174,10 @@ def test_a_gap_that_no_body_fits_through_must_promise_more() -> None:
     ground = survey(belief, SPEC, -0.5, 7.1, [], 0.05)
     model = MappingPlatform(SPEC).model(belief)
     longest = float(np.diff(belief.frontier_starts).max()) * belief.frame.resolution
-    wide = find_stops(belief, ground, SPEC, model, 0.0)
+    found = look(belief, ground, SPEC)
+    wide = find_stops(belief, ground, SPEC, model, 0.0, found)
     stout = replace(SPEC, radius=0.5 * longest)  # the ground stays that of the other
-    narrow = find_stops(belief, ground, stout, model, 0.0)
+    narrow = find_stops(belief, ground, stout, model, 0.0, found)
     least = min(LEAST_SHARE * int((belief.classes == FREE).sum()) * belief.frame.resolution**2, ENOUGH)
     areas = expected_areas(at_turn(0.0), wide)  # without prices
     assert areas.min() >= least - 0.02
@@ -180,8 +192,10 @@ def test_when_nothing_else_is_left_a_frontier_seen_too_slantingly_is_looked_at_f
     robot = MappingPlatform(SPEC)
     model = robot.model(belief)
     ground = survey(belief, SPEC, x, y, [], CLEARANCES[0])
-    far = find_stops(belief, ground, SPEC, model, LEAST_AREA)
-    near = find_stops(belief, ground, SPEC, model, LEAST_AREA, close=True)
+    far, near = (
+        find_stops(belief, ground, SPEC, model, LEAST_AREA, look(belief, ground, SPEC, close=close))
+        for close in (False, True)
+    )
     assert np.hypot(*(near.targets - near.views).T).max() <= CLOSE_VIEW + belief.frame.resolution
     slanting = [target for target in near.targets if np.hypot(*(far.targets - target).T).min() > LEFT_ALONE]
     assert slanting

@@ -9,10 +9,11 @@ import pytest
 from numpy.typing import NDArray
 
 from tests.support.mapping_scenes import CORRIDOR, FRAME, SPEC, explored, frozen, placed
+from vedette.domains.mapping import views
 from vedette.domains.mapping.impact import NOTHING, Impact
 from vedette.domains.mapping.layers import TimeLayers, plain, rate
 from vedette.domains.mapping.objective import MappingObjective
-from vedette.domains.mapping.platform import STAY, STICKINESS, MappingPlatform, Tour
+from vedette.domains.mapping.platform import LEFT_ALONE, STAY, STICKINESS, MappingPlatform, Tour
 from vedette.domains.mapping.stops import Stops
 from vedette.kernels import coverage
 from vedette.kernels.coverage import LAYERS
@@ -205,6 +206,51 @@ def test_an_avoided_frontier_is_left_alone_for_its_time() -> None:
     placed(platform, frozen(), now=20.0)
     assert reachable_near(platform, x, y).all()
     assert not platform.avoided
+
+
+def by_way(platform: MappingPlatform) -> NDArray[np.float64]:
+    """Return the frontiers of the stops that can be visited, ``(N, 2)``, by how far it is to them."""
+    stops = stops_of(platform)
+    order = np.argsort(stops.first_leg, kind="stable")
+    return stops.targets[order][np.isfinite(stops.first_leg[order])]
+
+
+def test_a_robot_whose_nearest_stops_are_no_good_takes_those_after_them(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    belief, whole = frozen(), by_way(ready())
+    assert len(whole) > 8
+    monkeypatch.setattr(views, "MOST_STOPS", 3)
+    platform = MappingPlatform(SPEC)
+    placed(platform, belief)
+    assert by_way(platform).tolist() == whole[:3].tolist()
+    platform.avoided = [(*target, np.inf) for target in whole[:3]]
+    placed(platform, belief)
+    taken = by_way(platform)
+    left = [target for target in whole[3:] if np.hypot(*(whole[:3] - target).T).min() >= LEFT_ALONE]
+    assert 0 < len(taken) <= 3
+    np.testing.assert_array_equal(taken, left[: len(taken)])
+    assert not platform.cut_short
+
+
+def test_a_round_that_is_cut_short_promises_no_bound_and_the_next_one_works_more(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    belief, whole = frozen(), by_way(ready())
+    monkeypatch.setattr(views, "MOST_WORK", 1)
+    platform = MappingPlatform(SPEC)
+    platform.avoided = [(*target, np.inf) for target in whole[:-1]]
+    rounds = 0
+    while platform.stops is None or not len(by_way(platform)):
+        placed(platform, belief)
+        assert platform.cut_short
+        assert platform.slack(belief, NOTHING) == np.inf
+        rounds += 1
+    assert rounds > 2
+    monkeypatch.undo()
+    placed(platform, belief)
+    assert not platform.cut_short
+    assert platform.slack(belief, NOTHING) < np.inf
 
 
 def test_a_robot_with_nothing_to_see_stays() -> None:

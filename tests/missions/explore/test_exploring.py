@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
 from tests.support.explorers import HERE, exchange, explorer, mate_at, scan_from
 from tests.support.mapping_scenes import FRAME, RESOLUTION, SPEC, building
 from vedette.agent.events import Pose
 from vedette.agent.mates import Mate
+from vedette.domains.mapping import views
 from vedette.domains.mapping.planners import planner
 from vedette.domains.mapping.sightings import BINS
 from vedette.domains.mapping.stops import CLEARANCES
@@ -195,3 +197,14 @@ def test_a_stop_that_cannot_be_carried_out_is_left_alone_longer_each_time_and_gi
     mission.strategy = tour
     mission.release(now)
     assert [(spot.x, spot.y) for spot in mission.platform.given_up] == [tuple(tour.targets[0])]
+
+
+def test_a_round_that_is_cut_short_is_not_taken_for_a_quiet_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    mission = explorer()
+    prepared(mission)
+    assert mission.nothing_left(0.0, now=0.0)  # nothing is known, so there is no frontier
+    look(mission, HERE)
+    monkeypatch.setattr(views, "MOST_WORK", 0)
+    prepared(mission)
+    assert mission.goal() is None
+    assert not mission.nothing_left(0.0, now=0.0)

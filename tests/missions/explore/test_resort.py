@@ -160,7 +160,8 @@ def ground(side: int) -> Ground:
     row, col = FRAME.cell(HERE.x, HERE.y)
     half = side // 2
     passable[row - half : row + half + 1, col - half : col + half + 1] = True
-    return Ground(passable, distance_field(passable, FRAME.flat(HERE.x, HERE.y), RESOLUTION))
+    here = FRAME.flat(HERE.x, HERE.y)
+    return Ground(passable, here, distance_field(passable, here, RESOLUTION))
 
 
 def test_a_robot_that_is_hemmed_in_creeps_a_few_times_for_another_look() -> None:

@@ -41,8 +41,7 @@ def mean_promise(
     if not len(lengths):
         return 0.0
     reach = SIGHT / resolution
-    everywhere = np.zeros(classes.shape, np.float32)
-    middles, _ = coverage.viewpoints(everywhere, classes, *frontiers, 0)
+    middles = members_in_the_middle(*frontiers, classes.shape[1])
     table = measured_model(counts, resolution, int(np.ceil(reach)), by_distance=True).table
     starts, cells, shares = coverage.footprints(
         classes, middles, np.zeros(len(middles)), reach, 2.0 * np.pi, table, True, RAYS, factor, MIN_SHARE
@@ -50,3 +49,15 @@ def mean_promise(
     looks = np.repeat(np.arange(len(lengths)), np.diff(starts))
     revealed = np.bincount(looks, shares * unknown.ravel()[cells], minlength=len(lengths))
     return float((lengths * revealed).sum() / lengths.sum()) * resolution**2
+
+
+def members_in_the_middle(
+    cells: NDArray[np.int64], starts: NDArray[np.int64], cols: int
+) -> NDArray[np.int64]:
+    """Return of each frontier the cell nearest its centroid, ``(K,)`` flat cells; of several the first."""
+    sizes = np.diff(starts)
+    owner = np.repeat(np.arange(len(sizes)), sizes)
+    squared = np.zeros(len(cells), np.int64)
+    for axis in np.divmod(cells, cols):
+        squared += (sizes[owner] * axis - np.add.reduceat(axis, starts[:-1])[owner]) ** 2
+    return cells[np.lexsort((cells, squared, owner))[starts[:-1]]]

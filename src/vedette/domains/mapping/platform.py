@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -21,6 +22,7 @@ from vedette.domains.mapping.stops import (
     survey,
     unknown_near,
 )
+from vedette.domains.mapping.views import by_way, look
 from vedette.kernels import coverage
 from vedette.kernels.coverage import LAYERS
 from vedette.kernels.misses import CERTAIN
@@ -29,6 +31,7 @@ from vedette.team import PlatformSpec
 LEAST_AREA = 0.08  # a stop must promise this much [m^2]
 HYSTERESIS = 0.03  # a new strategy must gain this share more than the present one
 STICKINESS = 0.1  # to turn away from the stop under way must gain this share more
+PATIENCE = 4  # times the usual work, if that finds nothing; twice as much each time that is not enough
 SAME_PLACE = 1.2  # a frontier this near a stop of the last round is the same one [m]
 
 
@@ -57,8 +60,8 @@ class Tour:
         return Tour(self.targets[1:], self.views[1:], self.arrivals[1:], self.unknown[1:], self.stops[1:])
 
 
-_NONE = np.empty(0, np.int64)
-STAY = Tour(np.empty((0, 2)), np.empty((0, 2)), np.empty(0), _NONE, _NONE)
+_NONE, _NOWHERE = np.empty(0, np.int64), np.empty((0, 2))
+STAY = Tour(_NOWHERE, _NOWHERE, np.empty(0), _NONE, _NONE)
 
 
 Visit = tuple[float, float, int]  # x, y [m] of a frontier, unknown cells near it when it was planned
@@ -97,7 +100,13 @@ class MappingPlatform:
     avoided: list[tuple[float, float, float]] = field(default_factory=list)  # x, y, until [s]
     ground: Ground | None = None
     stops: Stops | None = None
+    considered: NDArray[np.float64] = field(init=False)  # (N, 2) frontiers of stops, those left alone too [m]
+    cut_short: bool = field(init=False, default=False)  # the round's work ended before all was looked at
+    patience: int = field(init=False, default=PATIENCE)
     ahead: int = field(init=False, default=1)  # stops of a tour in this round, at most
+
+    def __post_init__(self) -> None:
+        self.considered = _NOWHERE
 
     def place(
         self,
@@ -123,28 +132,40 @@ class MappingPlatform:
     def prepare(self, belief: MapBelief) -> None:
         """Survey the ground and find the stops; the slow part, before the round.
 
-        A robot that finds none looks at the frontiers from close by, and then for narrower ways.
+        A robot that finds none looks at the frontiers from close by, and then for narrower ways. Its work is
+        bounded: if so much of it finds nothing and there are frontiers left, it works more the next time.
         """
         self._update_given_up(belief)
         self.ahead = self.max_stops if belief.gathering else 1
-        least = max(LEAST_AREA, 0.5 * belief.frame.resolution**2)
+        self.cut_short = False
         model = self.model(belief)
         for clearance in CLEARANCES:
             self.ground = survey(belief, self.spec, self.x, self.y, self.obstacles, clearance)
-            for close in (False, True):
-                stops = find_stops(
-                    belief,
-                    self.ground,
-                    self.spec,
-                    model,
-                    least,
-                    tours=self.ahead > 1,
-                    close=close,
-                    closer=[(spot.x, spot.y) for spot in self.closer],
-                )
+            if any(self._find_stops(belief, self.ground, model, close) for close in (False, True)):
+                self.patience = PATIENCE
+                return
+        self.patience *= 2 if self.cut_short else 1
+
+    def _find_stops(self, belief: MapBelief, ground: Ground, model: SightingModel, close: bool) -> bool:
+        """Find the nearest stops, or if they are no good those after them; tell if one can be visited."""
+        least = max(LEAST_AREA, 0.5 * belief.frame.resolution**2)
+        closer = [(spot.x, spot.y) for spot in self.closer]
+        tried = _NONE
+        self.considered = _NOWHERE
+        for effort in (1, self.patience):
+            found = look(belief, ground, self.spec, close=close, closer=closer, effort=effort)
+            for lot in by_way(found.only(~np.isin(found.clusters, tried)), ground):
+                stops = find_stops(belief, ground, self.spec, model, least, lot, tours=self.ahead > 1)
+                self.considered = np.concatenate((self.considered, stops.targets))
                 self.stops = self._without_left_alone(stops)
                 if self.leads_anywhere:
-                    return
+                    self.cut_short = found.cut_short
+                    return True
+            if found.horizon == np.inf:
+                return False
+            tried = found.clusters
+        self.cut_short = True
+        return False
 
     @property
     def leads_anywhere(self) -> bool:
@@ -254,7 +275,12 @@ class MappingPlatform:
         return self.tour(order) if gain > present * (1.0 + HYSTERESIS) else current
 
     def slack(self, belief: MapBelief, team: Impact) -> float:
-        """No strategy of this robot adds more to the team's impact [nats]; docs/mapping.md (V26)."""
+        """No strategy of this robot adds more to the team's impact [nats]; docs/mapping.md (V26).
+
+        Infinite, which promises nothing, if the round's work ended before all frontiers were looked at.
+        """
+        if self.cut_short:
+            return math.inf
         return coverage.most_any_tour_adds(self._problem(belief, team), self.ahead)
 
     def _problem(self, belief: MapBelief, others: Impact) -> coverage.TourProblem:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +13,7 @@ from vedette.domains.mapping.blur import blurred
 from vedette.domains.mapping.impact import MIN_SHARE, quantise
 from vedette.domains.mapping.sightings import SightingModel
 from vedette.kernels import coverage, distance, frontier
-from vedette.kernels.coverage import Footprints
+from vedette.kernels.coverage import Footprints, Viewpoints
 from vedette.maps import FREE, UNKNOWN, GridFrame
 from vedette.team import PlatformSpec
 
@@ -24,7 +23,6 @@ NEARBY = 0.6  # along either axis from a frontier's middle, a cell is near it [m
 LEAST_OF_SIGHT = 0.05  # of the area that one scan can see at most: enough for any stop
 GAP = 2.0  # a gap that the body does not fit through must promise so many times as much
 LEFT_ALONE = 0.5  # what holds for a place holds for frontiers this near it [m]
-MOST_STOPS = 40  # nearest first; the rest waits for a later round
 VIEW_REACH = 0.8  # how far from a frontier to look for a place to see it from [sensor ranges]
 CLOSE_VIEW = 1.0  # the same where the farther place leads nowhere [m]
 CLEARANCES = (0.05, 0.01)  # kept to all that is not known free [m]; the second where the first leads nowhere
@@ -36,6 +34,7 @@ class Ground:
     """Where one robot can drive, and how far everything is from it."""
 
     passable: NDArray[np.bool_]  # (R, C) of the belief's window
+    source: int  # the robot's own cell
     field: NDArray[np.float32]  # (R, C) path length from the robot [m], inf where unreachable
 
 
@@ -64,7 +63,7 @@ def survey(
         block(passable, frame, disc, spec.radius + clearance)
     row, col = np.clip(frame.cell(x, y), 0, (frame.rows - 1, frame.cols - 1))
     source = int(row * frame.cols + col)
-    return Ground(passable, distance.distance_field(passable, source, frame.resolution, None))
+    return Ground(passable, source, distance.distance_field(passable, source, frame.resolution, None))
 
 
 def block(passable: NDArray[np.bool_], frame: GridFrame, disc: Disc, radius: float) -> None:
@@ -89,37 +88,24 @@ def find_stops(
     spec: PlatformSpec,
     model: SightingModel,
     least_area: float,
+    found: Viewpoints,
     *,
     tours: bool = True,
-    close: bool = False,
-    closer: Sequence[tuple[float, float]] = (),
 ) -> Stops:
-    """Turn the belief's frontiers into stops that reveal at least ``least_area`` [m^2] in expectation.
+    """Turn viewpoints into stops that reveal at least ``least_area`` [m^2] in expectation.
 
     In a large building a stop must promise more than in a small one, and a gap that the body does not fit
     through more than another: behind most of them is the inside of a wall or of furniture, and nothing leads
     on.  docs/theory.md (V66)
-    A frontier is looked at from the nearest place that sees its middle, however slantingly, or, if ``close``
-    or by one of the places ``closer`` [m], from one within a metre.
     Legs between stops are worked out for ``tours`` only; else they are infinite.
     """
-    frame = belief.frame
-    reach = max(2, round(seen_from(spec, frame.resolution, close) / frame.resolution))
-    targets, views = coverage.viewpoints(
-        ground.field, belief.classes, belief.frontier_cells, belief.frontier_starts, reach
-    )
-    if len(closer) and not close:
-        views = _from_close_by(belief, ground, spec, targets, views, closer)
-    keep = np.flatnonzero(views >= 0)
-    legs = ground.field.ravel()[views[keep]]
-    keep = np.sort(keep[np.argsort(legs, kind="stable")[:MOST_STOPS]])
-    targets, views = targets[keep], views[keep]
+    frame, targets, views = belief.frame, found.targets, found.views
     sharp = _footprints(belief, spec, model, targets, views)
     starts, cells, shares = blurred(sharp, belief.unknown, spec.pose_std / belief.planning.resolution)
     area = np.add.reduceat(np.append(shares * belief.unknown.ravel()[cells], 0.0), starts[:-1]) * (
         np.diff(starts) > 0
     )
-    lengths = np.diff(belief.frontier_starts)[keep] * frame.resolution
+    lengths = np.diff(belief.frontier_starts)[found.clusters] * frame.resolution
     least = _least(belief, lengths <= 2.0 * spec.radius + 1e-9, least_area)
     enough = area * frame.resolution**2 >= np.minimum(least, enough_of_sight(spec))
     starts, cells, shares = _select(starts, cells, shares, enough)
@@ -133,25 +119,6 @@ def find_stops(
         ground.field.ravel()[views] / np.float32(spec.speed),
         _legs(belief, ground, views) / np.float32(spec.speed) if tours else _no_legs(len(views)),
     )
-
-
-def _from_close_by(
-    belief: MapBelief,
-    ground: Ground,
-    spec: PlatformSpec,
-    targets: NDArray[np.int64],
-    views: NDArray[np.int64],
-    places: Sequence[tuple[float, float]],
-) -> NDArray[np.int64]:
-    """Return the viewpoints, those of frontiers by the places within a metre."""
-    middles, starts = belief.frame.centres(targets), belief.frontier_starts
-    reach = round(seen_from(spec, belief.frame.resolution, close=True) / belief.frame.resolution)
-    views = views.copy()
-    for k in np.flatnonzero((np.hypot(*(middles[:, None] - places).T) < LEFT_ALONE).any(axis=0)):
-        cells = belief.frontier_cells[starts[k] : starts[k + 1]]
-        bounds = np.array([0, len(cells)])
-        _, views[k : k + 1] = coverage.viewpoints(ground.field, belief.classes, cells, bounds, max(2, reach))
-    return views
 
 
 def seen_from(spec: PlatformSpec, resolution: float, close: bool) -> float:

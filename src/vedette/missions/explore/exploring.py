@@ -20,7 +20,6 @@ from vedette.domains.mapping.sightings import BIN, BINS, empty_counts
 from vedette.domains.mapping.stops import (
     CLEARANCES,
     LEFT_ALONE,
-    MOST_STOPS,
     NEARBY,
     VIEW_REACH,
     Disc,
@@ -28,6 +27,7 @@ from vedette.domains.mapping.stops import (
     seen_from,
     unknown_near,
 )
+from vedette.domains.mapping.views import MOST_STOPS
 from vedette.fusion import Fusion
 from vedette.kernels import distance, frontier, lidar
 from vedette.maps import GridFrame
@@ -314,16 +314,15 @@ class Exploring:
             self._released = [spot for spot, same in zip(self._released, near, strict=True) if not same]
 
     def nothing_left(self, value: float, now: float) -> bool:
-        """Tell whether nothing reachable is worth seeing, now or in a while, and nothing is left to try."""
-        return value <= 0.0 and self._resort.goal is None and not self._postponed(now)
+        """Tell whether nothing reachable is worth seeing, now or in a while, and all was tried."""
+        tried = not self.platform.cut_short and self._resort.goal is None
+        return value <= 0.0 and tried and not self._postponed(now)
 
     def _postponed(self, now: float) -> bool:
         """Tell whether a stop of the last round is left alone for a while only."""
-        stops = self.platform.stops
-        if stops is None:
-            return False
+        considered = self.platform.considered
         return any(
-            until > now and np.any(np.hypot(*(stops.targets - (x, y)).T) < LEFT_ALONE)
+            until > now and np.any(np.hypot(*(considered - (x, y)).T) < LEFT_ALONE)
             for x, y, until in self.platform.avoided
         )
 
