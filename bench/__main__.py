@@ -10,11 +10,14 @@ import click
 from bench import RESULTS, command, machine
 from bench.criteria import BenchReport, Criterion, Measurement, verdicts
 from bench.frontiers import Effort, measure_frontiers
+from bench.porous import WEARS, Site, measure_porous
 from bench.scale import report as scale
 from bench.speed import Run, run_mission
 
 SMALL, LARGE = (30.0, 20.0), (100.0, 100.0)  # of offices at 0.1 m: 200x300 and 1000x1000 cells [m]
 FULL_EFFORT = {SMALL: Effort(5, 2000, 5), LARGE: Effort(3, 500, 3)}
+FULL_SITES = Site(15.0, 10.0, 0.05), Site(12.0, 10.0, 0.02)
+QUICK_SITES = (Site(10.0, 10.0, 0.05, max_time=15.0),)
 QUICK_EFFORT = {SMALL: Effort(1, 200, 2), LARGE: Effort(1, 50, 1)}
 
 
@@ -61,6 +64,11 @@ def measure(quick: bool, progress: Callable[[str], None]) -> list[Measurement]:
         small.append(run_mission(seed, *SMALL, robots=3, max_time=30.0 if quick else 3600.0))
     progress("mission in an office of 100x100 m")
     large = [run_mission(0, *LARGE, robots=4, max_time=20.0 if quick else 200.0)]
+    porous = [
+        measurement
+        for site in (QUICK_SITES if quick else FULL_SITES)
+        for measurement in measure_porous(site, WEARS[1:2] if quick else WEARS, progress)
+    ]
     return [
         small_frontiers,
         large_frontiers,
@@ -71,6 +79,7 @@ def measure(quick: bool, progress: Callable[[str], None]) -> list[Measurement]:
         real_time(Criterion("default mission", 30.0, "x real time", at_least=True), small),
         sent(Criterion("negotiation sent by a robot", 800.0, "kB"), small, Run.negotiation),
         sent(Criterion("fusion sent by a robot", 250.0, "kB"), small, Run.fusion),
+        *porous,
     ]
 
 

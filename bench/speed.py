@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from vedette.maps import UNKNOWN
+from vedette.maps.world import World
 from vedette.record.explore.summary import ExploreSummary
 from vedette.record.summary import Spread
 from vedette.sim.explore.run import explore, prepare
@@ -39,15 +41,24 @@ class Run:
 
 def run_mission(seed: int, width: float, height: float, robots: int, max_time: float) -> Run:
     """Run the default planner in a generated office of this size [m], all agents in this process."""
-    world = office(np.random.default_rng(seed), width, height)
-    specs = [PlatformSpec(name=f"robot-{number}") for number in range(1, robots + 1)]
+    return run_in(office(np.random.default_rng(seed), width, height), team(robots), seed, max_time)
+
+
+def team(robots: int) -> list[PlatformSpec]:
+    """Return so many default robots."""
+    return [PlatformSpec(name=f"robot-{number}") for number in range(1, robots + 1)]
+
+
+def run_in(world: World, specs: Sequence[PlatformSpec], seed: int, max_time: float) -> Run:
+    """Run the default planner in a world, all agents in this process."""
     simulation = prepare(world, specs, ExploreSetup(seed=seed, max_time=max_time))
+    simulation.clock.timer = time.process_time
     began = time.process_time()
     report = explore(simulation)
     cpu = time.process_time() - began
     timing = report.timing
     if timing.planning_ms is None or timing.answer_ms is None:
-        raise RuntimeError(f"office {seed}: nothing was negotiated within {max_time:g} s")
+        raise RuntimeError(f"{world.name} {seed}: nothing was negotiated within {max_time:g} s")
     return Run(
         seed,
         report.summary,

@@ -1,6 +1,6 @@
 //! What a scan from a viewpoint would reveal.
 
-use super::{FREE, OCCUPIED};
+use super::{FREE, OCCUPIED, UNKNOWN};
 
 pub struct Sensor<'a> {
     pub range_cells: f64,
@@ -25,9 +25,10 @@ pub fn footprints(
     let coarse_cols = cols.div_ceil(factor);
     let coarse_rows = rows.div_ceil(factor);
     let mut seen = vec![0.0_f32; rows * cols];
-    let mut touched: Vec<usize> = Vec::new();
+    let mut touched: Vec<u32> = Vec::new();
     let mut share = vec![0.0_f32; coarse_rows * coarse_cols];
     let mut coarse_touched: Vec<usize> = Vec::new();
+    let mut unknown = vec![0_u32; coarse_rows * coarse_cols]; // cells, once it was needed
     let (mut starts, mut cells, mut shares) = (vec![0_i64], Vec::new(), Vec::new());
     let room = room(classes, rows, cols);
     for (&view, &heading) in views.iter().zip(facing) {
@@ -35,31 +36,29 @@ pub fn footprints(
             let turn = std::f64::consts::TAU * ((ray as f64 + 0.5) / sensor.rays as f64 - 0.5);
             if turn.abs() <= 0.5 * sensor.view {
                 trace(classes, &room, rows, cols, view as usize, heading + turn, sensor, |cell, p| {
-                    if seen[cell] == 0.0 {
-                        touched.push(cell);
+                    let best = &mut seen[cell];
+                    if *best == 0.0 {
+                        touched.push(cell as u32);
                     }
-                    seen[cell] = seen[cell].max(p);
+                    *best = larger(*best, p);
                 });
             }
         }
         for cell in touched.drain(..) {
-            let coarse = (cell / cols / factor) * coarse_cols + cell % cols / factor;
+            let (row, col) = (cell / cols as u32, cell % cols as u32);
+            let coarse = (row / factor as u32) as usize * coarse_cols + (col / factor as u32) as usize;
             if share[coarse] == 0.0 {
                 coarse_touched.push(coarse);
             }
-            share[coarse] += seen[cell];
-            seen[cell] = 0.0;
+            share[coarse] += seen[cell as usize];
+            seen[cell as usize] = 0.0;
         }
         coarse_touched.sort_unstable();
         for coarse in coarse_touched.drain(..) {
-            let (r0, c0) = (coarse / coarse_cols * factor, coarse % coarse_cols * factor);
-            let mut unknown = 0;
-            for r in r0..(r0 + factor).min(rows) {
-                for c in c0..(c0 + factor).min(cols) {
-                    unknown += usize::from(classes[r * cols + c] == 0);
-                }
+            if unknown[coarse] == 0 {
+                unknown[coarse] = unknown_in(classes, rows, cols, coarse, coarse_cols, factor);
             }
-            let p = share[coarse] / unknown as f32;
+            let p = share[coarse] / unknown[coarse] as f32;
             share[coarse] = 0.0;
             if p >= sensor.floor {
                 cells.push(coarse as u32);
@@ -69,6 +68,21 @@ pub fn footprints(
         starts.push(cells.len() as i64);
     }
     (starts, cells, shares)
+}
+
+/// Unknown cells of a planning cell.
+fn unknown_in(
+    classes: &[u8],
+    rows: usize,
+    cols: usize,
+    coarse: usize,
+    coarse_cols: usize,
+    factor: usize,
+) -> u32 {
+    let (r0, c0) = (coarse / coarse_cols * factor, coarse % coarse_cols * factor);
+    let lines =
+        (r0..(r0 + factor).min(rows)).map(|r| &classes[r * cols + c0..r * cols + (c0 + factor).min(cols)]);
+    lines.flatten().map(|&class| u32::from(class == UNKNOWN)).sum()
 }
 
 /// Chebyshev distance [cells] from each free cell to the nearest that is not, outside included; at most 255.
@@ -99,6 +113,25 @@ fn room(classes: &[u8], rows: usize, cols: usize) -> Vec<u8> {
     room
 }
 
+/// ``f64::min`` and ``f32::max`` of numbers, without a thought for what is none.
+#[inline]
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b {
+        a
+    } else {
+        b
+    }
+}
+
+#[inline]
+fn larger(a: f32, b: f32) -> f32 {
+    if a > b {
+        a
+    } else {
+        b
+    }
+}
+
 /// Walk one ray from a cell's centre, reporting each unknown cell with its probability of being seen.
 fn trace(
     classes: &[u8],
@@ -121,7 +154,7 @@ fn trace(
         if room[cell] > 2 {
             // All cells this near are free: leap to the last crossing inside them.
             let more = f64::from(room[cell] - 2);
-            let end = (next_row + more * per_row).min(next_col + more * per_col);
+            let end = smaller(next_row + more * per_row, next_col + more * per_col);
             if end >= sensor.range_cells {
                 return;
             }
@@ -134,11 +167,11 @@ fn trace(
             travelled = end;
             continue;
         }
-        let leave = next_row.min(next_col).min(sensor.range_cells);
-        match classes[cell] {
-            OCCUPIED => return,
-            FREE => {}
-            _ => {
+        let leave = smaller(smaller(next_row, next_col), sensor.range_cells);
+        if room[cell] == 0 {
+            if classes[cell] == OCCUPIED {
+                return;
+            } else {
                 let depth = if sensor.by_distance { 0.5 * (travelled + leave) } else { unknown };
                 let p = sensor.table[(depth as usize).min(sensor.table.len() - 1)];
                 if p <= 0.0 || p < sensor.floor {
