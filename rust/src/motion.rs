@@ -8,8 +8,7 @@ use pyo3::prelude::*;
 
 /// Steps of a roll-out.
 const STEPS: usize = 20;
-/// The least clearance that is ever commanded: to walls, to other discs [m].
-const WALL_GUARD: f64 = 0.025;
+/// The least clearance to other discs that is ever commanded [m].
 const DISC_GUARD: f64 = 0.05;
 /// Sideways offsets from the path [m], left positive; speeds as shares of the top speed.
 const OFFSETS: [f64; 11] = [0.0, -0.1, 0.1, -0.2, 0.2, -0.35, 0.35, -0.5, 0.5, -0.7, 0.7];
@@ -128,13 +127,15 @@ impl Path<'_> {
     }
 }
 
-/// One robot's limits: radius [m], top speed [m/s], top turn rate [rad/s], control period [s].
+/// One robot's limits: radius [m], top speed [m/s], top turn rate [rad/s], control period [s], and
+/// the least clearance to walls that is ever commanded [m].
 #[derive(Clone, Copy)]
 pub struct Limits {
     pub radius: f64,
     pub speed: f64,
     pub turn_rate: f64,
     pub period: f64,
+    pub guard: f64,
 }
 
 /// A follower of the path: `offset` [m] to its left, `speed` [m/s], `look` [m] ahead.
@@ -231,7 +232,7 @@ impl Scene<'_> {
         let (mut close, mut wrong) = (0.0f64, 0.0f64);
         let mut was_outside = !self.traversable.at(x, y);
         let (mut outside, mut error) = (0usize, 0.0);
-        let keep = l.radius + WALL_GUARD;
+        let keep = l.radius + l.guard;
         // A lower bound of the clearance, exact where it matters: moving by d takes at most d away.
         let mut wall = clearance(self.solid, x, y, keep + WALL_LOOK);
         let mut fixed = COST_CHANGE * (f.offset - last_offset).abs();
@@ -335,15 +336,15 @@ fn py_steer(
     arc: PyReadonlyArray1<f64>,
     progress: (f64, f64, f64),
     others: PyReadonlyArray2<f64>,
-    limits: (f64, f64, f64, f64),
+    limits: (f64, f64, f64, f64, f64),
 ) -> PyResult<(f64, f64, f64, f64, f64)> {
-    let (radius, speed, turn_rate, period) = limits;
+    let (radius, speed, turn_rate, period, guard) = limits;
     let scene = Scene {
         solid: grid(&solid, resolution)?,
         traversable: grid(&traversable, resolution)?,
         path: Path { xy: path.as_slice()?, arc: arc.as_slice()? },
         others: others.as_slice()?,
-        limits: Limits { radius, speed, turn_rate, period },
+        limits: Limits { radius, speed, turn_rate, period, guard },
         turning: progress.2,
     };
     let c = steer(scene, pose, progress.0, progress.1);

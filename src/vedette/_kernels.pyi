@@ -87,7 +87,7 @@ def steer(
     arc: NDArray[np.float64],
     progress: tuple[float, float, float],
     others: NDArray[np.float64],
-    limits: tuple[float, float, float, float],
+    limits: tuple[float, float, float, float, float],
 ) -> tuple[float, float, float, float, float]: ...
 
 # coverage

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from enum import StrEnum
 from typing import Self
 
@@ -41,3 +42,14 @@ class Outcome(StrEnum):
     def said(self) -> str:
         """The word as people write it."""
         return self.value.replace("_", " ")
+
+
+def together(endings: Iterable[str]) -> Outcome:
+    """Return how a mission ends for a team of which all who live are done, each with its own ending.
+
+    What one could not get to is left, whatever the others did; who cannot move keeps nobody from it.
+    """
+    said = set(endings)
+    if said == {Outcome.ENCLOSED}:
+        return Outcome.ENCLOSED
+    return Outcome.UNREACHED if Outcome.UNREACHED in said else Outcome.COMPLETE

@@ -66,7 +66,7 @@ class Driver:
         if not self.yielding:
             self.yielding_since = now - self._yielded_before(here)
         self.refuge = refuge + corner
-        return Drive(Route(self.refuge, route.passable))
+        return Drive(Route(self.refuge, route.passable, route.room))
 
     def _yielded_before(self, here: NDArray[np.float64]) -> float:
         """Return how long it has made room here already [s], lest two let each other pass for ever."""

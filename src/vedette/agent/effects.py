@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
+from math import inf
 from typing import TypeAlias
 
 import numpy as np
@@ -37,6 +38,7 @@ class Route:
 
     path: NDArray[np.float64]  # (L, 2) [m], team frame
     passable: NDArray[np.bool_]  # (R, C) where the robot's centre may be, over the whole map
+    room: float = inf  # that it keeps to what is not known free, at least [m]
     facing: float | None = None  # heading to turn to at its end [rad], team frame
 
 

@@ -16,6 +16,7 @@ from vedette.agent.events import Arrived, Pose, Scan, Sensed, Stuck
 from vedette.agent.flight import Itinerary
 from vedette.agent.mission import FlightMission
 from vedette.agent.state import Agent, State
+from vedette.outcome import Outcome
 
 
 @dataclass
@@ -34,6 +35,11 @@ class FlightBehaviour:
 
     def __post_init__(self) -> None:
         self.flight = Itinerary(self.turn_rate)
+
+    @property
+    def ending(self) -> Outcome:
+        """A vehicle leaves nothing that it could have done."""
+        return Outcome.COMPLETE
 
     def wake(self, agent: Agent, pose: Pose, now: float) -> bool:
         """Take part in rounds from the first pose on."""

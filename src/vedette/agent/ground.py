@@ -14,6 +14,7 @@ from vedette.agent.effects import Drive, Effect
 from vedette.agent.events import Arrived, Pose, Scan, Sensed, Stuck
 from vedette.agent.mission import GroundMission
 from vedette.agent.state import Agent, State
+from vedette.outcome import Outcome
 
 HOME = 0.3  # from its start a robot is at home [m]
 HOME_AGAIN = 3.0  # a robot whose way home is blocked tries again after so long [s]
@@ -37,6 +38,11 @@ class GroundBehaviour:
     home_tries: int = 0  # ways home that were blocked
     listening: bool = True  # until all mates have been heard, or for a while: they are not to be mapped
     held: Scan | Sensed | None = None  # the latest while listening
+
+    @property
+    def ending(self) -> Outcome:
+        """The mission's own word."""
+        return self.mission.ending
 
     def wake(self, agent: Agent, pose: Pose, now: float) -> bool:
         """Begin to map once the mates' places are known, so that they are not taken for obstacles."""

@@ -10,6 +10,7 @@ from vedette.agent.events import Pose
 from vedette.agent.flight import FlightPlan
 from vedette.agent.mates import Mate
 from vedette.agent.messages import Note
+from vedette.outcome import Outcome
 from vedette.problem import Codec, Objective, Reach
 
 BeliefT = TypeVar("BeliefT")
@@ -118,6 +119,10 @@ class Mission(Protocol[BeliefT, StrategyT, ImpactT]):
 
 class GroundMission(Mission[BeliefT, StrategyT, ImpactT], Protocol[BeliefT, StrategyT, ImpactT]):
     """A mission whose strategies are places to drive to, one after another."""
+
+    @property
+    def ending(self) -> Outcome:
+        """How the mission ends for this robot, asked when it has nothing left to do."""
 
     def goal(self) -> tuple[float, float] | None:
         """Return where the present strategy wants the robot next [m], team frame; None: nowhere."""

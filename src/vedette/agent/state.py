@@ -17,6 +17,7 @@ from vedette.agent.mates import Mates
 from vedette.agent.mission import Mission
 from vedette.agent.pace import Pace
 from vedette.agent.rounds import Decision, Rounds
+from vedette.outcome import Outcome
 
 QUIET_ROUNDS = 2  # so many rounds in a row with nothing to gain for anybody end the mission
 
@@ -45,6 +46,10 @@ class Behaviour(Protocol):
     @property
     def state(self) -> State:
         """What the robot is doing."""
+
+    @property
+    def ending(self) -> Outcome:
+        """How the mission ends for this robot, asked when it is done."""
 
     def wake(self, agent: Agent, pose: Pose, now: float) -> bool:
         """Tell whether the robot takes part in rounds yet; called first, whenever time has gone on."""
@@ -111,6 +116,11 @@ class Agent:
     def done(self) -> bool:
         """Tell whether this robot has nothing left to do, the way home included."""
         return self.state is State.DONE
+
+    @property
+    def ending(self) -> Outcome:
+        """How the mission ends for this robot, once it is done."""
+        return self.behaviour.ending
 
     def _decided(self, decision: Decision) -> None:
         exact = not decision.approximate and not decision.blocked

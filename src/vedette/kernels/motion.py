@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 
 from vedette import _kernels
 
+WALL_GUARD = 0.025  # [m]
+
 
 class Limits(NamedTuple):
     """What a robot's body can do, and how often it is told."""
@@ -17,6 +19,7 @@ class Limits(NamedTuple):
     speed: float  # top speed [m/s]
     turn_rate: float  # top turn rate [rad/s]
     period: float  # time for which a command holds [s]
+    guard: float = WALL_GUARD  # least clearance to walls ever commanded [m]
 
 
 class Command(NamedTuple):
@@ -53,7 +56,7 @@ def steer(
     The roll-outs are followers of the path with different sideways offsets, speeds and look-aheads (a dynamic
     window in path coordinates): each turns towards its point ahead and slows down while it is askew. One that
     would leave the traversable cells, or come within 5 cm of a disc (others move on at constant velocity) or
-    2.5 cm of a wall, waits for that step, unless it is no worse than before. So every candidate is safe. The
+    the guard of a wall, waits for that step, unless it is no worse than before: every candidate is safe. The
     first that costs at most 0.1 s more than conceivable is taken. Head-on, robots keep to the right. A robot
     that turns on the spot needs a reason to turn back, lest it dither between two followers.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import zlib
-from typing import Annotated
+from typing import Annotated, Literal
 
 import msgspec
 from msgspec import Meta
@@ -13,6 +13,7 @@ from vedette import wire
 MOST_BYTES = 1 << 24
 Count = Annotated[int, Meta(ge=0, le=2**53)]
 Real = Annotated[float, Meta(ge=-1e9, le=1e9)]
+Ending = Literal["complete", "unreached", "enclosed"]  # words of ``vedette.outcome.Outcome``
 PRINTABLE = r"^[^\x00-\x1f\x7f-\x9f\[\]]*\Z"  # what a terminal shows as it is, markup left out
 Word = Annotated[str, Meta(max_length=64, pattern=PRINTABLE)]
 Sentence = Annotated[str, Meta(max_length=500, pattern=PRINTABLE)]
@@ -77,6 +78,7 @@ class Condition(msgspec.Struct, frozen=True, array_like=True, tag=1):
     answer_ms: SpreadReport | None  # a negotiation message
     round_ms: SpreadReport | None  # rounds that this robot began, as the root, from end to end
     decided: Real | None = None  # how long ago the latest round ended with a decision, in real time [s]
+    ending: Ending = "complete"  # how the mission ends for it, once it is done
 
 
 class Report(msgspec.Struct, frozen=True, array_like=True, tag=3):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Protocol, cast
 
 import numpy as np
 from msgspec import structs
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from vedette.agent import NetworkedAgent
 from vedette.agent.body import Body
 from vedette.net import report as wire
-from vedette.net.report import Condition, LinkReport, SpreadReport
+from vedette.net.report import Condition, Ending, LinkReport, SpreadReport
 from vedette.net.transport import Transport
 from vedette.overlay import LinkStatus
 from vedette.record.clock import Clock
@@ -120,6 +120,7 @@ class Witness:
             answer_ms=_spread(self.clock.answer_ms, len(self.clock.answers)),
             round_ms=_spread(Statistics.of([1e3 * took for took in self._rounds]), len(self._rounds)),
             decided=None if self._decided is None else max(now - self._decided, 0.0),
+            ending=cast(Ending, agent.ending.value),
         )
 
 

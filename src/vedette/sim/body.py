@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from vedette.kernels import motion
 from vedette.team import PlatformSpec
 
+GUARD_OF_ROOM = 0.5  # of the room that a path has is kept to walls, the rest is for driving beside it
 SENSING_RANGE = 3.0  # within which a robot feels other bodies' places and velocities [m]
 CLEARANCE_RANGE = 0.5  # beyond a disc's rim, farther walls and discs are not measured [m]
 ARRIVAL = 0.15  # from the path's end: there [m]
@@ -32,7 +33,8 @@ class _Task:
     xy: NDArray[np.float64]  # (L, 2) [m], L >= 2
     arc: NDArray[np.float64]  # (L,) arc length [m]
     traversable: NDArray[np.bool_]  # (R, C) shared with the robot's own map
-    facing: float | None = None  # heading to turn to at the end [rad]
+    guard: float  # least clearance to walls [m]
+    facing: float | None  # heading to turn to at the end [rad]
     done: float = 0.0  # arc length reached [m]
     offset: float = 0.0  # sideways offset being followed [m]
     turning: float = 0.0  # turn rate of a robot that turns on the spot [rad/s]
@@ -85,13 +87,15 @@ class Bodies:
         i: int,
         path: NDArray[np.float64] | None,
         traversable: NDArray[np.bool_] | None = None,
+        room: float = np.inf,
         facing: float | None = None,
     ) -> None:
         """Let robot ``i`` follow the polyline ``path`` ``(L, 2)`` [m]; None: stand still.
 
         ``traversable`` ``(R, C)``: cells where robot ``i``'s own map allows its centre; held by reference,
-        so that later changes count; None: every cell that is not solid. ``facing``: heading [rad] to turn to
-        on the spot at the end; None: any.
+        so that later changes count; None: every cell that is not solid. ``room`` [m]: that the path keeps to
+        what is not known free; a robot keeps at least half of it to walls, of 5 cm and more 2.5 cm.
+        ``facing``: heading [rad] to turn to on the spot at the end; None: any.
         """
         if path is None or not self.alive[i]:
             self._tasks[i] = None
@@ -99,7 +103,8 @@ class Bodies:
         xy = _without_repeats(np.asarray(path, dtype=np.float64).reshape(-1, 2), self.poses[i, :2])
         arc = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(xy, axis=0).T))))
         allowed = ~self.solid if traversable is None else traversable
-        task = _Task(xy, arc, allowed, facing, best_left=float(arc[-1]))
+        guard = min(motion.WALL_GUARD, GUARD_OF_ROOM * room)
+        task = _Task(xy, arc, allowed, guard, facing, best_left=float(arc[-1]))
         old = self._tasks[i]
         if old is not None and np.hypot(*(old.xy[-1] - xy[-1])) < SAME_GOAL:
             task.idle, task.offset, task.turning = old.idle, old.offset, old.turning
@@ -156,7 +161,7 @@ class Bodies:
             self._turn(i, task, dt)
             return
         x, y, heading = self.poses[i].tolist()
-        limits = motion.Limits(spec.radius, spec.speed, spec.turn_rate, dt)
+        limits = motion.Limits(spec.radius, spec.speed, spec.turn_rate, dt, task.guard)
         chosen = motion.steer(
             self.solid,
             task.traversable,

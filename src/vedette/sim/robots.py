@@ -116,7 +116,7 @@ class Robots:
             path = path - (east, north)
             passable = displaced(passable, round(north / resolution), round(east / resolution))
             facing = None if facing is None else facing - turn
-        self.bodies.command(i, path, passable, facing)
+        self.bodies.command(i, path, passable, route.room, facing)
         self._last_change = now
 
     def advance(self, now: float, dt: float) -> None:

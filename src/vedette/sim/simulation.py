@@ -20,7 +20,7 @@ from vedette.agent.effects import Drive, Fly, Job
 from vedette.agent.events import Event, JobDone
 from vedette.maps import GridFrame
 from vedette.maps.world import World
-from vedette.outcome import Outcome
+from vedette.outcome import Outcome, together
 from vedette.record.clock import Clock
 from vedette.sim.datagrams import Datagrams
 from vedette.sim.faults import Timeline
@@ -134,7 +134,7 @@ class Simulation:
             return Outcome.TEAM_LOST
         agents = self.network.agents
         if all(agents[i].done for i in living):
-            return Outcome.COMPLETE
+            return together(agents[i].ending for i in living)
         if self._stopped:
             return Outcome.INTERRUPTED
         outcome = self.field.over(self.now)

@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tests.support.mapping_scenes import CORRIDOR, FRAME, SPEC, explored, frozen, placed
+from tests.support.mapping_scenes import CORRIDOR, FRAME, RESOLUTION, SPEC, explored, frozen, placed
 from vedette.domains.mapping import views
 from vedette.domains.mapping.impact import NOTHING, Impact
 from vedette.domains.mapping.layers import TimeLayers, plain, rate
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.platform import LEFT_ALONE, STAY, STICKINESS, MappingPlatform, Tour
-from vedette.domains.mapping.stops import Stops
+from vedette.domains.mapping.stops import Stops, nearest_view, unknown_near
 from vedette.kernels import coverage
 from vedette.kernels.coverage import LAYERS
-from vedette.maps import FREE, UNKNOWN
+from vedette.maps import FREE, OCCUPIED, UNKNOWN
 
 OBJECTIVE = MappingObjective()
 
@@ -151,7 +151,7 @@ def test_a_frontier_that_a_visit_did_not_change_stays_given_up_until_the_map_nea
     platform, classes = ready(), explored(CORRIDOR)
     x, y = stops_of(platform).targets[2].tolist()
     unknown = int(stops_of(platform).unknown[2])
-    platform.visited.append((x, y, unknown))
+    platform.visited.append((x, y, unknown, 0.4))
     for _ in range(3):
         placed(platform, frozen(classes))
         assert not reachable_near(platform, x, y).any()
@@ -170,31 +170,47 @@ def test_a_frontier_that_a_visit_did_not_change_stays_given_up_until_the_map_nea
 def test_a_frontier_whose_visit_changed_the_map_is_not_given_up() -> None:
     platform = ready()
     x, y = stops_of(platform).targets[2].tolist()
-    platform.visited.append((x, y, 2 * int(stops_of(platform).unknown[2])))
+    platform.visited.append((x, y, 2 * int(stops_of(platform).unknown[2]), 0.4))
     placed(platform, frozen())
     assert not platform.given_up
     assert reachable_near(platform, x, y).all()
 
 
-def test_a_frontier_that_a_look_from_afar_did_not_change_is_looked_at_from_close_by() -> None:
+def test_a_frontier_that_a_look_from_afar_did_not_change_is_looked_at_from_as_near_as_can_be() -> None:
     platform = ready()
     stops = stops_of(platform)
     apart = np.hypot(*(stops.targets - stops.views).T)
     k = int(np.argmax(np.where(np.isfinite(stops.first_leg), apart, 0.0)))
     assert apart[k] > 2.0
     (x, y), unknown = stops.targets[k].tolist(), int(stops.unknown[k])
-    platform.glimpsed.append((x, y, unknown))
+    platform.visited.append((x, y, unknown, apart[k]))
     placed(platform, frozen())
-    near = np.hypot(*(stops_of(platform).targets - (x, y)).T) < 0.4
-    assert (np.hypot(*(stops_of(platform).targets - stops_of(platform).views)[near].T) <= 1.0).all()
     assert not platform.given_up
     assert [(spot.x, spot.y) for spot in platform.closer] == [(x, y)]
-    others = np.hypot(*(stops.targets - (x, y)).T) > 0.6
-    kept = np.hypot(*(stops_of(platform).targets - (x, y)).T) > 0.6
-    np.testing.assert_array_equal(stops_of(platform).views[kept], stops.views[others])
-    platform.glimpsed.append((x, y, 2 * unknown))
+    now = stops_of(platform)
+    near = np.hypot(*(now.targets - (x, y)).T) < 0.5
+    assert (np.hypot(*(now.targets - now.views)[near].T) <= nearest_view(SPEC, RESOLUTION) + RESOLUTION).all()
+    others = np.hypot(*(stops.targets - (x, y)).T) >= 0.5
+    np.testing.assert_array_equal(now.views[~near], stops.views[others])
+    platform.visited.append((x, y, unknown, 0.9))  # nearer it could not get
     placed(platform, frozen())
-    assert len(platform.closer) == 1  # that look changed the map
+    assert [(spot.x, spot.y) for spot in platform.given_up] == [(x, y)]
+
+
+def test_a_frontier_too_narrow_for_the_body_is_given_up_after_a_look_from_within_a_metre() -> None:
+    classes, platform = explored(CORRIDOR), ready()
+    assert (classes[43, 36:46] == OCCUPIED).all()
+    assert (classes[44, 36:46] == FREE).all()
+    for cells, narrow in ((3, True), (6, False)):  # of a gap in the wall; the body is four across
+        classes[43, 38 : 38 + cells] = UNKNOWN
+        x, y = FRAME.centres(np.array([44 * FRAME.cols + 38 + cells // 2]))[0].tolist()
+        for afar, given_up in ((1.5, False), (0.9, narrow), (0.4, True)):
+            platform.given_up.clear()
+            platform.closer.clear()
+            platform.visited.append((x, y, unknown_near(classes, FRAME, x, y), afar))
+            placed(platform, frozen(classes))
+            assert bool(platform.given_up) == given_up, (cells, afar)
+            assert bool(platform.closer) != given_up
 
 
 def test_an_avoided_frontier_is_left_alone_for_its_time() -> None:

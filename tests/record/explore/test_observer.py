@@ -14,7 +14,7 @@ from tests.support.small_missions import robots, run, small_maze
 from vedette.agent.effects import TrafficKind as Kind
 from vedette.domains.mapping.belief import LN2
 from vedette.domains.mapping.impact import Impact
-from vedette.domains.mapping.platform import GivenUp
+from vedette.domains.mapping.leftovers import Leftover
 from vedette.kernels.coverage import LAYERS
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
 from vedette.maps.world import World
@@ -191,7 +191,7 @@ def test_the_summary_adds_up_what_the_robots_have_counted() -> None:
 
 
 def test_what_robots_gave_up_is_listed_unless_somebody_knows_it_by_now() -> None:
-    spots = [GivenUp(0.55, 0.55, 40), GivenUp(2.05, 1.05, 30, visited=False)]
+    spots = [Leftover(0.55, 0.55, 40, "unseeable"), Leftover(2.05, 1.05, 30, "unreached")]
     first, second = left_out(spots[:1], "robot-1"), left_out(spots, "robot-2")
     team = [
         replace(view(0, columns(0, 1)), left_out=first),

@@ -19,6 +19,8 @@ from vedette.domains.mapping.stops import (
     Stops,
     enough_of_sight,
     find_stops,
+    nearest_view,
+    seen_from,
     survey,
     unknown_near,
 )
@@ -64,7 +66,8 @@ _NONE, _NOWHERE = np.empty(0, np.int64), np.empty((0, 2))
 STAY = Tour(_NOWHERE, _NOWHERE, np.empty(0), _NONE, _NONE)
 
 
-Visit = tuple[float, float, int]  # x, y [m] of a frontier, unknown cells near it when it was planned
+# Of a frontier: x, y [m], unknown cells near it when it was planned, from how far away it was looked at [m].
+Visit = tuple[float, float, int, float]
 
 
 @dataclass(frozen=True)
@@ -92,9 +95,8 @@ class MappingPlatform:
     obstacles: list[Disc] = field(default_factory=list)
     team: list[tuple[int, float, float]] = field(default_factory=list)  # id, x, y of all, itself included
     now: float = 0.0
-    visited: list[Visit] = field(default_factory=list)  # from close by, since the last round
-    glimpsed: list[Visit] = field(default_factory=list)  # likewise, but from afar
-    closer: list[GivenUp] = field(default_factory=list)  # in vain so: to be visited from close by
+    visited: list[Visit] = field(default_factory=list)  # since the last round
+    closer: list[GivenUp] = field(default_factory=list)  # seen from afar in vain: to be visited from nearer
     given_up: list[GivenUp] = field(default_factory=list)  # by this robot
     told: list[GivenUp] = field(default_factory=list)  # by anybody, as of the last round
     avoided: list[tuple[float, float, float]] = field(default_factory=list)  # x, y, until [s]
@@ -141,19 +143,25 @@ class MappingPlatform:
         model = self.model(belief)
         for clearance in CLEARANCES:
             self.ground = survey(belief, self.spec, self.x, self.y, self.obstacles, clearance)
-            if any(self._find_stops(belief, self.ground, model, close) for close in (False, True)):
+            last = clearance == CLEARANCES[-1]
+            if any(
+                self._find_stops(belief, self.ground, model, *close)
+                for close in ((False, False), (True, last))
+            ):
                 self.patience = PATIENCE
                 return
         self.patience *= 2 if self.cut_short else 1
 
-    def _find_stops(self, belief: MapBelief, ground: Ground, model: SightingModel, close: bool) -> bool:
+    def _find_stops(
+        self, belief: MapBelief, ground: Ground, model: SightingModel, close: bool, last: bool
+    ) -> bool:
         """Find the nearest stops, or if they are no good those after them; tell if one can be visited."""
         least = max(LEAST_AREA, 0.5 * belief.frame.resolution**2)
         closer = [(spot.x, spot.y) for spot in self.closer]
         tried = _NONE
         self.considered = _NOWHERE
         for effort in (1, self.patience):
-            found = look(belief, ground, self.spec, close=close, closer=closer, effort=effort)
+            found = look(belief, ground, self.spec, close=close, closer=closer, last=last, effort=effort)
             for lot in by_way(found.only(~np.isin(found.clusters, tried)), ground):
                 stops = find_stops(belief, ground, self.spec, model, least, lot, tours=self.ahead > 1)
                 self.considered = np.concatenate((self.considered, stops.targets))
@@ -172,19 +180,10 @@ class MappingPlatform:
         """Tell whether the robot can reach any stop of the round."""
         return self.stops is not None and bool(np.isfinite(self.stops.first_leg).any())
 
-    def unvisited(self, belief: MapBelief) -> NDArray[np.float64]:
-        """Return ``(K, 2)``, a place on each frontier that no visit has left as it was [m], team frame."""
-        starts = belief.frontier_starts
-        places = belief.frame.centres(belief.frontier_cells[(starts[:-1] + starts[1:]) // 2])
-        left = np.ones(len(places), np.bool_)
-        for spot in (*(each for each in self.given_up if each.visited), *self.told):
-            left &= np.hypot(places[:, 0] - spot.x, places[:, 1] - spot.y) > SAME_PLACE
-        return places[left]
-
     def _update_given_up(self, belief: MapBelief) -> None:
         """Give up frontiers that a visit did not change; take up again those whose surroundings changed.
 
-        A visit from afar that changed nothing calls for one from close by.
+        A visit from afar that changed nothing calls for one from nearer.
         """
 
         much = 0.5 * enough_of_sight(self.spec) / belief.frame.resolution**2
@@ -193,21 +192,31 @@ class MappingPlatform:
             seen = before - unknown_near(belief.classes, belief.frame, x, y)
             return seen <= max(2, min(before // 8, much))
 
-        def in_vain(visits: list[Visit]) -> list[GivenUp]:
-            spots = [(x, y, unknown_near(belief.classes, belief.frame, x, y)) for x, y, _ in visits]
-            return [
-                GivenUp(x, y, now)
-                for (x, y, now), (_, _, before) in zip(spots, visits, strict=True)
-                if now and unchanged(x, y, before)
-            ]
-
         self.given_up = [spot for spot in self.given_up if unchanged(spot.x, spot.y, spot.unknown)]
         self.told = [spot for spot in self.told if unchanged(spot.x, spot.y, spot.unknown)]
         self.closer = [spot for spot in self.closer if unchanged(spot.x, spot.y, spot.unknown)]
-        self.given_up += in_vain(self.visited)
-        self.closer += in_vain(self.glimpsed)
+        for x, y, before, afar in self.visited:
+            now_unknown = unknown_near(belief.classes, belief.frame, x, y)
+            if now_unknown and unchanged(x, y, before):
+                in_vain = self.given_up if self._was_near(belief, x, y, afar) else self.closer
+                in_vain.append(GivenUp(x, y, now_unknown))
         self.visited.clear()
-        self.glimpsed.clear()
+
+    def _was_near(self, belief: MapBelief, x: float, y: float, afar: float) -> bool:
+        """Tell whether a frontier was looked at from near enough to be given up.
+
+        That is from within a metre; one that the body may fit through, as near as it gets, if it has not been
+        tried to get nearer.
+        """
+        cell = belief.frame.resolution
+        if afar > seen_from(self.spec, cell, close=True) + cell:
+            return False
+        tried = any(np.hypot(x - spot.x, y - spot.y) < LEFT_ALONE for spot in self.closer)
+        if tried or afar <= nearest_view(self.spec, cell) + cell:
+            return True
+        away = np.hypot(*(belief.frame.centres(belief.frontier_cells) - (x, y)).T)
+        k = int(np.searchsorted(belief.frontier_starts, int(np.argmin(away)), side="right")) - 1
+        return bool(np.diff(belief.frontier_starts)[k] * cell <= 2.0 * self.spec.radius + 1e-9)
 
     def _without_left_alone(self, stops: Stops) -> Stops:
         """Make the stops at given-up or avoided places unreachable, which keeps the arrays aligned."""

@@ -26,6 +26,7 @@ LEFT_ALONE = 0.5  # what holds for a place holds for frontiers this near it [m]
 VIEW_REACH = 0.8  # how far from a frontier to look for a place to see it from [sensor ranges]
 CLOSE_VIEW = 1.0  # the same where the farther place leads nowhere [m]
 CLEARANCES = (0.05, 0.01)  # kept to all that is not known free [m]; the second where the first leads nowhere
+SURE_CLEARANCE = 0.025  # where what is solid in truth leaves so much, noisy maps leave the lesser one [m]
 Disc = tuple[float, float, float]  # x, y, radius [m], team frame
 
 
@@ -124,8 +125,12 @@ def find_stops(
 def seen_from(spec: PlatformSpec, resolution: float, close: bool) -> float:
     """Return from how far a frontier is looked at [m]; no nearer than the robot gets to it."""
     far = VIEW_REACH * spec.range
-    nearest = spec.radius + CLEARANCES[0] + 2.0 * resolution
-    return min(max(min(CLOSE_VIEW, far) if close else far, nearest), spec.range)
+    return min(max(min(CLOSE_VIEW, far) if close else far, nearest_view(spec, resolution)), spec.range)
+
+
+def nearest_view(spec: PlatformSpec, resolution: float) -> float:
+    """Return how near a robot gets to a frontier that it is before [m]."""
+    return spec.radius + CLEARANCES[0] + 2.0 * resolution
 
 
 def enough_of_sight(spec: PlatformSpec) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.domains.mapping.belief import MapBelief
-from vedette.domains.mapping.stops import LEFT_ALONE, Ground, seen_from
+from vedette.domains.mapping.stops import LEFT_ALONE, Ground, nearest_view, seen_from
 from vedette.kernels import coverage
 from vedette.kernels.coverage import Viewpoints
 from vedette.team import PlatformSpec
@@ -26,43 +26,55 @@ def look(
     *,
     close: bool = False,
     closer: Sequence[tuple[float, float]] = (),
+    last: bool = False,
     effort: int = 1,
 ) -> Viewpoints:
     """Find from where the nearest frontiers can be looked at: ``MOST_STOPS`` of them, times ``effort``.
 
-    A frontier is looked at from the nearest place that sees its middle, however slantingly, or, if ``close``
-    or by one of the places ``closer`` [m], from one within a metre.
+    A frontier is looked at from the nearest place that sees its middle, however slantingly, or, if ``close``,
+    from one within a metre; one by the places ``closer`` [m] from as near as the robot gets, and if this is
+    the ``last`` try, from within a metre where there is nothing nearer.
     """
-    bounds = belief.frontier_cells, belief.frontier_starts
-    found = _viewpoints(belief, ground, spec, bounds, close, effort)
-    return found if close or not len(closer) else _from_close_by(belief, ground, spec, found, closer)
+    bounds, away = (
+        (belief.frontier_cells, belief.frontier_starts),
+        seen_from(spec, belief.frame.resolution, close),
+    )
+    found = views_within(belief, ground, bounds, away, effort)
+    return _from_nearer(belief, ground, spec, found, closer, last) if len(closer) else found
 
 
-def _viewpoints(
-    belief: MapBelief, ground: Ground, spec: PlatformSpec, frontiers: Frontiers, close: bool, effort: int
+def views_within(
+    belief: MapBelief, ground: Ground, frontiers: Frontiers, away: float, effort: int
 ) -> Viewpoints:
+    """Find from where on the ground frontiers are seen from so near [m]."""
     resolution = belief.frame.resolution
-    reach = max(2, round(seen_from(spec, resolution, close) / resolution))
-    most, work = effort * MOST_STOPS, effort * MOST_WORK
+    reach, most, work = max(2, round(away / resolution)), effort * MOST_STOPS, effort * MOST_WORK
     return coverage.viewpoints(
         ground.field, ground.source, resolution, belief.classes, *frontiers, reach, most, work
     )
 
 
-def _from_close_by(
+def _from_nearer(
     belief: MapBelief,
     ground: Ground,
     spec: PlatformSpec,
     found: Viewpoints,
     places: Sequence[tuple[float, float]],
+    last: bool,
 ) -> Viewpoints:
-    """Return the viewpoints, those of frontiers by the places within a metre, if there are any."""
-    middles, starts, views = belief.frame.centres(found.targets), belief.frontier_starts, found.views.copy()
-    for k in np.flatnonzero((np.hypot(*(middles[:, None] - places).T) < LEFT_ALONE).any(axis=0)):
+    """Return the viewpoints, those of frontiers by the places from nearer, if there are any."""
+    starts, resolution = belief.frontier_starts, belief.frame.resolution
+    targets, views = found.targets.copy(), found.views.copy()
+    by = (np.hypot(*(belief.frame.centres(targets)[:, None] - places).T) < LEFT_ALONE).any(axis=0)
+    for k in np.flatnonzero(by):
         cells = belief.frontier_cells[slice(*starts[found.clusters[k] :][:2])]
-        near = _viewpoints(belief, ground, spec, (cells, np.array([0, len(cells)])), True, 1)
-        views[k] = near.views[0] if len(near) else -1
-    return replace(found, views=views).only(views >= 0)
+        views[k] = -1
+        for away in (nearest_view(spec, resolution), *([seen_from(spec, resolution, close=True)] * last)):
+            near = views_within(belief, ground, (cells, np.array([0, len(cells)])), away, 1)
+            if len(near):
+                targets[k], views[k] = near.targets[0], near.views[0]
+                break
+    return replace(found, targets=targets, views=views).only(views >= 0)
 
 
 def by_way(found: Viewpoints, ground: Ground) -> list[Viewpoints]:

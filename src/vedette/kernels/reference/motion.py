@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from vedette.kernels.motion import Command, Limits
 
 STEPS = 20  # of a roll-out
-WALL_GUARD = 0.025  # least clearance ever commanded [m]
 DISC_GUARD = 0.05
 OFFSETS = (0.0, -0.1, 0.1, -0.2, 0.2, -0.35, 0.35, -0.5, 0.5, -0.7, 0.7)  # left positive [m]
 SPEEDS = (1.0, 0.6, 0.25)  # shares of the top speed
@@ -139,7 +138,7 @@ class MotionScene(NamedTuple):
         self, f: Follower, pose: Pose, s: float, last_offset: float, enough: float = math.inf
     ) -> Command:
         """Roll a follower out and price it; infinity once its own speed cannot beat ``enough``."""
-        period, keep = self.limits.period, self.limits.radius + WALL_GUARD
+        period, keep = self.limits.period, self.limits.radius + self.limits.guard
         x, y, heading = pose
         speed, turn, first_arc = 0.0, 0.0, s
         close, wrong, outside, error = 0.0, 0.0, 0, 0.0

@@ -13,6 +13,7 @@ from vedette.agent.events import Pose, Scan
 from vedette.agent.mates import Mate
 from vedette.domains.mapping.belief import MapBelief, freeze, longest_frontier, planning_factor
 from vedette.domains.mapping.impact import Impact, MapImpactCodec, check_claim
+from vedette.domains.mapping.leftovers import Leftover, any_unvisited, given_up, leftovers
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.planners import Planner
 from vedette.domains.mapping.platform import SAME_PLACE, STAY, GivenUp, MappingPlatform, Tour
@@ -24,7 +25,6 @@ from vedette.domains.mapping.stops import (
     VIEW_REACH,
     Disc,
     block,
-    seen_from,
     unknown_near,
 )
 from vedette.domains.mapping.views import MOST_STOPS
@@ -33,11 +33,14 @@ from vedette.kernels import distance, frontier, lidar
 from vedette.maps import GridFrame
 from vedette.maps.disc import cells_under
 from vedette.missions.explore.looking import Looking
-from vedette.missions.explore.resort import LastResort
+from vedette.missions.explore.resort import LastResort, hemmed_in
+from vedette.outcome import Outcome
 from vedette.team import Most, PlatformSpec
 
 GAIN_HIT, GAIN_MISS, CLAMP = 4, 2, 20  # log-odds of one observation and of all [0.2 nats]
-NUDGE = 0.25  # a return lies in the wall, not on its face: it counts as so much farther [cells]
+NUDGE = 0.25  # a return lies in the wall, not on its face: it counts as so much farther [cells] ...
+NUDGE_OF_NOISE = 2.5  # ... or, where noise asks for more, so many of its deviations, ...
+MOST_NUDGE = 0.5  # ... but no more than that [cells]
 SIGHTING_STRIDE = 4  # one beam in so many teaches the sighting model
 LEARNING_STEP = 2.0  # a robot learns from one scan in so many metres of its way [m]
 COUNTS_PERIOD = 10.0  # the model's counts are shared at most so often [s]
@@ -71,6 +74,7 @@ class Exploring:
     _learned: tuple[float, float, NDArray[np.int8]] | None = None  # where it last learned; its evidence then
     _looking: Looking = field(init=False)
     _resort: LastResort = field(init=False)
+    _left: list[Leftover] | None = None  # as of the last round; None: there was a stop
     _released: list[tuple[float, float]] = field(default_factory=list)  # stops that could not be carried out
     _passable: dict[float, tuple[int, NDArray[np.bool_]]] = field(default_factory=dict)  # by clearance
 
@@ -91,7 +95,7 @@ class Exploring:
         for mate in mates:
             self._leave_out(mate, pose, scan.angles, ranges, hits, now)
         x, y = pose.x - self.frame.origin_x, pose.y - self.frame.origin_y
-        nudge = NUDGE * self.frame.resolution
+        nudge = self._nudge
         self._learn(scan.angles, ranges, hits, x, y)
         beams = self.log_odds, self.frame.resolution, x, y, scan.angles, ranges, hits
         if pose.deviation > 0.0 or pose.heading_deviation > 0.0:
@@ -103,6 +107,12 @@ class Exploring:
             self._changed.append(changed)
         self._stand(pose)
         self._looking.add(pose, scan.angles)
+
+    @property
+    def _nudge(self) -> float:
+        """So much farther a return counts, lest its noise puts it before the wall [m]."""
+        cell, noise = self.frame.resolution, self.spec.range_noise
+        return min(max(NUDGE * cell, NUDGE_OF_NOISE * noise), MOST_NUDGE * cell)
 
     def _stand(self, pose: Pose) -> None:
         """Where the robot stands is free, as far as it has not seen what is there."""
@@ -140,7 +150,7 @@ class Exploring:
             self.spec.range,
             BIN,
             SIGHTING_STRIDE,
-            NUDGE * self.frame.resolution,
+            self._nudge,
         )
         self.counts[:, : seen.shape[1]] += seen[:, :BINS]
         self._learned = x, y, self.log_odds.copy()
@@ -216,10 +226,24 @@ class Exploring:
         self.platform.prepare(belief)
         self.strategy = self.platform.carry_over(self.strategy)
         if self.platform.leads_anywhere:
-            self._resort.goal = None
+            self._resort.goal, self._left = None, None
         elif self.platform.ground is not None:
-            unvisited = self.platform.unvisited(belief)
-            self._resort.consider(pose, belief.frame, self.platform.ground, len(unvisited) > 0)
+            self._left = leftovers(belief, self.platform)
+            unvisited = any_unvisited(belief, self.platform)
+            self._resort.consider(pose, belief.frame, self.platform.ground, unvisited)
+
+    @property
+    def left_out(self) -> list[Leftover]:
+        """What the robot leaves as it is, as far as it knows by now."""
+        return given_up(self.platform) if self._left is None else self._left
+
+    @property
+    def ending(self) -> Outcome:
+        """How the mission has ended for this robot, if it has nothing left to do."""
+        left = {spot.why for spot in self._left or ()} - {"unseeable"}
+        if left and self.platform.ground is not None and hemmed_in(self.platform.ground):
+            return Outcome.ENCLOSED
+        return Outcome.UNREACHED if "unreached" in left else Outcome.COMPLETE
 
     def _discs(self, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float) -> list[Disc]:
         """Mates that stand in the way: the silent ones, and for a robot that is blocked all those near it."""
@@ -278,10 +302,8 @@ class Exploring:
         elif not self.served() and self._facing(pose) is not None:
             return False
         else:
-            close = seen_from(self.spec, self.frame.resolution, close=True) + self.frame.resolution
-            afar = np.hypot(*(self.strategy.targets[0] - self.strategy.views[0])) > close
-            visits = self.platform.glimpsed if afar else self.platform.visited
-            visits.append((x, y, int(self.strategy.unknown[0])))
+            afar = float(np.hypot(*(self.strategy.targets[0] - self.strategy.views[0])))
+            self.platform.visited.append((x, y, int(self.strategy.unknown[0]), afar))
         self.strategy = self.strategy.after_first()
         return True
 
@@ -346,8 +368,8 @@ class Exploring:
             if len(cells):
                 path = self.frame.centres(distance.shortcut(passable, cells))
                 path[0] = pose.x, pose.y
-                there = np.hypot(pose.x - goal[0], pose.y - goal[1]) <= THERE
-                return Route(path, passable, self._facing(pose) if there and goal == self.goal() else None)
+                there = np.hypot(pose.x - goal[0], pose.y - goal[1]) <= THERE and goal == self.goal()
+                return Route(path, passable, clearance, self._facing(pose) if there else None)
         return None
 
     def _cell(self, x: float, y: float) -> int:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from vedette import wire
 from vedette.agent import Agent, GroundBehaviour
 from vedette.domains.mapping.impact import MapImpactCodec
-from vedette.domains.mapping.platform import GivenUp
+from vedette.domains.mapping.leftovers import Leftover, Why
 from vedette.maps import OCCUPIED, UNKNOWN
 from vedette.missions.explore.exploring import Exploring
 from vedette.net.gather import figures_of, path_of
@@ -28,15 +28,15 @@ Grid = Annotated[bytes, Meta(max_length=MOST_BYTES)]
 
 
 class Spot(NamedTuple):
-    """A frontier that the robot has given up, as ``vedette.domains.mapping.platform.GivenUp``."""
+    """A frontier that the robot leaves, as ``vedette.domains.mapping.leftovers.Leftover``."""
 
     x: Real  # [m], team frame
     y: Real
     unknown: Count  # cells near it
-    visited: bool
+    why: Why
 
 
-class MapContent(msgspec.Struct, frozen=True, array_like=True, tag=1):
+class MapContent(msgspec.Struct, frozen=True, array_like=True, tag=2):
     """A robot's map."""
 
     rows: Annotated[int, Meta(ge=1, le=MOST_CELLS)]
@@ -44,7 +44,7 @@ class MapContent(msgspec.Struct, frozen=True, array_like=True, tag=1):
     classes: Grid  # deflated
     seen: Grid  # bits of what its own sensor observed, deflated
     impact: Grid | None  # of its last decision
-    given_up: Annotated[tuple[Spot, ...], Meta(max_length=1024)] = ()
+    left_out: Annotated[tuple[Spot, ...], Meta(max_length=1024)] = ()
 
 
 _CONTENTS: msgspec.msgpack.Decoder[MapContent] = msgspec.msgpack.Decoder(MapContent)
@@ -80,18 +80,18 @@ class ExploreTeller:
         """Return its map."""
         mission, decided = self._mission, self.agent.rounds.impact
         impact = None if decided is None else mission.codec.encode(decided)
-        spots = tuple(Spot(each.x, each.y, each.unknown, each.visited) for each in mission.platform.given_up)
+        spots = tuple(Spot(each.x, each.y, each.unknown, each.why) for each in mission.left_out)
         return content(self._held, mission.log_odds != 0, impact, spots[-1024:])
 
 
 def content(
-    classes: NDArray[np.uint8], seen: NDArray[np.bool_], impact: bytes | None, given_up: tuple[Spot, ...] = ()
+    classes: NDArray[np.uint8], seen: NDArray[np.bool_], impact: bytes | None, left: tuple[Spot, ...] = ()
 ) -> bytes:
     """Return a map as bytes; ``classes`` and ``seen`` are ``(R, C)``."""
     rows, cols = classes.shape
     packed = zlib.compress(np.ascontiguousarray(classes).tobytes(), 1)
     bits = zlib.compress(np.packbits(seen).tobytes(), 1)
-    return _encode(MapContent(rows, cols, packed, bits, impact, given_up))
+    return _encode(MapContent(rows, cols, packed, bits, impact, left))
 
 
 def read_content(payload: bytes) -> MapContent:
@@ -124,7 +124,7 @@ def view_of(condition: Condition, payload: bytes, shape: tuple[int, int], codec:
             collisions=condition.collisions,
             min_clearance_m=UNTOUCHED if condition.min_clearance is None else condition.min_clearance,
         ),
-        left_out=left_out([GivenUp(*spot) for spot in told.given_up], condition.name),
+        left_out=left_out([Leftover(*spot) for spot in told.left_out], condition.name),
     )
 
 

@@ -13,7 +13,7 @@ from vedette.net.explore.content import view_of
 from vedette.net.explore.plan import ExplorePlan
 from vedette.net.report import Condition
 from vedette.net.team import DEAD, Links
-from vedette.outcome import NO_PROGRESS, Outcome
+from vedette.outcome import NO_PROGRESS, Outcome, together
 from vedette.record.explore.log import ExploreSnapshot, RobotSample
 from vedette.record.explore.observer import ExploreObserver, ExploreReport
 from vedette.record.explore.views import GroundFigures, RobotView
@@ -61,7 +61,7 @@ class ExploreWatcher:
     def over(self, now: float, heard: Sequence[Condition]) -> Outcome | None:
         """Tell whether all are done, or nobody gets on."""
         if heard and all(each.state == State.DONE.value for each in heard):
-            return Outcome.COMPLETE
+            return together(each.ending for each in heard)
         way = sum(self._ways.values())
         if way > self._moved[0] + MOVED:
             self._moved = way, now

@@ -162,11 +162,17 @@ class ExploreObserver:
         )
 
     def _left_out(self) -> tuple[LeftOut, ...]:
-        """Return what robots gave up and nobody has come to know since."""
+        """Return what robots left and nobody knows by now; out of reach is what is so to all who live."""
         frame, classes = self._world.frame, union_map(self._views)
-        spots = [
-            replace(spot, unknown_cells=unknown_near(classes, frame, spot.x, spot.y))
-            for view in self._views
-            for spot in view.left_out
-        ]
+        living = [view for view in self._views if view.sample.alive]
+        beyond = [{_place(spot) for spot in view.left_out if spot.why == "out_of_reach"} for view in living]
+        nobody = set.intersection(*beyond) if beyond else set()
+        told = [spot for view in self._views for spot in view.left_out if spot.why != "out_of_reach"]
+        told += [spot for spot in living[0].left_out if _place(spot) in nobody] if living else []
+        spots = [replace(spot, unknown_cells=unknown_near(classes, frame, spot.x, spot.y)) for spot in told]
         return tuple(spot for spot in spots if spot.unknown_cells)
+
+
+def _place(spot: LeftOut) -> tuple[float, float]:
+    """Return where it is [m], to the centimetre: robots reckon from corners of their own."""
+    return round(spot.x, 2), round(spot.y, 2)

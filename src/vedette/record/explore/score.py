@@ -9,12 +9,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.domains.mapping.stops import SURE_CLEARANCE
 from vedette.kernels.visibility import visible_cells
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.maps.world import World, reachable_poses
 from vedette.team import PlatformSpec
-
-ROOM = 0.01  # a disc that would touch both sides of a slot does not fit through it [m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +32,7 @@ class Reference:
             (spec.radius, spec.range): start for spec, start in zip(self.specs, self.starts, strict=True)
         }
         for (radius, reach), start in bodies.items():
-            poses = reachable_poses(self.world, radius + ROOM, start[0], start[1])
+            poses = reachable_poses(self.world, radius + SURE_CLEARANCE, start[0], start[1])
             seen |= visible_cells(self.world.solid, poses, reach / self.world.frame.resolution)
         return seen & ~self.world.solid
 

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
 
+from vedette.domains.mapping.leftovers import Why
 from vedette.record.summary import MissionSummary, Traffic
 
 
 @dataclass(frozen=True)
 class LeftOut:
-    """A frontier that a robot gave up for good, where the map is still unknown."""
+    """A frontier that a robot left, where the map is still unknown."""
 
     x: float  # [m], team frame
     y: float
     unknown_cells: int  # near it
-    why: Literal["unseeable", "unreached"]  # visits did not change it; or the robot could not get there
+    why: Why  # ``vedette.domains.mapping.leftovers``
     by: str  # the robot
 
 

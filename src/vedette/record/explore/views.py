@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.domains.mapping.impact import Impact
-from vedette.domains.mapping.platform import GivenUp
+from vedette.domains.mapping.leftovers import Leftover
 from vedette.maps import UNKNOWN
 from vedette.record.explore.log import RobotSample
 from vedette.record.explore.summary import LeftOut
@@ -60,9 +60,6 @@ def union_map(views: Sequence[RobotView]) -> NDArray[np.uint8]:
     return union
 
 
-def left_out(given_up: Sequence[GivenUp], by: str) -> tuple[LeftOut, ...]:
-    """Return what a robot gave up, to be told."""
-    return tuple(
-        LeftOut(spot.x, spot.y, spot.unknown, "unseeable" if spot.visited else "unreached", by)
-        for spot in given_up
-    )
+def left_out(left: Sequence[Leftover], by: str) -> tuple[LeftOut, ...]:
+    """Return what a robot leaves, to be told."""
+    return tuple(LeftOut(spot.x, spot.y, spot.unknown, spot.why, by) for spot in left)

@@ -1,0 +1,124 @@
+"""A mission ends for the right reason: complete, unreached or enclosed."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+import pytest
+from msgspec import structs
+
+from tests.fuzz.decoders import conditions
+from tests.support.small_missions import robots, room_with_a_wall, run, two_rooms
+from vedette.maps import GridFrame
+from vedette.maps.world import World
+from vedette.missions.explore.options import ExploreOptions
+from vedette.net.explore.plan import ExplorePlan
+from vedette.net.explore.watch import ExploreWatcher
+from vedette.outcome import Outcome, together
+from vedette.record.explore.score import Reference
+from vedette.record.summary import Setting
+from vedette.team import PlatformSpec
+
+
+def slit(side: float) -> World:
+    """A cell of about so many metres a side, and a slit of 0.1 m in the wall between it and a room."""
+    cells = round(side / 0.05)
+    solid = np.ones((cells + 4, cells + 64), bool)
+    solid[2:-2, 2 : 2 + cells] = False
+    solid[2:-2, 4 + cells : -2] = False
+    solid[1 + cells // 2 : 3 + cells // 2, 2 + cells : 4 + cells] = False
+    return World(GridFrame(0.05, *solid.shape), solid, "slit")
+
+
+def test_a_robot_that_cannot_move_and_sees_a_frontier_is_enclosed() -> None:
+    _, report = run(slit(0.45), [PlatformSpec(start=(0.325, 0.325))], seed=1)
+    summary = report.summary
+    assert summary.outcome is Outcome.ENCLOSED
+    assert summary.path_m["robot-1"] < 0.1
+    assert {spot.why for spot in summary.left_out} >= {"out_of_reach"}
+
+
+def test_a_room_behind_a_slit_is_out_of_reach_and_the_mission_complete() -> None:
+    _, report = run(slit(3.0), [PlatformSpec(start=(1.0, 1.0))], seed=1)
+    summary = report.summary
+    assert summary.outcome is Outcome.COMPLETE
+    assert summary.left_out
+    assert {spot.why for spot in summary.left_out} <= {"out_of_reach", "unseeable"}
+
+
+def test_a_robot_in_a_closed_cell_has_nothing_left_to_see() -> None:
+    solid = np.pad(np.zeros((9, 9), bool), 2, constant_values=True)
+    world = World(GridFrame(0.05, *solid.shape), solid, "cell")
+    _, report = run(world, [PlatformSpec(start=(0.325, 0.325))], seed=1)
+    assert report.summary.outcome is Outcome.COMPLETE
+    assert report.summary.coverage == 1.0
+    assert not report.summary.left_out
+
+
+def test_what_lies_behind_a_dead_mate_in_the_only_way_is_unreached() -> None:
+    specs = [
+        PlatformSpec(name="blocker", start=(3.85, 1.6)),
+        PlatformSpec(name="worker", start=(2.0, 1.6)),
+    ]
+    _, report = run(two_rooms(0.6, 0.05), specs, seed=1, kills=((0, 0.5),))
+    summary = report.summary
+    assert summary.outcome is Outcome.UNREACHED
+    assert summary.outcome.status == 1
+    assert "unreached" in {spot.why for spot in summary.left_out}
+    assert summary.coverage < 0.9
+
+
+@pytest.mark.parametrize(("reach", "radius"), [(0.25, 0.2), (0.2, 0.3), (0.3, 0.2)])
+def test_a_lidar_that_sees_hardly_farther_than_its_robot_completes_nothing(
+    reach: float, radius: float
+) -> None:
+    _, report = run(room_with_a_wall(0.05), robots(1, range=reach, radius=radius), seed=1, max_time=1800.0)
+    assert report.summary.coverage < 0.2
+    assert report.summary.outcome in (Outcome.ENCLOSED, Outcome.UNREACHED)
+
+
+@pytest.mark.parametrize("bent", [False, True])
+@pytest.mark.parametrize(("width", "resolution"), [(0.45, 0.05), (0.5, 0.05), (0.46, 0.02), (0.48, 0.03)])
+def test_a_corridor_little_wider_than_the_robot_is_reachable_to_score_and_driver_alike(
+    width: float, resolution: float, bent: bool
+) -> None:
+    world = two_rooms(width, resolution, bent=bent)
+    specs = [PlatformSpec(start=(1.0, 1.0))]
+    simulation, report = run(world, specs, seed=1)
+    beyond = np.zeros_like(world.solid)
+    beyond[:, -round(3.0 / resolution) :] = True
+    behind = Reference(world, specs, simulation.starts).coverable & beyond
+    assert behind.sum() > 0.95 * (beyond & ~world.solid).sum()
+    assert report.summary.completed
+    assert report.summary.coverage >= 0.99
+    assert report.summary.collisions == 0
+
+
+@pytest.mark.parametrize("bent", [False, True])
+def test_a_corridor_as_wide_as_the_robot_is_reachable_to_neither(bent: bool) -> None:
+    world, specs = two_rooms(0.4, 0.05, bent=bent), [PlatformSpec(start=(1.0, 1.0))]
+    simulation, report = run(world, specs, seed=1)
+    beyond = np.zeros_like(world.solid)
+    beyond[:, -round(3.0 / 0.05) :] = True
+    behind = Reference(world, specs, simulation.starts).coverable & beyond
+    assert behind.sum() < 0.5 * (beyond & ~world.solid).sum()
+    assert report.summary.outcome is Outcome.COMPLETE
+    assert report.summary.left_out
+
+
+def test_a_team_ends_as_its_robots_say_in_the_simulator_and_in_the_watch_alike() -> None:
+    words = (Outcome.COMPLETE, Outcome.UNREACHED, Outcome.ENCLOSED)
+    world, specs = room_with_a_wall(0.1), robots(3)
+    plan = ExplorePlan(world, specs, np.zeros((3, 3)), ExploreOptions(), 0, 1.0)
+    (condition,) = conditions()
+    for said in product(words, repeat=3):
+        if set(said) == {Outcome.ENCLOSED}:
+            wanted = Outcome.ENCLOSED  # nobody can move
+        elif Outcome.UNREACHED in said:
+            wanted = Outcome.UNREACHED
+        else:
+            wanted = Outcome.COMPLETE
+        assert together(said) is wanted
+        heard = [structs.replace(condition, ending=word.value, state="done") for word in said]
+        assert ExploreWatcher(plan, Setting(seed=0)).over(1.0, heard) is wanted
