@@ -9,27 +9,24 @@ use pyo3::prelude::*;
 
 use crate::visibility::checked_cell;
 
+mod near;
 mod path;
 mod search;
 
+pub use near::{lengths_to, shortest_path};
 pub use path::{path_to, shortcut};
 use search::{allowed_moves, connections, Search, STRAIGHT, UNREACHED};
 
-/// Path lengths [m] from the source to every cell, infinity where unreachable (or past an early stop).
-pub fn distance_field(
-    open: &[u8],
-    cols: usize,
-    source: usize,
-    resolution: f64,
-    stop_at: Option<&[usize]>,
-) -> Vec<f32> {
+/// Path lengths [m] from the source to every cell, infinity where unreachable.
+pub fn distance_field(open: &[u8], cols: usize, source: usize, resolution: f64) -> Vec<f32> {
     let moves = allowed_moves(open, cols);
     let mut search = Search::new(&moves, cols);
-    let left = search.want(stop_at.unwrap_or(&[]).iter().copied().filter(|&cell| open[cell] != 0));
-    let last = match stop_at {
-        Some(_) if left == 0 => 0,
-        _ => search.run(&connections(open, cols, source), UNREACHED - 1, left),
-    };
+    let last = search.run(&connections(open, cols, source), UNREACHED - 1, 0);
+    metres(&search.cost, source, last, resolution)
+}
+
+/// Costs up to `last` as lengths [m], others as infinity.
+fn metres(cost: &[u32], source: usize, last: u32, resolution: f64) -> Vec<f32> {
     let metres = resolution / f64::from(STRAIGHT);
     let length = |&cost: &u32| {
         if cost <= last {
@@ -38,7 +35,7 @@ pub fn distance_field(
             f32::INFINITY
         }
     };
-    let mut field: Vec<f32> = search.cost.iter().map(length).collect();
+    let mut field: Vec<f32> = cost.iter().map(length).collect();
     field[source] = 0.0;
     field
 }
@@ -88,14 +85,41 @@ fn py_distance_field<'py>(
     traversable: PyReadonlyArray2<'py, u8>,
     source: i64,
     resolution: f64,
-    stop_at: Option<PyReadonlyArray1<'py, i64>>,
 ) -> PyResult<Bound<'py, PyArray2<f32>>> {
     let [rows, cols] = [traversable.shape()[0], traversable.shape()[1]];
     check_resolution(resolution)?;
     let source = checked_cell(source, rows * cols)?;
-    let stop_at = stop_at.map(|cells| checked_cells(&cells, rows * cols)).transpose()?;
-    let field = distance_field(traversable.as_slice()?, cols, source, resolution, stop_at.as_deref());
+    let field = distance_field(traversable.as_slice()?, cols, source, resolution);
     field.into_pyarray(py).reshape([rows, cols])
+}
+
+#[pyfunction(name = "lengths_to")]
+fn py_lengths_to<'py>(
+    py: Python<'py>,
+    traversable: PyReadonlyArray2<'py, u8>,
+    source: i64,
+    targets: PyReadonlyArray1<'py, i64>,
+    resolution: f64,
+) -> PyResult<Bound<'py, PyArray1<f32>>> {
+    let [rows, cols] = [traversable.shape()[0], traversable.shape()[1]];
+    check_resolution(resolution)?;
+    let source = checked_cell(source, rows * cols)?;
+    let targets = checked_cells(&targets, rows * cols)?;
+    Ok(lengths_to(traversable.as_slice()?, cols, source, &targets, resolution).into_pyarray(py))
+}
+
+#[pyfunction(name = "shortest_path")]
+fn py_shortest_path<'py>(
+    py: Python<'py>,
+    traversable: PyReadonlyArray2<'py, u8>,
+    source: i64,
+    target: i64,
+    resolution: f64,
+) -> PyResult<Bound<'py, PyArray1<i64>>> {
+    let [rows, cols] = [traversable.shape()[0], traversable.shape()[1]];
+    check_resolution(resolution)?;
+    let (source, target) = (checked_cell(source, rows * cols)?, checked_cell(target, rows * cols)?);
+    Ok(shortest_path(traversable.as_slice()?, cols, source, target, resolution).into_pyarray(py))
 }
 
 #[pyfunction(name = "distance_matrix")]
@@ -152,6 +176,8 @@ fn py_shortcut<'py>(
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(py_distance_field, m)?)?;
+    m.add_function(wrap_pyfunction!(py_lengths_to, m)?)?;
+    m.add_function(wrap_pyfunction!(py_shortest_path, m)?)?;
     m.add_function(wrap_pyfunction!(py_distance_matrix, m)?)?;
     m.add_function(wrap_pyfunction!(py_path_to, m)?)?;
     m.add_function(wrap_pyfunction!(py_shortcut, m)?)?;

@@ -40,16 +40,30 @@ def test_distance_field_equals_dijkstra_on_all_moves(seed: int) -> None:
     np.testing.assert_array_equal(field, reference_distance.distance_field(mask, source, 0.1))
 
 
+def large_mask(seed: int) -> tuple[NDArray[np.bool_], np.random.Generator]:
+    """Draw a mask larger than what a search near its ends looks at first, with walls that lead far round."""
+    rng = np.random.default_rng(seed)
+    mask = rng.random(rng.integers(100, 400, 2)) < rng.choice([0.6, 0.8, 0.97])
+    for _ in range(rng.integers(0, 6)):
+        row = int(rng.integers(mask.shape[0]))
+        mask[row, int(rng.integers(mask.shape[1])) :] = False
+        mask[row - 1, : int(rng.integers(mask.shape[1]))] = False
+    return mask, rng
+
+
 @settings(deadline=None, max_examples=60)
-@given(seeds)
-def test_an_early_stop_settles_its_cells_and_never_gives_a_wrong_length(seed: int) -> None:
-    mask, rng = random_mask(seed)
-    source, *stop_at = (int(cell) for cell in rng.integers(mask.size, size=4))
-    full = distance.distance_field(mask, source, 0.1)
-    early = distance.distance_field(mask, source, 0.1, np.array(stop_at))
-    known = np.isfinite(early)
-    known.flat[[cell for cell in stop_at if mask.flat[cell]]] = True
-    np.testing.assert_array_equal(early[known], full[known])
+@given(seeds, st.booleans())
+def test_lengths_and_paths_near_their_ends_are_those_of_the_whole_field(seed: int, large: bool) -> None:
+    mask, rng = large_mask(seed) if large else random_mask(seed)
+    source = int(rng.integers(mask.size))
+    spread = rng.integers(-25, 26, (4, 2)) if rng.random() < 0.7 else rng.integers(0, 400, (4, 2))
+    places = np.clip(np.add(divmod(source, mask.shape[1]), spread), 0, np.subtract(mask.shape, 1))
+    targets = places[:, 0] * mask.shape[1] + places[:, 1]
+    field = distance.distance_field(mask, source, 0.1)
+    np.testing.assert_array_equal(distance.lengths_to(mask, source, targets, 0.1), field.flat[targets])
+    for target in targets.tolist():
+        path = distance.shortest_path(mask, source, target, 0.1)
+        np.testing.assert_array_equal(path, distance.path_to(field, mask, target))
 
 
 @settings(deadline=None, max_examples=60)

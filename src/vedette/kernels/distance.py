@@ -16,23 +16,50 @@ from vedette import _kernels
 from vedette.kernels._arrays import Mask, cells_of, mask_bytes
 
 
-def distance_field(
-    traversable: Mask, source: int, resolution: float, stop_at: NDArray[np.int64] | None = None
-) -> NDArray[np.float32]:
+def distance_field(traversable: Mask, source: int, resolution: float) -> NDArray[np.float32]:
     """Return the length [m] of the shortest path from ``source`` to every cell, infinity where there is none.
 
     Args:
         traversable: ``(R, C)`` mask.
         source: flat index.
         resolution: cell side [m].
-        stop_at: stop once these are reached; cells farther than all of them may then be infinity. Those not
-            traversable are not waited for.
 
     Returns:
         ``(R, C)`` lengths [m].
     """
-    wanted = None if stop_at is None else cells_of(stop_at)
-    return _kernels.distance_field(mask_bytes(traversable), source, resolution, wanted)
+    return _kernels.distance_field(mask_bytes(traversable), source, resolution)
+
+
+def lengths_to(
+    traversable: Mask, source: int, targets: NDArray[np.int64], resolution: float
+) -> NDArray[np.float32]:
+    """Return what ``distance_field`` holds at some cells; the work is that of what lies about them.
+
+    Args:
+        traversable: ``(R, C)`` mask.
+        source: flat index.
+        targets: ``(K,)`` flat indices.
+        resolution: cell side [m].
+
+    Returns:
+        ``(K,)`` lengths [m].
+    """
+    return _kernels.lengths_to(mask_bytes(traversable), source, cells_of(targets), resolution)
+
+
+def shortest_path(traversable: Mask, source: int, target: int, resolution: float) -> NDArray[np.int64]:
+    """Return the cells of a shortest path, ``path_to`` on ``distance_field``; the work is that of what lies near.
+
+    Args:
+        traversable: ``(R, C)`` mask.
+        source: flat index.
+        target: flat index.
+        resolution: cell side [m].
+
+    Returns:
+        ``(L,)`` flat indices, source first; empty if the target is unreachable.
+    """
+    return _kernels.shortest_path(mask_bytes(traversable), source, target, resolution)
 
 
 def distance_matrix(

@@ -69,5 +69,5 @@ def reachable_poses(world: World, radius: float, x: float, y: float) -> NDArray[
     frame] lies in the grid; from between the centres the disc first moves to one within three cells.
     """
     cells = standable(world, radius)
-    field = distance_field(cells, world.frame.flat(x, y), world.frame.resolution, None)
+    field = distance_field(cells, world.frame.flat(x, y), world.frame.resolution)
     return np.isfinite(field) & cells

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.errors import InputError
-from vedette.kernels.distance import distance_field
+from vedette.kernels.distance import distance_field, lengths_to
 from vedette.maps.world import World, reachable_poses, standable
 from vedette.sim.indoors import indoors
 from vedette.team import PlatformSpec
@@ -158,8 +158,8 @@ def _joins(world: World, radius: float, area: NDArray[np.bool_], x: float, y: fl
         return False
     centres = world.frame.centres(cells)
     nearest = cells[[np.hypot(centres[:, 0] - x, centres[:, 1] - y).argmin()]]
-    field = distance_field(standable(world, radius), world.frame.flat(x, y), world.frame.resolution, nearest)
-    return bool(np.isfinite(field.ravel()[nearest[0]]))
+    lengths = lengths_to(standable(world, radius), world.frame.flat(x, y), nearest, world.frame.resolution)
+    return bool(np.isfinite(lengths[0]))
 
 
 def _describe(world: World, area: NDArray[np.bool_]) -> str:
@@ -222,7 +222,7 @@ class _Places:
         self._frame = world.frame
         cells = standable(world, radius)
         self._open = cells.copy()
-        field = distance_field(cells, anchor, world.frame.resolution, None).ravel()
+        field = distance_field(cells, anchor, world.frame.resolution).ravel()
         near = np.flatnonzero(np.isfinite(field) & cells.ravel())
         self._order = near[np.argsort(field[near], kind="stable")]
         self._next = 0

@@ -64,7 +64,7 @@ def survey(
         block(passable, frame, disc, spec.radius + clearance)
     row, col = np.clip(frame.cell(x, y), 0, (frame.rows - 1, frame.cols - 1))
     source = int(row * frame.cols + col)
-    return Ground(passable, source, distance.distance_field(passable, source, frame.resolution, None))
+    return Ground(passable, source, distance.distance_field(passable, source, frame.resolution))
 
 
 def block(passable: NDArray[np.bool_], frame: GridFrame, disc: Disc, radius: float) -> None:

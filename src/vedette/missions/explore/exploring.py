@@ -363,8 +363,7 @@ class Exploring:
                 passable = passable.copy()
             for disc in discs:
                 block(passable, self.frame, disc, self.spec.radius + clearance)
-            span = distance.distance_field(passable, source, self.frame.resolution, np.array([target]))
-            cells = distance.path_to(span, passable, target)
+            cells = distance.shortest_path(passable, source, target, self.frame.resolution)
             if len(cells):
                 path = self.frame.centres(distance.shortcut(passable, cells))
                 path[0] = pose.x, pose.y

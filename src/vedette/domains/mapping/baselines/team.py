@@ -47,8 +47,8 @@ class TeamPlatform(MappingPlatform):
         row, col = np.clip(frame.cell(*place), 0, (frame.rows - 1, frame.cols - 1))
         views = np.array([frame.flat(x, y) for x, y in self.stops.views], np.int64)
         source = int(row * frame.cols + col)
-        field = distance.distance_field(self.ground.passable, source, frame.resolution, views)
-        return np.where(np.isfinite(own), field.ravel()[views], np.inf)
+        lengths = distance.lengths_to(self.ground.passable, source, views, frame.resolution)
+        return np.where(np.isfinite(own), lengths, np.inf)
 
     def sticky(self, current: Tour) -> NDArray[np.float64]:
         """Return ``lengths``, this robot's to its present stop a metre shorter."""
