@@ -52,6 +52,9 @@ def assert_all_agree(net: Network) -> None:
     for fusion in net.robots.values():
         np.testing.assert_array_equal(fusion.classes, expected)
         np.testing.assert_array_equal(fusion.counts, counts)
+        outside = expected.copy()
+        outside[fusion.known] = UNKNOWN
+        assert not outside.any()  # all that is known lies where it is said to lie
     assert len({fusion.digest for fusion in net.robots.values()}) == 1
 
 

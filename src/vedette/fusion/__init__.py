@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from vedette.fusion.channel import ChannelFilter
 from vedette.fusion.replicated import ReplicatedEvidence
-from vedette.fusion.tiles import FIRM, SIDE
+from vedette.fusion.tiles import FIRM, SIDE, Extent
 
 __all__ = ["FIRM", "SIDE", "ChannelFilter", "Fusion", "ReplicatedEvidence"]
 
@@ -26,6 +26,11 @@ class Fusion(Protocol):
     @property
     def classes(self) -> NDArray[np.uint8]:
         """``(rows, cols)`` team map as this robot knows it: UNKNOWN, FREE or OCCUPIED."""
+        ...
+
+    @property
+    def known(self) -> Extent:
+        """Rows and columns outside of which the team map is unknown."""
         ...
 
     @property

@@ -48,7 +48,7 @@ def lengths_to(
 
 
 def shortest_path(traversable: Mask, source: int, target: int, resolution: float) -> NDArray[np.int64]:
-    """Return the cells of a shortest path, ``path_to`` on ``distance_field``; the work is that of what lies near.
+    """Return the cells of a shortest path: ``path_to`` on ``distance_field``, without looking at the rest.
 
     Args:
         traversable: ``(R, C)`` mask.

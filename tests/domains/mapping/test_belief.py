@@ -9,9 +9,12 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from tests.support.mapping_scenes import CORRIDOR, FRAME, SPEC, explored, frozen, placed
-from vedette.domains.mapping.belief import LN2, MapBelief, planning_factor
+from vedette.domains.mapping import layers
+from vedette.domains.mapping.belief import LN2, MapBelief, freeze, planning_factor
 from vedette.domains.mapping.impact import NOTHING
 from vedette.domains.mapping.platform import STAY, MappingPlatform
+from vedette.domains.mapping.sightings import empty_counts
+from vedette.domains.mapping.stops import block
 from vedette.maps import FREE, UNKNOWN, GridFrame
 
 seeds = st.integers(0, 2**32 - 1)
@@ -51,6 +54,33 @@ def test_cropping_to_the_window_changes_neither_worth_nor_frontiers(seed: int) -
     np.testing.assert_array_equal(
         whole.unknown.ravel()[cropped.planning_cells(local)], cropped.unknown.ravel()
     )
+
+
+@settings(deadline=None, max_examples=60)
+@given(seeds)
+def test_being_told_where_nothing_is_known_changes_nothing(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    classes, frame = random_classes(rng)
+    where = np.argwhere(classes)
+    low, high = (where.min(axis=0), where.max(axis=0) + 1) if len(where) else (np.zeros(2, int),) * 2
+    low = np.maximum(low - rng.integers(0, 5, 2), 0)
+    rows, cols = (slice(int(a), int(b + rng.integers(0, 5))) for a, b in zip(low, high, strict=True))
+    one, other = (
+        freeze(
+            classes,
+            frame,
+            reach=3 * frame.resolution,
+            extent=2.5,
+            hidden=2.0,
+            layers=layers.rate(),
+            counts=empty_counts(),
+            known=known,
+        )
+        for known in ((slice(None), slice(None)), (rows, cols))
+    )
+    assert (one.frame, one.first) == (other.frame, other.first)
+    for name in ("classes", "unknown", "weights", "frontier_cells", "frontier_starts"):
+        np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
 
 
 @pytest.mark.parametrize("places", PLACES)
@@ -127,3 +157,18 @@ def test_the_window_keeps_the_frame_of_the_map() -> None:
         x, y = belief.frame.centres(np.array([flat]))[0]
         row, col = FRAME.cell(x, y)
         assert belief.classes.ravel()[flat] == explored(CORRIDOR)[row, col]
+
+
+@settings(deadline=None, max_examples=60)
+@given(seeds)
+def test_a_disc_blocks_the_cells_whose_centres_are_too_near_it_wherever_it_stands(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    frame = GridFrame(float(rng.choice([0.05, 0.1, 0.3])), 31, 47, -1.7, 0.4)
+    x, y = rng.uniform((-3.0, -1.0), (14.0, 12.0))
+    size, radius = rng.uniform(0.05, 1.0, 2)
+    passable = np.ones(frame.shape, bool)
+    block(passable, frame, (x, y, size), radius)
+    centres = frame.centres(np.arange(frame.size))
+    away = np.hypot(centres[:, 0] - x, centres[:, 1] - y).reshape(frame.shape)
+    clear = np.abs(away - size - radius) > 1e-9
+    np.testing.assert_array_equal(passable[clear], (away > size + radius)[clear])

@@ -68,6 +68,7 @@ def freeze(
     turn: float = math.inf,
     layers: TimeLayers,
     counts: NDArray[np.int64],
+    known: tuple[slice, slice] = (slice(None), slice(None)),
 ) -> MapBelief:
     """Snapshot a team map for a round.
 
@@ -84,10 +85,11 @@ def freeze(
         turn: gather up what was left behind, at these prices, once frontiers promise less than this [m^2].
         layers: the time layers of the objective.
         counts: (4, BINS) the team's sightings.
+        known: rows and columns outside of which nothing is known.
     """
     factor = planning_factor(frame.resolution)
     planning = frame.coarse(factor)
-    rows, cols = _window(classes, factor, int(np.ceil(reach / frame.resolution)))
+    rows, cols = _window(classes, known, factor, int(np.ceil(reach / frame.resolution)))
     crop = classes[rows, cols].copy()  # the map goes on changing while a round lasts
     window = GridFrame(
         frame.resolution,
@@ -107,9 +109,7 @@ def freeze(
     if gathering and areas.any():
         local += LN2 / frame.resolution**2 * spread_behind(crop, cells, starts, areas, factor)
     first = (rows.start // factor, cols.start // factor)
-    # Outside the window nothing is known, and each robot's window is its own.
-    weights = np.outer(_sizes(frame.rows, factor), _sizes(frame.cols, factor))
-    weights *= np.float32(LN2)
+    weights = _all_unknown(frame, factor)  # outside the window; each robot's is its own
     weights[first[0] : first[0] + local.shape[0], first[1] : first[1] + local.shape[1]] = local
     return MapBelief(
         window,
@@ -127,17 +127,32 @@ def freeze(
     )
 
 
-def _window(classes: NDArray[np.uint8], factor: int, reach: int) -> tuple[slice, slice]:
+def _window(
+    classes: NDArray[np.uint8], known: tuple[slice, slice], factor: int, reach: int
+) -> tuple[slice, slice]:
     """The known part, grown by the sensor's reach and aligned to planning cells."""
 
-    def span(known: NDArray[np.uint8], size: int) -> slice:
-        where = np.flatnonzero(known)
+    def span(known: NDArray[np.uint8], size: int, offset: int) -> slice:
+        where = np.flatnonzero(known) + offset
         if not len(where):
             return slice(0, size)
         start = max(0, int(where[0]) - reach) // factor * factor
         return slice(start, min(size, -(-(int(where[-1]) + 1 + reach) // factor) * factor))
 
-    return span(classes.max(axis=1), classes.shape[0]), span(classes.max(axis=0), classes.shape[1])
+    crop = classes[known]
+    return (
+        span(crop.max(axis=1, initial=0), classes.shape[0], known[0].start or 0),
+        span(crop.max(axis=0, initial=0), classes.shape[1], known[1].start or 0),
+    )
+
+
+def _all_unknown(frame: GridFrame, factor: int) -> NDArray[np.float32]:
+    """Worth of each planning cell where nothing is known [nats]."""
+    rows, cols, worth = _sizes(frame.rows, factor), _sizes(frame.cols, factor), np.float32(LN2)
+    weights = np.full((len(rows), len(cols)), np.float32(factor) * np.float32(factor) * worth)
+    weights[-1] = rows[-1] * cols * worth
+    weights[:, -1] = rows * cols[-1] * worth
+    return weights
 
 
 def _sizes(cells: int, factor: int) -> NDArray[np.float32]:

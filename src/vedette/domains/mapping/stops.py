@@ -70,9 +70,13 @@ def survey(
 def block(passable: NDArray[np.bool_], frame: GridFrame, disc: Disc, radius: float) -> None:
     """Make the cells impassable whose centres a robot of this radius cannot occupy beside the disc."""
     x, y, size = disc
-    rows = frame.origin_y + (np.arange(frame.rows) + 0.5) * frame.resolution - y
-    cols = frame.origin_x + (np.arange(frame.cols) + 0.5) * frame.resolution - x
-    passable[rows[:, None] ** 2 + cols**2 < (size + radius) ** 2] = False
+    reach = int(np.ceil((size + radius) / frame.resolution)) + 1
+    row, col = frame.cell(x, y)
+    first_row, first_col = max(0, row - reach), max(0, col - reach)
+    near = passable[first_row : max(0, row + reach + 1), first_col : max(0, col + reach + 1)]
+    rows = frame.origin_y + (np.arange(near.shape[0]) + first_row + 0.5) * frame.resolution - y
+    cols = frame.origin_x + (np.arange(near.shape[1]) + first_col + 0.5) * frame.resolution - x
+    near[rows[:, None] ** 2 + cols**2 < (size + radius) ** 2] = False
 
 
 def unknown_near(classes: NDArray[np.uint8], frame: GridFrame, x: float, y: float) -> int:

@@ -43,6 +43,7 @@ NUDGE_OF_NOISE = 2.5  # ... or, where noise asks for more, so many of its deviat
 MOST_NUDGE = 0.5  # ... but no more than that [cells]
 SIGHTING_STRIDE = 4  # one beam in so many teaches the sighting model
 LEARNING_STEP = 2.0  # a robot learns from one scan in so many metres of its way [m]
+MOST_CHANGES = 256  # scans whose changes are kept apart
 COUNTS_PERIOD = 10.0  # the model's counts are shared at most so often [s]
 BLUR = 1.0  # a return lies within so many deviations of where it seems to [1]
 MATE_MARGIN = 0.15  # a return this near a mate's rim is the mate; more by two deviations of the pose [m]
@@ -52,6 +53,9 @@ IN_THE_WAY = 1.0  # a mate this near a frontier may hide it [m]
 AVOID_TIME = 20.0  # a stop that could not be carried out is left alone for so long, longer each time [s]
 TRIES = 4  # a stop that could not be carried out so often is given up
 SERVED_SHARE = 0.4  # a frontier with less than this of its unknown cells left has lost its point
+
+
+_NOTHING = np.empty(0, np.int64)
 
 
 @dataclass(eq=False)
@@ -71,7 +75,9 @@ class Exploring:
     counts: NDArray[np.int64] = field(init=False)  # (4, BINS) own sightings
     _changed: list[NDArray[np.int64]] = field(default_factory=list)  # cells whose own class changed
     _counts_due: float = 0.0
-    _learned: tuple[float, float, NDArray[np.int8]] | None = None  # where it last learned; its evidence then
+    _learned: tuple[float, float] | None = None  # where it last learned
+    _then: NDArray[np.int8] = field(init=False)  # (R, C) its evidence then, to the class
+    _since: list[NDArray[np.int64]] = field(default_factory=list)  # cells whose own class changed since
     _looking: Looking = field(init=False)
     _resort: LastResort = field(init=False)
     _left: list[Leftover] | None = None  # as of the last round; None: there was a stop
@@ -81,7 +87,7 @@ class Exploring:
     def __post_init__(self) -> None:
         self.codec = MapImpactCodec(self.frame.coarse(planning_factor(self.frame.resolution)).size)
         self.platform = self.planner.platform(self.spec)
-        self.log_odds = np.zeros(self.frame.shape, np.int8)
+        self.log_odds, self._then = np.zeros(self.frame.shape, np.int8), np.zeros(self.frame.shape, np.int8)
         self.counts = empty_counts()
         self._looking = Looking(self.spec, self.frame.resolution)
         self._resort = LastResort(self._looking)
@@ -103,8 +109,7 @@ class Exploring:
             changed = lidar.integrate_blurred_scan(*beams, margins, GAIN_HIT, GAIN_MISS, CLAMP, nudge)
         else:
             changed = lidar.integrate_scan(*beams, GAIN_HIT, GAIN_MISS, CLAMP, nudge)
-        if len(changed):
-            self._changed.append(changed)
+        self._note(changed)
         self._stand(pose)
         self._looking.add(pose, scan.angles)
 
@@ -118,9 +123,16 @@ class Exploring:
         """Where the robot stands is free, as far as it has not seen what is there."""
         under = cells_under(self.frame, pose.x, pose.y, self.spec.radius - 2.0 * pose.deviation)
         unseen = under[self.log_odds.flat[under] == 0]
-        if len(unseen):
-            self.log_odds.flat[unseen] = -GAIN_MISS
-            self._changed.append(unseen)
+        self.log_odds.flat[unseen] = -GAIN_MISS
+        self._note(unseen)
+
+    def _note(self, changed: NDArray[np.int64]) -> None:
+        """Remember cells whose own class has changed."""
+        if len(changed):
+            self._changed.append(changed)
+            self._since.append(changed)
+        if len(self._since) > MOST_CHANGES:
+            self._since = [np.unique(np.concatenate(self._since))]
 
     def _learn(
         self,
@@ -135,12 +147,10 @@ class Exploring:
         That is what the planner asks of a stop. Counting every scan would teach it that unknown cells are
         never seen, the more so the longer a robot stands.
         """
-        if self._learned is None:
-            self._learned = x, y, np.zeros_like(self.log_odds)
-        elif np.hypot(x - self._learned[0], y - self._learned[1]) < LEARNING_STEP:
+        if self._learned is not None and np.hypot(x - self._learned[0], y - self._learned[1]) < LEARNING_STEP:
             return
         seen = lidar.count_sightings(
-            self._learned[2],
+            self._then,
             self.frame.resolution,
             x,
             y,
@@ -153,7 +163,10 @@ class Exploring:
             self._nudge,
         )
         self.counts[:, : seen.shape[1]] += seen[:, :BINS]
-        self._learned = x, y, self.log_odds.copy()
+        self._learned = x, y
+        for cells in self._since:
+            self._then.flat[cells] = self.log_odds.flat[cells]
+        self._since.clear()
 
     def _leave_out(
         self,
@@ -182,9 +195,9 @@ class Exploring:
         if now >= self._counts_due:
             self._counts_due = now + COUNTS_PERIOD
             counts = self.counts.ravel().copy()
-        changed = np.unique(np.concatenate(self._changed)) if self._changed else None
+        changed = np.unique(np.concatenate(self._changed)) if self._changed else _NOTHING
         self._changed.clear()
-        if changed is not None or counts is not None:
+        if len(changed) or counts is not None:
             self.fusion.publish(self.log_odds, changed, counts)
 
     # -- planning -----------------------------------------------------------------------------------
@@ -213,6 +226,7 @@ class Exploring:
             turn=self.planner.turn,
             layers=self.planner.layers,
             counts=self.fusion.counts.reshape(4, BINS).copy(),
+            known=self.fusion.known,
         )
 
     def prepare(
@@ -360,7 +374,7 @@ class Exploring:
         for clearance in CLEARANCES:
             passable = self._passable_now(clearance)
             if discs:
-                passable = passable.copy()
+                passable = self._within_known(passable[self.fusion.known])
             for disc in discs:
                 block(passable, self.frame, disc, self.spec.radius + clearance)
             cells = distance.shortest_path(passable, source, target, self.frame.resolution)
@@ -379,7 +393,13 @@ class Exploring:
         digest = self.fusion.digest
         known = self._passable.get(clearance)
         if known is None or known[0] != digest:
-            reach = self.spec.radius + clearance
-            known = digest, frontier.traversable(self.fusion.classes, reach, self.frame.resolution)
+            reach, crop = self.spec.radius + clearance, self.fusion.classes[self.fusion.known]
+            known = digest, self._within_known(frontier.traversable(crop, reach, self.frame.resolution))
             self._passable[clearance] = known
         return known[1]
+
+    def _within_known(self, mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Return a mask over the whole map that holds another within what is known, and nothing outside."""
+        whole = np.zeros(self.frame.shape, np.bool_)  # costs no more than what is written to it
+        whole[self.fusion.known] = mask
+        return whole
