@@ -213,6 +213,17 @@ def test_a_frontier_too_narrow_for_the_body_is_given_up_after_a_look_from_within
             assert bool(platform.closer) != given_up
 
 
+def test_a_visit_is_judged_where_no_frontier_is_left_at_all() -> None:
+    platform, classes = ready(), np.where(explored(CORRIDOR) == UNKNOWN, OCCUPIED, explored(CORRIDOR))
+    classes[40:43, 38] = UNKNOWN  # behind the wall
+    x, y = FRAME.centres(np.array([44 * FRAME.cols + 38]))[0].tolist()
+    platform.visited.append((x, y, unknown_near(classes, FRAME, x, y), 0.9))
+    belief = frozen(classes)
+    assert not len(belief.frontier_cells)
+    placed(platform, belief)
+    assert len(platform.given_up) == 1
+
+
 def test_an_avoided_frontier_is_left_alone_for_its_time() -> None:
     platform = ready()
     x, y = stops_of(platform).targets[2].tolist()

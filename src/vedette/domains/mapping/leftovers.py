@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.domains.mapping.belief import MapBelief
-from vedette.domains.mapping.platform import SAME_PLACE, GivenUp, MappingPlatform
+from vedette.domains.mapping.platform import GivenUp, MappingPlatform
 from vedette.domains.mapping.stops import CLEARANCES, LEFT_ALONE, Ground, seen_from, survey, unknown_near
 from vedette.domains.mapping.views import MOST_STOPS, views_within
 
@@ -35,12 +35,6 @@ def given_up(platform: MappingPlatform) -> list[Leftover]:
         *(Leftover(spot.x, spot.y, spot.unknown, "unseeable") for spot in looked_at),
         *(Leftover(spot.x, spot.y, spot.unknown, "unreached") for spot in missed),
     ]
-
-
-def any_unvisited(belief: MapBelief, platform: MappingPlatform) -> bool:
-    """Tell whether there is a frontier, be it small, that no visit has left as it was."""
-    visited = [*(spot for spot in platform.given_up if spot.visited), *platform.closer, *platform.told]
-    return not bool(_near(_places(belief), visited, SAME_PLACE).all())
 
 
 def leftovers(belief: MapBelief, platform: MappingPlatform) -> list[Leftover]:
@@ -94,11 +88,9 @@ def _places(belief: MapBelief) -> NDArray[np.float64]:
     return belief.frame.centres(belief.frontier_cells[(starts[:-1] + starts[1:]) // 2])
 
 
-def _near(
-    places: NDArray[np.float64], spots: Sequence[GivenUp], within: float = LEFT_ALONE
-) -> NDArray[np.bool_]:
+def _near(places: NDArray[np.float64], spots: Sequence[GivenUp]) -> NDArray[np.bool_]:
     """Tell which places are so near to any of the spots that what holds for it holds for them."""
     near = np.zeros(len(places), np.bool_)
     for spot in spots:
-        near |= np.hypot(places[:, 0] - spot.x, places[:, 1] - spot.y) < within
+        near |= np.hypot(places[:, 0] - spot.x, places[:, 1] - spot.y) < LEFT_ALONE
     return near

@@ -212,7 +212,7 @@ class MappingPlatform:
         if afar > seen_from(self.spec, cell, close=True) + cell:
             return False
         tried = any(np.hypot(x - spot.x, y - spot.y) < LEFT_ALONE for spot in self.closer)
-        if tried or afar <= nearest_view(self.spec, cell) + cell:
+        if tried or afar <= nearest_view(self.spec, cell) + cell or not len(belief.frontier_cells):
             return True
         away = np.hypot(*(belief.frame.centres(belief.frontier_cells) - (x, y)).T)
         k = int(np.searchsorted(belief.frontier_starts, int(np.argmin(away)), side="right")) - 1

@@ -13,7 +13,7 @@ from vedette.agent.events import Pose, Scan
 from vedette.agent.mates import Mate
 from vedette.domains.mapping.belief import MapBelief, freeze, longest_frontier, planning_factor
 from vedette.domains.mapping.impact import Impact, MapImpactCodec, check_claim
-from vedette.domains.mapping.leftovers import Leftover, any_unvisited, given_up, leftovers
+from vedette.domains.mapping.leftovers import Leftover, given_up, leftovers
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.planners import Planner
 from vedette.domains.mapping.platform import SAME_PLACE, STAY, GivenUp, MappingPlatform, Tour
@@ -243,8 +243,8 @@ class Exploring:
             self._resort.goal, self._left = None, None
         elif self.platform.ground is not None:
             self._left = leftovers(belief, self.platform)
-            unvisited = any_unvisited(belief, self.platform)
-            self._resort.consider(pose, belief.frame, self.platform.ground, unvisited)
+            frontiers = len(belief.frontier_cells) > 0
+            self._resort.consider(pose, belief.frame, self.platform.ground, frontiers)
 
     @property
     def left_out(self) -> list[Leftover]:

@@ -32,7 +32,7 @@ class LastResort:
     _creeping: bool = False
 
     def consider(self, pose: Pose, frame: GridFrame, ground: Ground, frontiers: bool) -> None:
-        """Find what is left to try for want of stops; ``frontiers``: some are left unvisited."""
+        """Find what is left to try for want of stops; ``frontiers``: there are any."""
         if self.goal is not None and self._creeping:
             return
         self.goal, self._creeping = None, False
