@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from vedette.fusion.channel import ChannelFilter
 from vedette.fusion.replicated import ReplicatedEvidence
-from vedette.fusion.tiles import FIRM, SIDE, Extent
+from vedette.fusion.tiles import FIRM, SIDE
+from vedette.maps.bounds import Extent
 
 __all__ = ["FIRM", "SIDE", "ChannelFilter", "Fusion", "ReplicatedEvidence"]
 

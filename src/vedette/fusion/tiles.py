@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from vedette.fusion.digest import Digest, fingerprint
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
+from vedette.maps.bounds import Bounds, Extent
 
 SIDE = 32  # cells along a tile's side
 CELLS = SIDE * SIDE
@@ -65,9 +66,6 @@ def code_of_sums(words: NDArray[np.int32]) -> NDArray[np.uint8]:
     sums = sums_of(words)
     codes = 1 + (sums >= 0).astype(np.uint8) + 2 * (np.abs(sums) >= 2).astype(np.uint8)
     return np.where(words == 0, 0, codes).astype(np.uint8)
-
-
-Extent = tuple[slice, slice]  # rows, columns
 
 
 @dataclass(frozen=True)
@@ -127,13 +125,12 @@ class TeamMap:
         self._tiling = tiling
         self._shown: NDArray[np.uint8] = np.zeros((tiling.count, CELLS), dtype=np.uint8)
         self._digest = Digest()  # of the tiles
-        self._bounds: tuple[int, int, int, int] | None = None  # of the tiles shown: top, bottom, left, right
+        self._bounds = Bounds()  # of the tiles shown
 
     @property
     def known(self) -> Extent:
         """Rows and columns outside of which nothing is known; not necessarily the narrowest."""
-        top, bottom, left, right = self._bounds or (0, 0, 0, 0)
-        return slice(top, bottom), slice(left, right)
+        return self._bounds.extent
 
     def show(self, tiles: NDArray[np.int64], classes: NDArray[np.uint8]) -> NDArray[np.int64]:
         """Put ``(len(tiles), 1024)`` classes on the map; return the tiles that changed."""
@@ -143,19 +140,13 @@ class TeamMap:
             self._shown[tile] = block
             self._tiling.paint(self.classes, tile, block)
             self._digest.put(tile, block.tobytes() if block.any() else b"")
-        if len(changed):
-            self._widen(tiles[changed])
-        return tiles[changed]
-
-    def _widen(self, tiles: NDArray[np.int64]) -> None:
-        rows, cols = np.divmod(tiles, self._tiling.across)
-        top, bottom, left, right = self._bounds or (self._tiling.rows, 0, self._tiling.cols, 0)
-        self._bounds = (
-            min(top, int(rows.min()) * SIDE),
-            max(bottom, min((int(rows.max()) + 1) * SIDE, self._tiling.rows)),
-            min(left, int(cols.min()) * SIDE),
-            max(right, min((int(cols.max()) + 1) * SIDE, self._tiling.cols)),
+        rows, cols = np.divmod(tiles[changed], self._tiling.across)
+        self._bounds.widen(rows * SIDE, cols * SIDE)
+        self._bounds.widen(
+            np.minimum(rows * SIDE + SIDE, self._tiling.rows) - 1,
+            np.minimum(cols * SIDE + SIDE, self._tiling.cols) - 1,
         )
+        return tiles[changed]
 
     @property
     def digest(self) -> int:

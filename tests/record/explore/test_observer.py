@@ -73,6 +73,8 @@ def test_a_robot_holds_what_is_fused_and_its_own_cells_that_are_not_published_ye
     held = held_map(fused, own)
     np.testing.assert_array_equal(held, [[FREE, OCCUPIED, UNKNOWN, FREE, OCCUPIED, FREE]])
     assert not np.shares_memory(held, fused)
+    wide = [np.pad(grid, ((2, 3), (4, 1))) for grid in (fused, own, held)]
+    np.testing.assert_array_equal(held_map(*wide[:2], (slice(2, 4), slice(3, 10))), wide[2])
 
 
 @settings(deadline=None, max_examples=30)

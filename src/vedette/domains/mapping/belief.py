@@ -13,6 +13,7 @@ from vedette.domains.mapping.layers import TimeLayers, rate
 from vedette.domains.mapping.outlook import mean_promise
 from vedette.kernels.frontier import find_frontiers
 from vedette.maps import UNKNOWN, GridFrame
+from vedette.maps.bounds import EVERYWHERE, Extent
 
 PLANNING_CELL = 0.2  # [m]; coarser costs quality, finer only bytes (docs/mapping.md, section 3)
 MIN_FRONTIER = 0.25  # shortest frontier worth a name [m]
@@ -68,7 +69,7 @@ def freeze(
     turn: float = math.inf,
     layers: TimeLayers,
     counts: NDArray[np.int64],
-    known: tuple[slice, slice] = (slice(None), slice(None)),
+    known: Extent = EVERYWHERE,
 ) -> MapBelief:
     """Snapshot a team map for a round.
 
@@ -127,9 +128,7 @@ def freeze(
     )
 
 
-def _window(
-    classes: NDArray[np.uint8], known: tuple[slice, slice], factor: int, reach: int
-) -> tuple[slice, slice]:
+def _window(classes: NDArray[np.uint8], known: Extent, factor: int, reach: int) -> tuple[slice, slice]:
     """The known part, grown by the sensor's reach and aligned to planning cells."""
 
     def span(known: NDArray[np.uint8], size: int, offset: int) -> slice:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,7 @@ from vedette.domains.mapping.views import MOST_STOPS
 from vedette.fusion import Fusion
 from vedette.kernels import distance, frontier, lidar
 from vedette.maps import GridFrame
+from vedette.maps.bounds import Bounds, Extent
 from vedette.maps.disc import cells_under
 from vedette.missions.explore.looking import Looking
 from vedette.missions.explore.resort import LastResort, hemmed_in
@@ -75,6 +76,7 @@ class Exploring:
     counts: NDArray[np.int64] = field(init=False)  # (4, BINS) own sightings
     _changed: list[NDArray[np.int64]] = field(default_factory=list)  # cells whose own class changed
     _counts_due: float = 0.0
+    _seen: Bounds = field(default_factory=Bounds)  # of its own evidence
     _learned: tuple[float, float] | None = None  # where it last learned
     _then: NDArray[np.int8] = field(init=False)  # (R, C) its evidence then, to the class
     _since: list[NDArray[np.int64]] = field(default_factory=list)  # cells whose own class changed since
@@ -119,6 +121,15 @@ class Exploring:
         cell, noise = self.frame.resolution, self.spec.range_noise
         return min(max(NUDGE * cell, NUDGE_OF_NOISE * noise), MOST_NUDGE * cell)
 
+    @property
+    def known(self) -> Extent:
+        """Rows and columns outside of which neither the team nor the robot itself knows anything."""
+        bounds = replace(self._seen)
+        rows, cols = self.fusion.known
+        if rows.stop > rows.start:
+            bounds.hold(rows.start, rows.stop, cols.start, cols.stop)
+        return bounds.extent
+
     def _stand(self, pose: Pose) -> None:
         """Where the robot stands is free, as far as it has not seen what is there."""
         under = cells_under(self.frame, pose.x, pose.y, self.spec.radius - 2.0 * pose.deviation)
@@ -129,6 +140,7 @@ class Exploring:
     def _note(self, changed: NDArray[np.int64]) -> None:
         """Remember cells whose own class has changed."""
         if len(changed):
+            self._seen.widen(*np.divmod(changed, self.frame.cols))
             self._changed.append(changed)
             self._since.append(changed)
         if len(self._since) > MOST_CHANGES:

@@ -20,7 +20,7 @@ from vedette.missions.explore.exploring import Exploring
 from vedette.net.gather import figures_of, path_of
 from vedette.net.report import MOST_BYTES, Condition, Count, Real, inflated
 from vedette.record.explore.log import RobotSample
-from vedette.record.explore.views import GroundFigures, RobotView, held_map, left_out
+from vedette.record.explore.views import GroundFigures, RobotView, held_map, left_out, seen_by
 
 MOST_CELLS = 1 << 26
 UNTOUCHED = GroundFigures().min_clearance_m  # [m]
@@ -63,7 +63,7 @@ class ExploreTeller:
 
     @property
     def _held(self) -> NDArray[np.uint8]:
-        return held_map(self._mission.fusion.classes, self._mission.log_odds)
+        return held_map(self._mission.fusion.classes, self._mission.log_odds, self._mission.known)
 
     @property
     def known(self) -> float:
@@ -81,7 +81,7 @@ class ExploreTeller:
         mission, decided = self._mission, self.agent.rounds.impact
         impact = None if decided is None else mission.codec.encode(decided)
         spots = tuple(Spot(each.x, each.y, each.unknown, each.why) for each in mission.left_out)
-        return content(self._held, mission.log_odds != 0, impact, spots[-1024:])
+        return content(self._held, seen_by(mission.log_odds, mission.known), impact, spots[-1024:])
 
 
 def content(

@@ -36,11 +36,16 @@ class Reference:
             seen |= visible_cells(self.world.solid, poses, reach / self.world.frame.resolution)
         return seen & ~self.world.solid
 
+    @cached_property
+    def cells(self) -> int:
+        """Number of coverable cells."""
+        return int(np.count_nonzero(self.coverable))
+
 
 def coverage(reference: Reference, classes: NDArray[np.uint8]) -> float:
     """Return the share of coverable cells that ``classes[rows, cols]`` knows; 1 where none is coverable."""
-    known = classes[reference.coverable] != UNKNOWN
-    return float(known.mean()) if known.size else 1.0
+    known = np.count_nonzero((classes != UNKNOWN) & reference.coverable)
+    return known / reference.cells if reference.cells else 1.0
 
 
 def map_errors(world: World, classes: NDArray[np.uint8]) -> tuple[int, int]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.leftovers import Leftover
 from vedette.maps import UNKNOWN
+from vedette.maps.bounds import EVERYWHERE, Extent
 from vedette.record.explore.log import RobotSample
 from vedette.record.explore.summary import LeftOut
 from vedette.record.figures import RobotFigures
@@ -36,16 +37,27 @@ class RobotView:
     left_out: tuple[LeftOut, ...] = ()
 
 
-def held_map(fused: NDArray[np.uint8], own: NDArray[np.int8]) -> NDArray[np.uint8]:
+def held_map(
+    fused: NDArray[np.uint8], own: NDArray[np.int8], known: Extent = EVERYWHERE
+) -> NDArray[np.uint8]:
     """Return a robot's fused ``(R, C)`` classes, and where they are unknown the class of its own log-odds.
 
-    The log-odds differ from the map until the robot publishes them.
+    The log-odds differ from the map until the robot publishes them. Outside ``known`` there is nothing.
     """
-    held: NDArray[np.uint8] = (own != 0).astype(np.uint8)  # UNKNOWN, FREE, OCCUPIED are 0, 1, 2
-    held += own > 0
-    held *= fused == UNKNOWN
-    held += fused
-    return held
+    whole = np.zeros(fused.shape, np.uint8)  # costs no more than what is written to it
+    held = whole[known]
+    held += own[known] != 0  # UNKNOWN, FREE, OCCUPIED are 0, 1, 2
+    held += own[known] > 0
+    held *= fused[known] == UNKNOWN
+    held += fused[known]
+    return whole
+
+
+def seen_by(own: NDArray[np.int8], known: Extent = EVERYWHERE) -> NDArray[np.bool_]:
+    """Return ``(R, C)`` where a robot has evidence of its own; outside ``known`` it has none."""
+    whole = np.zeros(own.shape, np.bool_)
+    whole[known] = own[known] != 0
+    return whole
 
 
 def union_map(views: Sequence[RobotView]) -> NDArray[np.uint8]:
