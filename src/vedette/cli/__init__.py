@@ -19,11 +19,22 @@ from vedette.outcome import Outcome
 BAD_INPUT = 2
 
 
-COMMANDS = ("agent", "explore", "keys", "reproduce", "search", "status", "study", "team", "track", "world")
+COMMANDS = {
+    "agent": "Run one robot of a team, with the neighbours that its file names.",
+    "explore": "Let a team of robots explore a building in simulation.",
+    "keys": "Make the keys of a team.",
+    "reproduce": "Compute the paper's figures and try its claims.",
+    "search": "Let a team of vehicles look for a hidden target in simulation.",
+    "status": "List a team's agents: tree, links, agreement, refused messages.",
+    "study": "Compare planners on many worlds.",
+    "team": "Start a team of agent processes on this host and watch it.",
+    "track": "Let a team of vehicles follow targets in simulation.",
+    "world": "Generate an office, a cave or a maze.",
+}
 
 
 class _Commands(click.Group):
-    """Imports a command when it is asked for: none waits for what only others need."""
+    """Imports a command when it is asked for: none waits for what only others need, nor does the help."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names of all commands."""
@@ -44,6 +55,11 @@ class _Commands(click.Group):
         module = import_module(f"vedette.cli.{cmd_name}")
         command: click.Command = getattr(module, cmd_name)
         return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write what each command does, in a line."""
+        with formatter.section("Commands"):
+            formatter.write_dl(list(COMMANDS.items()))
 
 
 @click.command(

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.ndimage import label
 
 
 def components(cells: NDArray[np.bool_]) -> NDArray[np.int64]:
@@ -12,7 +12,7 @@ def components(cells: NDArray[np.bool_]) -> NDArray[np.int64]:
 
     Four neighbours are what a robot that cuts no corner can use: a diagonal step needs both side cells.
     """
-    labels: NDArray[np.int64] = label(cells, output=np.int64)[0]
+    labels: NDArray[np.int64] = scipy.ndimage.label(cells, output=np.int64)[0]
     return labels - 1
 
 

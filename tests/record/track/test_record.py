@@ -17,12 +17,13 @@ from rosbags.typesys import Stores, get_typestore
 from tests.support.places import ROOT
 from tests.support.track_scenes import flown, scenario
 from vedette.record.display import Display
+from vedette.record.track.ellipse import SIGMA, ellipse_axes
 from vedette.record.track.entropy import entropy_png
 from vedette.record.track.live import line, screen, track_display
 from vedette.record.track.log import TrackLog, TrackSnapshot
 from vedette.record.track.mcap import TrackMcapWriter
 from vedette.record.track.observer import TrackReport
-from vedette.record.track.panel import SIGMA, ellipse_axes, track_gif
+from vedette.record.track.panel import track_gif
 from vedette.record.track.summary import TrackSummary
 from vedette.record.track.tracks import tracks_png
 

@@ -18,8 +18,8 @@ import math
 from functools import lru_cache
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.integrate import trapezoid
 
 from vedette.domains.search.detectors import Detector
 from vedette.domains.search.motion import TargetMotion
@@ -34,13 +34,13 @@ def sweep_width(detector: Detector, speed: float, interval: float) -> float:
     side = np.linspace(-detector.range, detector.range, 401)
     step = speed * interval
     if step == 0.0:
-        return float(trapezoid(detector.probability(np.abs(side)), side))
+        return float(scipy.integrate.trapezoid(detector.probability(np.abs(side)), side))
     looks = np.arange(-math.ceil(detector.range / step) - 1, math.ceil(detector.range / step) + 2)
     found = np.zeros_like(side)
     for shift in (np.arange(8) + 0.5) / 8:
         distance = np.hypot(side[:, None], (looks + shift) * step)
         found += (1.0 - np.prod(1.0 - detector.probability(distance), axis=1)) / 8
-    return float(trapezoid(found, side))
+    return float(scipy.integrate.trapezoid(found, side))
 
 
 def search_effort(detector: Detector) -> float:

@@ -12,8 +12,8 @@ from rich.text import Text
 
 from vedette.record.board import Board, board, figures_line, framed, states, team_table
 from vedette.record.display import Display
+from vedette.record.track.ellipse import SIGMA
 from vedette.record.track.log import TrackScene, TrackSnapshot
-from vedette.record.track.panel import SIGMA
 
 _NAMES = "abcdefghijklmnopqrstuvwxyz"
 _ROUND = 48  # points of an ellipse

@@ -14,9 +14,9 @@ from vedette.record import palette
 from vedette.record.film import flight_gif
 from vedette.record.log import evenly
 from vedette.record.signs import draw_vehicle
+from vedette.record.track.ellipse import ellipse_axes
 from vedette.record.track.log import TrackLog, TrackSample, TrackSnapshot
 
-SIGMA = math.sqrt(-2.0 * math.log(0.05))  # a Gaussian in the plane lies within 2.45 sigma to 95 %
 INK = palette.unit(palette.INK)
 TRUTH = palette.unit((150, 153, 157))
 KNOWN = palette.unit((255, 183, 0))  # of an ellipse's inside
@@ -67,13 +67,6 @@ def track_gif(log: TrackLog, path: Path | str, frames: int = 150) -> None:
     stages = [log.snapshots[k] for k in evenly(len(log.snapshots), frames)]
     aspect = (box[2] - box[0]) / (box[3] - box[1])
     flight_gif(stages, lambda axes, stage: draw(axes, log, stage, box), aspect, _COLOURS, path)
-
-
-def ellipse_axes(covariance: NDArray[np.float64]) -> tuple[float, float, float]:
-    """Return width and height [m] of a position's 95 % ellipse, and the angle of its width [deg]."""
-    variances, axes = np.linalg.eigh(covariance[:2, :2])
-    height, width = (2.0 * SIGMA * np.sqrt(np.maximum(variances, 0.0))).tolist()
-    return width, height, math.degrees(math.atan2(axes[1, 1], axes[0, 1]))
 
 
 def _view(axes: Axes, log: TrackLog, i: int, vehicle: TrackSample) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment
 
 from vedette.domains.mapping.baselines.team import TeamPlatform
 from vedette.domains.mapping.belief import MapBelief
@@ -45,7 +45,7 @@ def assign(lengths: NDArray[np.float64]) -> NDArray[np.int64]:
     more = 1.0 + 2.0 * robots * float(np.abs(lengths[:, stops][able]).max())
     nowhere = more * robots * times
     offers = [np.where(able, lengths[:, stops] + time * more, nowhere) for time in range(times)]
-    rows, columns = linear_sum_assignment(np.hstack(offers))
+    rows, columns = scipy.optimize.linear_sum_assignment(np.hstack(offers))
     chosen = np.full(robots, -1)
     chosen[rows] = np.where(able[rows, columns % len(stops)], stops[columns % len(stops)], -1)
     return chosen
