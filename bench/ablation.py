@@ -18,9 +18,9 @@ from vedette.domains.mapping.planners import Planner
 from vedette.domains.mapping.platform import MappingPlatform
 from vedette.record.files import write_text
 from vedette.sim.explore.simulation import ExploreSetup
-from vedette.study.bootstrap import Interval
 from vedette.study.compare import difference, mean
 from vedette.study.conduct import conduct
+from vedette.study.intervals import Interval
 from vedette.study.metrics import AUC, TIMES, TOTAL
 from vedette.study.mission import RunResult, carry_out
 from vedette.study.provenance import fingerprint

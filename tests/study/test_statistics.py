@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from typing import Any
 
 import numpy as np
 import pytest
+import scipy
+from scipy import stats
 
-from vedette.study.bootstrap import mean_band, mean_interval, ratio_interval
 from vedette.study.compare import by_draw, difference, mean
 from vedette.study.curves import CurvesOf, at, averaged, lowest, time_axis
 from vedette.study.facets import AXES, Facet, cells, margins, overview, panels
+from vedette.study.intervals import draws_needed, mean_band, mean_interval, ratio_interval
 from vedette.study.metrics import AUC, TIMES, TOTAL
 from vedette.study.mission import RunResult
+from vedette.study.ratios import ratios
 from vedette.study.rows import Row
 from vedette.study.tables import difference_rows, mean_rows
 
@@ -40,19 +42,24 @@ def row(planner: str, world: str = "maze", seed: int = 0, robots: int = 1, **fig
 # -- intervals ----------------------------------------------------------------------------------------
 
 
-def test_the_interval_of_many_normal_draws_is_the_closed_form() -> None:
-    samples = np.random.default_rng(3).normal(10.0, 2.0, 400)
+def test_the_interval_of_the_mean_is_the_one_of_the_textbook() -> None:
+    samples = np.array([10.2, 9.1, 11.4, 10.9, 8.7])
     found = mean_interval(samples)
-    half = 1.96 * samples.std() / math.sqrt(400)
+    half = 2.776445 * samples.std(ddof=1) / math.sqrt(5)  # t of 4 degrees of freedom, from a table
     assert found.value == samples.mean()
-    assert found.low == pytest.approx(samples.mean() - half, abs=0.1 * half)
-    assert found.high == pytest.approx(samples.mean() + half, abs=0.1 * half)
+    assert (found.low, found.high) == pytest.approx((samples.mean() - half, samples.mean() + half))
 
 
-def test_nine_in_ten_and_more_intervals_hold_the_truth() -> None:
-    rng = np.random.default_rng(0)
-    held = [(i := mean_interval(rng.exponential(1.0, 30))).low <= 1.0 <= i.high for _ in range(120)]
-    assert 0.88 <= np.mean(held) <= 0.99
+@pytest.mark.parametrize("draws", [4, 10, 30])
+def test_95_of_100_intervals_of_ratios_hold_the_truth_however_few_the_worlds(draws: int) -> None:
+    rng, studies, skew = np.random.default_rng(draws), 3000, 12.0
+    truth = 0.9 * math.exp(scipy.special.digamma(skew)) / skew  # geometric mean of what is drawn below
+    held = 0
+    for _ in range(studies):
+        below = rng.lognormal(5.0, 0.4, draws)  # worlds differ much
+        found = ratio_interval(0.9 * below * rng.gamma(skew, 1.0 / skew, draws), below)
+        held += found.low <= truth <= found.high
+    assert held / studies == pytest.approx(0.95, abs=4.0 * math.sqrt(0.95 * 0.05 / studies))
 
 
 def test_the_interval_goes_along_with_shift_and_scale() -> None:
@@ -61,12 +68,10 @@ def test_the_interval_goes_along_with_shift_and_scale() -> None:
     assert [other.low, other.high] == pytest.approx([3.0 * one.low + 7.0, 3.0 * one.high + 7.0])
 
 
-def test_few_or_equal_draws_have_the_interval_that_they_can_have() -> None:
+def test_one_draw_has_no_interval_and_equal_ones_have_none_to_spare() -> None:
     assert math.isnan(mean_interval(np.array([4.0])).low)
     same = mean_interval(np.array([4.0, 4.0, 4.0]))
     assert (same.low, same.value, same.high) == (4.0, 4.0, 4.0)
-    two = mean_interval(np.array([1.0, 3.0]))
-    assert (two.low, two.high) == (1.0, 3.0)
 
 
 def test_the_ratio_of_pairs_knows_that_they_are_pairs() -> None:
@@ -77,14 +82,38 @@ def test_the_ratio_of_pairs_knows_that_they_are_pairs() -> None:
     assert apart.value == pytest.approx(0.6)
     assert apart.high - apart.low > 0.1
     assert math.isnan(ratio_interval(below, np.zeros(20)).value)
+    assert math.isnan(ratio_interval(np.zeros(20), below).value)
 
 
-def test_the_band_of_curves_is_the_percentiles_of_all_resamples() -> None:
+def test_over_and_under_are_inverse_ratios() -> None:
+    above, below = np.random.default_rng(2).uniform(1.0, 9.0, (2, 8))
+    one, other = ratio_interval(above, below), ratio_interval(below, above)
+    assert (one.value, one.low, one.high) == pytest.approx(
+        (1.0 / other.value, 1.0 / other.high, 1.0 / other.low)
+    )
+
+
+def test_so_many_draws_as_are_asked_for_make_the_interval_narrow_enough_and_one_less_does_not() -> None:
+    pairs = np.random.default_rng(5).uniform(0.7, 1.3, (2, 10))
+    needed = draws_needed(*pairs)
+    assert needed is not None
+    spread = np.log(pairs[0] / pairs[1]).std(ddof=1)
+
+    def half_width(draws: int) -> float:
+        return float(stats.t.interval(0.95, draws - 1, scale=spread / math.sqrt(draws))[1])
+
+    assert half_width(needed) <= math.log(1.05) < half_width(needed - 1)
+    assert draws_needed(np.ones(1), np.ones(1)) is None
+    assert draws_needed(np.zeros(3), np.ones(3)) is None
+    assert draws_needed(np.array([1e-9, 1e9]), np.ones(2)) is None
+
+
+def test_the_band_of_curves_is_the_interval_at_each_point() -> None:
     curves = np.array([[0.0, 5.0], [1.0, 5.0], [5.0, 6.0]])
-    means = [np.mean(chosen, axis=0) for chosen in itertools.product(curves, repeat=3)]
     low, high = mean_band(curves)
-    assert low == pytest.approx(np.percentile(means, 2.5, axis=0, method="inverted_cdf"))
-    assert high == pytest.approx(np.percentile(means, 97.5, axis=0, method="inverted_cdf"))
+    each = [mean_interval(curves[:, point]) for point in range(2)]
+    assert low == pytest.approx([point.low for point in each])
+    assert high == pytest.approx([point.high for point in each])
 
 
 # -- means and differences ----------------------------------------------------------------------------
@@ -124,14 +153,25 @@ def test_differences_pair_the_same_cases_and_no_others() -> None:
     found = difference(rows, "tours", "burgard", T90)
     assert (found.pairs, found.left_out, found.lower, found.higher) == (2, 1, 2, 0)
     assert found.difference.value == pytest.approx((-5.0 - 20.0) / 2)
-    assert found.ratio.value == pytest.approx(30.0 / 55.0)
-    assert (found.difference.low, found.difference.high) == (-20.0, -5.0)
+    assert found.ratio.value == pytest.approx(math.sqrt(10.0 / 15.0 * 20.0 / 40.0))
+    assert found.difference.low == pytest.approx(-12.5 - 12.706205 * 7.5)  # t of 1 degree of freedom
+    assert found.draws == 2
 
 
 def test_a_planner_does_not_differ_from_itself() -> None:
     rows = [row(name, seed=seed, t90_s=float(seed)) for seed in range(1, 6) for name in ("a", "b")]
     found = difference(rows, "a", "b", T90)
     assert (found.difference.low, found.difference.high, found.ratio.value) == (0.0, 0.0, 1.0)
+
+
+def test_the_last_words_give_ratios_and_how_many_draws_would_do() -> None:
+    times = {"a": (10.0, 22.0, 29.0), "b": (20.0, 20.0, 20.0)}
+    rows = [row(name, seed=seed, t90_s=t) for name, all_of in times.items() for seed, t in enumerate(all_of)]
+    (line,) = ratios(rows, "b")
+    found = difference(rows, "a", "b", T90)
+    assert line.startswith(f"a over b: T90 {found.ratio.value:.2f} ({found.ratio.low:.2f} to ")
+    assert line.endswith(f"within 5 % with {found.needed} draws instead of 3")
+    assert ratios(rows[:3], "a") == []
 
 
 def test_without_pairs_there_is_no_difference() -> None:

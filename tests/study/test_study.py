@@ -310,6 +310,18 @@ def test_a_process_that_dies_costs_its_own_run_only(tmp_path: Path) -> None:
     assert [run for run, result in results.items() if result.error] == [dying]
 
 
+def test_a_study_whose_time_is_over_begins_no_run_and_goes_on_later(tmp_path: Path) -> None:
+    all_runs, store = runs(tmp_path), Store.open(tmp_path / "out", "abc")
+    work = Counting()
+    early = Workers(1, work=work, over=lambda: len(work.done) >= 2)
+    first = conduct(all_runs, store, early, quiet())
+    assert (len(first.results), first.interrupted) == (2, False)
+    assert first.missing == [run for run in all_runs if run not in first.results]
+    second = conduct(all_runs, store, Workers(1, work=work), quiet())
+    assert (list(second.results), second.missing) == (all_runs, [])
+    assert len(work.done) == len(all_runs)
+
+
 def test_a_folder_with_something_else_in_it_is_not_touched(tmp_path: Path) -> None:
     (tmp_path / "precious.txt").write_text("mine")
     with pytest.raises(InputError, match="holds something else than a study"):

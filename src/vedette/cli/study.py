@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 import os
 import shlex
 import sys
+import time
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
@@ -13,7 +15,7 @@ import click
 from rich.console import Console
 
 from vedette.cli.ends import aborted
-from vedette.cli.options import FILE, OneOf
+from vedette.cli.options import FILE, OneOf, Positive
 from vedette.errors import InputError
 from vedette.maps import map_files
 from vedette.outcome import Outcome
@@ -39,12 +41,13 @@ BROKE = 1
     "--backend", type=OneOf(BACKENDS), default="loky", show_default=True,
     help="Where the runs are carried out: on this machine, or on a Dask cluster.",
 )  # fmt: skip
-def study(spec_name: str, out: Path | None, jobs: int | None, backend: str) -> None:
+@click.option("--minutes", type=Positive("min"), help="Begin no run after so long.  [default: do all]")
+def study(spec_name: str, out: Path | None, jobs: int | None, backend: str, minutes: float | None) -> None:
     """Compare planners on many worlds: SPEC is a YAML file, or the name of a study that comes with Vedette:
     ten-minutes, hundred-minutes, poses-and-views.
 
     A study that was stopped goes on when it is called again. Exit status: 0 all runs came to an end, 1 some
-    broke, 2 bad input, 130 interrupted.
+    broke or are still to do, 2 bad input, 130 interrupted.
     """
     chosen = cast(Backend, backend)
     if chosen == "dask" and jobs is not None and os.environ.get("DASK_SCHEDULER_ADDRESS"):
@@ -52,19 +55,20 @@ def study(spec_name: str, out: Path | None, jobs: int | None, backend: str) -> N
     require(chosen)
     path = find_spec(spec_name)
     folder = Path("runs") / f"study-{path.stem}" if out is None else out
-    conducted = _conducted(path, folder, jobs or os.cpu_count() or 1, chosen)
-    if conducted.results:
-        click.echo(_closing(conducted, folder))
-    if conducted.missing:
+    end = math.inf if minutes is None else time.monotonic() + 60.0 * minutes
+    conducted = _conducted(path, folder, jobs or os.cpu_count() or 1, chosen, end)
+    if conducted.interrupted:
         raise SystemExit(Outcome.INTERRUPTED.status)
-    raise SystemExit(BROKE if conducted.broken else 0)
+    raise SystemExit(BROKE if conducted.broken or conducted.missing else 0)
 
 
-def _conducted(path: Path, folder: Path, jobs: int, backend: Backend) -> Conducted:
-    """Conduct a study and write what came out."""
+def _conducted(path: Path, folder: Path, jobs: int, backend: Backend, end: float) -> Conducted:
+    """Conduct a study, beginning no run once the monotonic clock is at ``end``, and tell what came out."""
     # These need packages that need not be installed: `require` has seen to it that they are.
     from vedette.study.conduct import conduct
     from vedette.study.outputs import write_outputs
+    from vedette.study.ratios import ratios
+    from vedette.study.rows import figure_rows
     from vedette.study.store import Store
     from vedette.study.workers import Workers
 
@@ -75,10 +79,16 @@ def _conducted(path: Path, folder: Path, jobs: int, backend: Backend) -> Conduct
     )
     store = Store.open(folder, made.code, _inputs(spec, path, folder))
     with locked(folder):
-        conducted = conduct(runs, store, Workers(jobs, backend), Console())
+        workers = Workers(jobs, backend, over=lambda: time.monotonic() >= end)
+        conducted = conduct(runs, store, workers, Console())
         if conducted.results:
+            reference = spec.reference or spec.planners[0]
             with aborted("not all of the report and its tables is written; what is done is kept"):
-                write_outputs(conducted, path, spec.reference or spec.planners[0], folder, made)
+                write_outputs(conducted, path, reference, folder, made)
+            lines = [_counts(conducted), *ratios(figure_rows(conducted.results), reference)]
+            click.echo(
+                "\n".join([*lines, f"report: {folder / 'report.html'}; tables and pictures beside it"])
+            )
     return conducted
 
 
@@ -88,13 +98,10 @@ def _inputs(spec: Spec, path: Path, folder: Path) -> list[Path]:
     return [*own, *(file for entry in spec.maps for file in map_files(path.parent / entry.file))]
 
 
-def _closing(conducted: Conducted, folder: Path) -> str:
-    """Say in a few lines what there is, and where."""
+def _counts(conducted: Conducted) -> str:
+    """Say how many runs there are, and how they went."""
     complete = sum(result.figures["completed"] is True for result in conducted.results.values())
     count = len(conducted.results)
     missing = f", {len(conducted.missing)} runs to go" if conducted.missing else ""
     broke = f", {conducted.broken} broke" if conducted.broken else ""
-    return (
-        f"{count} runs, {complete} of them complete{broke}{missing}\n"
-        f"report: {folder / 'report.html'}; tables and pictures beside it"
-    )
+    return f"{count} runs, {complete} of them complete{broke}{missing}"

@@ -10,7 +10,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.study.bootstrap import Interval, mean_interval, ratio_interval
+from vedette.study.intervals import Interval, draws_needed, mean_interval, ratio_interval
 from vedette.study.metrics import Metric
 from vedette.study.rows import Row
 
@@ -32,11 +32,13 @@ class Difference:
     """A planner against the reference over a facet, in the cases where both have the figure."""
 
     difference: Interval  # planner minus reference
-    ratio: Interval  # of the means, planner over reference
+    ratio: Interval  # planner over reference
     lower: int  # cases in which the planner's figure is lower
     higher: int
     pairs: int
     left_out: int  # cases in which one of them has none
+    draws: int  # of worlds and seeds that the pairs are of
+    needed: int | None  # so that the ratio is known within 5 %; as `draws_needed`
 
 
 def mean(rows: Sequence[Row], planner: str, metric: Metric) -> Mean:
@@ -63,7 +65,7 @@ def difference(rows: Sequence[Row], planner: str, reference: str, metric: Metric
         if (own := metric.of(row)) is not None and (other := theirs[row["case"]]) is not None
     ]
     if not pairs:
-        return Difference(Interval(math.nan), Interval(math.nan), 0, 0, 0, len(cases))
+        return Difference(Interval(math.nan), Interval(math.nan), 0, 0, 0, len(cases), 0, None)
     above = by_draw([(place, a) for place, a, _ in pairs])
     below = by_draw([(place, b) for place, _, b in pairs])
     return Difference(
@@ -73,6 +75,8 @@ def difference(rows: Sequence[Row], planner: str, reference: str, metric: Metric
         sum(a > b for _, a, b in pairs),
         len(pairs),
         len(cases) - len(pairs),
+        len(above),
+        draws_needed(above, below),
     )
 
 

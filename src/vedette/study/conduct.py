@@ -19,8 +19,9 @@ class Conducted:
     """How far a study has come."""
 
     results: Mapping[Run, RunResult]  # in the order of the spec
-    missing: Sequence[Run]  # not done, because the study was interrupted
+    missing: Sequence[Run]  # not done, because the study was interrupted or its time was over
     fresh: int  # carried out just now
+    interrupted: bool = False
 
     @property
     def broken(self) -> int:
@@ -36,7 +37,7 @@ def conduct(runs: Sequence[Run], store: Store, workers: Workers, console: Consol
     results = {run: result for run in runs if (result := store.read(run)) is not None and not result.error}
     left = [run for run in runs if run not in results]
     _begin(len(runs), len(left), store.others(list(runs)), console)
-    fresh = 0
+    fresh, interrupted = 0, False
     try:
         with StudyProgress(left, console) as progress:
             for run, result in workers.results(left):
@@ -45,9 +46,10 @@ def conduct(runs: Sequence[Run], store: Store, workers: Workers, console: Consol
                 fresh += 1
                 progress.ended(run, result)
     except KeyboardInterrupt:
+        interrupted = True
         console.print("interrupted; what is done is kept", markup=False, highlight=False)
     ordered = {run: results[run] for run in runs if run in results}
-    return Conducted(ordered, [run for run in runs if run not in results], fresh)
+    return Conducted(ordered, [run for run in runs if run not in results], fresh, interrupted)
 
 
 def _begin(runs: int, left: int, others: int, console: Console) -> None:

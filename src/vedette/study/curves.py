@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.study.bootstrap import mean_band
 from vedette.study.compare import Draw, draw
+from vedette.study.intervals import mean_band
 from vedette.study.mission import RunResult
 from vedette.study.rows import Row
 from vedette.study.run import Value

@@ -14,10 +14,10 @@ from matplotlib.ticker import PercentFormatter
 
 from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save, tidy
-from vedette.study.bootstrap import Interval
 from vedette.study.compare import mean
 from vedette.study.curves import CurvesOf, averaged, lowest, time_axis
 from vedette.study.facets import Facet, overview, panels, planners
+from vedette.study.intervals import Interval
 from vedette.study.metrics import AUC, TIMES, TOTAL, Metric
 from vedette.study.rows import Row
 

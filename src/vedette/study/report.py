@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from vedette.study import page
-from vedette.study.bootstrap import LEVEL, Interval
 from vedette.study.compare import Difference, difference, mean
 from vedette.study.facets import Facet, margins, overview, planners
+from vedette.study.intervals import LEVEL, Interval
 from vedette.study.metrics import COSTS, PLANNING, QUALITY, TIMES, Metric, traffic
 from vedette.study.provenance import Provenance
 from vedette.study.rows import Row
@@ -165,8 +165,9 @@ def _differences(findings: Findings) -> list[str]:
         for name in others:
             found = [difference(inside, name, findings.reference, metric) for metric in TIMES]
             lines.append((name, "difference", *(_interval(d.difference, signed=True) for d in found)))
-            lines.append(("", "ratio of means", *(_interval(d.ratio, digits=3) for d in found)))
+            lines.append(("", "ratio", *(_interval(d.ratio, digits=3) for d in found)))
             lines.append(("", "lower : higher, of pairs", *map(_counts, found)))
+            lines.append(("", "draws that ±5 % takes", *map(_needed, found)))
         parts.append(page.table(header, lines, left=2, caption=str(facet)))
     return parts
 
@@ -199,13 +200,13 @@ def _reading(findings: Findings) -> list[str]:
     lines = (
         "T50 to T99: simulated time until so many percent of what can be seen at all are known; total: until "
         "the team agrees that nothing is left; AUC: area under the unknown share.",
-        "Figures are mean [low, high], a bootstrap interval at 95 % (BCa) over draws of world and seed. Runs "
-        "in the same draw are averaged first, for they are not independent.",
+        "Figures are mean [low, high], Student's t interval at 95 % over draws of world and seed. Runs in "
+        "the same draw are averaged first, for they are not independent.",
         "n/m: only n of m runs have the figure; total, AUC and costs are of complete missions only. Where "
-        "something is missing, compare differences, not means. Intervals of fewer than some ten draws are "
-        "too narrow.",
+        "something is missing, compare differences, not means.",
         f"Differences are planner minus {reference} and ratios planner over {reference}, in cases with the "
-        "same world, starts, seed and all else.",
+        "same world, starts, seed and all else. Ratios are averaged by their logarithms: twice as long and "
+        "half as long make one. Below them, how many draws it takes until a ratio is known within 5 %.",
         "No team below: what even a team that knew the map could not beat, from the distance of the farthest "
         "cell and the area that sensors can sweep. The best that can be reached lies well above it.",
         "Deviation of areas seen: standard deviation between the robots of a team. Overlap: share of the "
@@ -238,3 +239,7 @@ def _share(reached: int, runs: int) -> str:
 
 def _counts(found: Difference) -> str:
     return f"{found.lower} : {found.higher} of {found.pairs}"
+
+
+def _needed(found: Difference) -> str:
+    return f"{found.needed} (of {found.draws} this is)" if found.needed is not None else "–"

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from vedette.study.bootstrap import Interval
 from vedette.study.compare import difference, mean
 from vedette.study.facets import AXES, Facet, cells, margins, planners, varied
+from vedette.study.intervals import Interval
 from vedette.study.metrics import COMPARED, QUALITY, traffic
 from vedette.study.rows import Row
 from vedette.study.run import Value
@@ -62,6 +62,8 @@ def difference_rows(rows: Sequence[Row], reference: str) -> list[Row]:
                         "higher": each.higher,
                         "pairs": each.pairs,
                         "left_out": each.left_out,
+                        "draws": each.draws,
+                        "needed": each.needed,
                     }
                 )
     return found

@@ -26,13 +26,14 @@ class Workers:
     jobs: int
     backend: Backend = "loky"
     work: Work = carry_out
+    over: Callable[[], bool] = lambda: False  # once it is, no run is begun
     _given: dict[Run, None] = field(default_factory=dict)  # to the workers, and not yet back
 
     def results(self, runs: Sequence[Run]) -> Iterator[tuple[Run, RunResult]]:
         """Yield runs and results as they come, in any order."""
         left = dict.fromkeys(runs)
         with self._cluster():
-            while left:
+            while left and not self.over():
                 try:
                     for run, result in self._together(list(left)):
                         del left[run]
@@ -51,6 +52,8 @@ class Workers:
 
     def _giving(self, runs: Iterable[Run]) -> Iterator[Run]:
         for run in runs:
+            if self.over():
+                return
             self._given[run] = None
             yield run
 
