@@ -15,7 +15,7 @@ from vedette.fusion.gaussian import Information, TrackMotion, track_fusion
 from vedette.missions.flying import RoundTimes
 from vedette.missions.track.options import TrackOptions
 from vedette.missions.track.scenario import TrackScenario
-from vedette.missions.track.tracking import Bounds, Tracking, TrackPlan
+from vedette.missions.track.tracking import LookBounds, Tracking, TrackPlan
 
 _EXTENT = 10.0  # evidence holds up to so many times the area's farthest corner from the origin
 
@@ -63,11 +63,11 @@ class TrackTeam:
         return self.scenario.prior()
 
     @cached_property
-    def bounds(self) -> Bounds:
+    def bounds(self) -> LookBounds:
         """On everybody's likelihoods; the same for the whole team, which fusion sums exactly."""
         extent = _EXTENT * max(1.0, *map(abs, self.scenario.area))
         each = [sensor.most_evidence(extent) for sensor in self.sensors]
-        return Bounds(max(matrix for matrix, _ in each), max(vector for _, vector in each))
+        return LookBounds(max(matrix for matrix, _ in each), max(vector for _, vector in each))
 
     def assemble(self, robot: int, boot: int) -> Agent:
         """Return a fresh agent for a vehicle, by its number from 0; InputError if the fusion is unknown."""

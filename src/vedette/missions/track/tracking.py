@@ -44,7 +44,7 @@ class TrackPlan:
         return step_of(time, self.dt)
 
 
-class Bounds(NamedTuple):
+class LookBounds(NamedTuple):
     """Largest numbers that anybody's likelihood may hold: fixed-point fusion takes no larger ones."""
 
     matrix: float  # [1/m^2]
@@ -62,7 +62,7 @@ class Tracking(FlyingMission):
     vehicle: TrackingPlatform
     team: TrackPlan
     fusion: TrackFusion
-    bounds: Bounds
+    bounds: LookBounds
     tells_plans: bool = True  # False: the team shares beliefs alone
     strategy: Course = field(default_factory=lambda: Course(0, ()))
     skipped: int = 0  # measurements that could not be linearised, or whose likelihood exceeded the bounds
