@@ -8,15 +8,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from reprlib import repr as repr_short
-from typing import Any, TypeVar
+from typing import Annotated, Any, TypeVar
 
 import msgspec
-from msgspec import inspect
+from msgspec import Meta, inspect
 
 from vedette.errors import InputError, nearest_name
 from vedette.yaml_file import read_yaml
 
 T = TypeVar("T")
+
+Name = Annotated[str, Meta(pattern=r"^[A-Za-z0-9._-]{0,64}$")]
+Metre = Annotated[float, Meta(ge=-2.1e7, le=2.1e7)]  # a coordinate: UTM's northing reaches 1e7 m
 
 _PLACE = re.compile(r"(?P<what>.*?)(?: - at `\$(?P<place>[^`]*)`)?")
 _STEP = re.compile(r"\.([^.\[\]]+)|\[(\d+)\]")

@@ -9,9 +9,10 @@ import msgspec
 from msgspec import Meta
 
 from vedette import wire
+from vedette.scenario import Metre
 
 TOUCH = 0.01  # bodies that overlap by more are in one place [m]
-Metre = Annotated[float, Meta(ge=-1e6, le=1e6)]
+Number = Annotated[float, Meta(ge=-1e6, le=1e6)]
 
 
 class ShownBody(msgspec.Struct, frozen=True, array_like=True, tag=1):
@@ -19,9 +20,9 @@ class ShownBody(msgspec.Struct, frozen=True, array_like=True, tag=1):
 
     x: Metre  # [m], team frame
     y: Metre
-    heading: Metre  # [rad]
-    vx: Metre  # [m/s], team frame
-    vy: Metre
+    heading: Number  # [rad]
+    vx: Number  # [m/s], team frame
+    vy: Number
     radius: Annotated[float, Meta(gt=0.0, le=10.0)]  # [m]
 
     def inside(self, other: ShownBody) -> bool:

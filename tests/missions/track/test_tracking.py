@@ -20,7 +20,7 @@ from vedette.domains.tracking.platform import TrackingPlatform
 from vedette.errors import InputError
 from vedette.missions.flying import RoundTimes
 from vedette.missions.track.options import COORDINATIONS
-from vedette.missions.track.scenario import default_scenario
+from vedette.missions.track.scenario import TrackScenario, default_scenario
 from vedette.outcome import Outcome
 from vedette.record.track.observer import TrackReport
 from vedette.record.track.summary import nees_band
@@ -286,3 +286,33 @@ def test_the_default_scenario_has_an_optimum_that_can_be_had() -> None:
     of = default_scenario()
     assert (len(of.vehicles), len(of.targets)) == (4, 6)
     TrackSimulation(of, TrackSetup(coordination="optimum"))
+
+
+# -- numbers far from the origin ------------------------------------------------------------------------
+
+FAR = 500_000.0, 5_000_000.0  # easting and northing of a place in Europe [m]
+
+
+def precise(x: float, y: float) -> TrackScenario:
+    """Two vehicles with sensors of a millimetre and a hundredth of a degree, some way from the origin."""
+    kinds = (
+        {"type": "range-bearing", "range": 300, "bearing_noise": 0.01, "range_noise": 0.001},
+        {"type": "position", "range": 300, "noise": 0.001},
+    )
+    vehicles = [{"start": [x + 60 + 100 * i, y + 40, 90], "speed": 18, "sensor": kinds[i]} for i in range(2)]
+    targets = [
+        {"model": "constant-velocity", "mean": [x + 200, y + 300, 2, 1], "sd": [50, 50, 2, 2]},
+        {"model": "static", "mean": [x + 400, y + 200], "sd": [50, 50]},
+    ]
+    return scenario(area=[x, y, x + 800, y + 600], vehicles=vehicles, targets=targets, duration=20)
+
+
+@pytest.mark.parametrize("fusion", ["replicated", "sums", "channel", "intersection"])
+def test_far_from_the_origin_and_precise_all_is_as_near_it(fusion: str) -> None:
+    """As near as decisions among equals let it be, which the last digit turns; it was off by thousands."""
+    near, far = (flown(precise(*at), seed=1, fusion=fusion)[1] for at in ((0.0, 0.0), FAR))
+    assert far.summary.nees < nees_band(6)[1]
+    assert far.summary.nees == pytest.approx(near.summary.nees, abs=0.3)
+    assert far.summary.entropy_mean_nat == pytest.approx(near.summary.entropy_mean_nat, abs=0.5)
+    there, here = far.log.snapshots[-1], near.log.snapshots[-1]
+    assert there.squared_error == pytest.approx(here.squared_error, rel=0.1, abs=1e-4)

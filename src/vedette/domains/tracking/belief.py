@@ -16,10 +16,13 @@ from vedette.kernels.tracking import ChainMotion
 
 @dataclass(frozen=True, eq=False)
 class Tracks:
-    """T independent Gaussian targets in information form, ``Y = P^-1`` and ``y = Y x``, at step k0.
+    """T independent Gaussian targets in information form, ``Y = P^-1`` and ``y = Y (x - o)``, at step k0.
 
     All platforms linearise about the common track that this predicts without measurements: so what a platform
     observes depends on its own controls alone, and the objective stays partially separable.
+
+    Vectors are relative to an origin o nearby: with Y and x both large, y would leave x without digits. All
+    motion is the same about any origin, ``F o = o``.
 
     Raises:
         InputError: no target, wrong shapes, a number that is not finite, an information matrix that is not
@@ -32,6 +35,7 @@ class Tracks:
     models: tuple[TargetModel, ...]  # (T,)
     Y: NDArray[np.float64]  # (T, 4, 4)
     y: NDArray[np.float64]  # (T, 4)
+    origin: tuple[float, float] = (0.0, 0.0)  # o, team frame [m]
 
     def __post_init__(self) -> None:
         count = len(self.models)
@@ -65,8 +69,13 @@ class Tracks:
 
     @cached_property
     def means(self) -> NDArray[np.float64]:
-        """(T, 4) ``x = P y`` [m, m, m/s, m/s]."""
-        return np.asarray((self.covariances @ self.y[:, :, None])[:, :, 0])
+        """(T, 4) ``x = o + P y`` [m, m, m/s, m/s], team frame."""
+        return np.asarray((self.covariances @ self.y[:, :, None])[:, :, 0] + self.shift)
+
+    @property
+    def shift(self) -> NDArray[np.float64]:
+        """(4,) The origin as a state at rest."""
+        return np.array([*self.origin, 0.0, 0.0])
 
     @cached_property
     def motion(self) -> ChainMotion:
@@ -78,10 +87,10 @@ class Tracks:
     def predicted_means(self) -> NDArray[np.float64]:
         """(K, T, 4) at the steps k0 + 1 ... k0 + K without measurements: the round's common track."""
         out = np.empty((self.horizon, len(self), STATE))
-        means = self.means
+        means = self.means - self.shift
         for k in range(self.horizon):
             out[k] = means = (self.motion.transitions @ means[:, :, None])[:, :, 0]
-        return out
+        return out + self.shift
 
     @cached_property
     def predicted_covariances(self) -> NDArray[np.float64]:
@@ -107,6 +116,7 @@ def tracks(
     dt: float,
     horizon: int,
     k0: int = 0,
+    origin: tuple[float, float] = (0.0, 0.0),
 ) -> Tracks:
     """Return tracks from means and covariances of the components that each target has.
 
@@ -117,6 +127,7 @@ def tracks(
         dt: step [s].
         horizon: steps to plan.
         k0: step of this estimate.
+        origin: a place not far from the targets [m], to which numbers are kept relative.
 
     Raises:
         InputError: lists of different lengths, wrong shapes, not finite, or a covariance that is not
@@ -141,8 +152,9 @@ def tracks(
             raise InputError(f"tracks: the covariance of target {t} is not symmetric and positive definite")
         information[t, :d, :d] = inverses(p[None])[0]
         state[t, :d] = x
+        state[t, :2] -= origin
     y = (information @ state[:, :, None])[:, :, 0]
-    return Tracks(k0, dt, horizon, tuple(models), information, y)
+    return Tracks(k0, dt, horizon, tuple(models), information, y, origin)
 
 
 def is_positive_definite(matrices: NDArray[np.float64]) -> bool:

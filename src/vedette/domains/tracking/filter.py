@@ -15,7 +15,7 @@ def predict(tracks: Tracks, steps: int = 1) -> Tracks:
 
     Goes by the moments, so that Q may be singular and a static target's is zero.
     """
-    means, (covariances, transitions, noises) = tracks.means, tracks.motion
+    means, (covariances, transitions, noises) = tracks.means - tracks.shift, tracks.motion
     for _ in range(steps):
         means = (transitions @ means[:, :, None])[:, :, 0]
         covariances = transitions @ covariances @ transitions.swapaxes(1, 2) + noises
@@ -30,7 +30,7 @@ def update(tracks: Tracks, information: NDArray[np.float64], vector: NDArray[np.
     Args:
         tracks: T targets.
         information: (T, 4, 4) sum over the platforms of ``H' R^-1 H``.
-        vector: (T, 4) sum over the platforms of ``H' R^-1 (z - h(x) + H x)``.
+        vector: (T, 4) sum over the platforms of ``H' R^-1 (z - h(x) + H (x - o))``, o the tracks' origin.
     """
     return replace(tracks, Y=tracks.Y + information, y=tracks.y + vector)
 

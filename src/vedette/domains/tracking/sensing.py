@@ -143,8 +143,9 @@ class Sensor(ABC):
         pose: ArrayLike,
         mean: ArrayLike,
         covariance: NDArray[np.float64] | None = None,
+        origin: ArrayLike = (0.0, 0.0),
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """``I = H' R^-1 H`` (4, 4) and ``i = H' R^-1 (z - a)`` (4,), with ``a = h(x) - H x``.
+        """``I = H' R^-1 H`` (4, 4) and ``i = H' R^-1 (z - a)`` (4,), with ``a = h(x) - H (x - o)``.
 
         Source: paper, eqs. (20) and (21). As printed, (21) has z for ``z - a``, which is right only where h
         is linear without an offset. With the estimate's covariance, mean and variance of what the line leaves
@@ -156,6 +157,7 @@ class Sensor(ABC):
             pose: (3,) at the time [m, m, rad].
             mean: (4,) estimate to linearise about.
             covariance: (4, 4) of that estimate.
+            origin: o (2,), to which ``i`` is relative [m].
         """
         at, x = np.asarray(pose, np.float64), np.asarray(mean, np.float64)
         expected, variances = self.predicted(at, x[:2]), self.deviations**2
@@ -166,7 +168,7 @@ class Sensor(ABC):
         H[:, :2] = self.jacobian(at, x[:2])
         weighted = H / variances[:, None]  # R^-1 H
         information = H.T @ weighted
-        z_less_a = self.innovation(measured, expected) + H @ x
+        z_less_a = self.innovation(measured, expected) + H[:, :2] @ (x[:2] - np.asarray(origin))
         return (information + information.T) / 2.0, weighted.T @ z_less_a
 
 
@@ -201,6 +203,7 @@ def evidence(
     measured: Mapping[int, NDArray[np.float64]],
     means: NDArray[np.float64],
     covariances: NDArray[np.float64] | None = None,
+    origin: ArrayLike = (0.0, 0.0),
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """What one platform's measurements of a step say about all targets: ``I`` (T, 4, 4) and ``i`` (T, 4).
 
@@ -209,9 +212,10 @@ def evidence(
         pose: (3,) at the step [m, m, rad].
         measured: by target; the others were not detected, and that says nothing.
         means, covariances: (T, 4) and (T, 4, 4) estimates at the step to linearise about.
+        origin: (2,) to which the vectors are relative [m].
     """
     information, vector = np.zeros((len(means), STATE, STATE)), np.zeros((len(means), STATE))
     for target, z in measured.items():
         covariance = None if covariances is None else covariances[target]
-        information[target], vector[target] = sensor.likelihood(z, pose, means[target], covariance)
+        information[target], vector[target] = sensor.likelihood(z, pose, means[target], covariance, origin)
     return information, vector

@@ -177,6 +177,6 @@ def _check_inside(what: str, place: Sequence[float], frame: GridFrame) -> None:
     if not frame.contains(place[0], place[1]):
         x0, x1, y0, y1 = frame.extent
         raise InputError(
-            f"{what}: {place[0]:g}, {place[1]:g} is outside the area; "
-            f"x is {x0:g} to {x1:g} m, y is {y0:g} to {y1:g} m"
+            f"{what}: {place[0]:.10g}, {place[1]:.10g} is outside the area; "
+            f"x is {x0:.10g} to {x1:.10g} m, y is {y0:.10g} to {y1:.10g} m"
         )

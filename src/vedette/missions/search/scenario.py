@@ -9,9 +9,8 @@ from msgspec import Meta, Struct, field
 
 from vedette.domains.search.worth import Worth, discounted, mean_time, plain
 from vedette.maps import GridFrame
+from vedette.scenario import Metre, Name
 
-Name = Annotated[str, Meta(pattern=r"^[A-Za-z0-9._-]{0,64}$")]
-Metre = Annotated[float, Meta(ge=-1e6, le=1e6)]
 Weight = Annotated[float, Meta(gt=0.0, le=1e9)]
 
 MOST_VEHICLES = 64

@@ -17,7 +17,7 @@ from vedette.missions.track.options import TrackOptions
 from vedette.missions.track.scenario import TrackScenario
 from vedette.missions.track.tracking import LookBounds, Tracking, TrackPlan
 
-_EXTENT = 10.0  # evidence holds up to so many times the area's farthest corner from the origin
+_EXTENT = 10.0  # evidence holds up to so many times the area's longer side from its corner
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +65,8 @@ class TrackTeam:
     @cached_property
     def bounds(self) -> LookBounds:
         """On everybody's likelihoods; the same for the whole team, which fusion sums exactly."""
-        extent = _EXTENT * max(1.0, *map(abs, self.scenario.area))
+        x0, y0, x1, y1 = self.scenario.area
+        extent = _EXTENT * max(x1 - x0, y1 - y0)
         each = [sensor.most_evidence(extent) for sensor in self.sensors]
         return LookBounds(max(matrix for matrix, _ in each), max(vector for _, vector in each))
 
@@ -95,5 +96,5 @@ class TrackTeam:
             most_matrix=self.bounds.matrix,
             most_vector=self.bounds.vector,
         )
-        plan = TrackPlan(prior.models, prior.dt, prior.horizon, self.lead)
+        plan = TrackPlan(prior.models, prior.dt, prior.horizon, self.lead, prior.origin)
         return Tracking(platform, plan, fusion, self.bounds, self.options.coordination != "shared")

@@ -19,10 +19,8 @@ from vedette.domains.tracking.models import STATE, TargetModel, constant_velocit
 from vedette.domains.tracking.sensing import Sensor
 from vedette.domains.tracking.sensors import sensor_of
 from vedette.errors import InputError
-from vedette.scenario import as_scenario, load_scenario
+from vedette.scenario import Metre, Name, as_scenario, load_scenario
 
-Name = Annotated[str, Meta(pattern=r"^[A-Za-z0-9._-]{0,64}$")]
-Metre = Annotated[float, Meta(ge=-1e6, le=1e6)]
 Numbers: TypeAlias = tuple[Annotated[float, Meta(ge=-1e12, le=1e12)], ...]
 
 MOST_VEHICLES, MOST_TARGETS = 64, 1000
@@ -125,6 +123,7 @@ class TrackScenario(Struct, forbid_unknown_fields=True, frozen=True, kw_only=Tru
             [_covariance(each) for each in self.targets],
             dt=self.step,
             horizon=self.horizon,
+            origin=self.area[:2],
         )
 
     def draw(self, rng: np.random.Generator) -> NDArray[np.float64]:
@@ -205,8 +204,8 @@ def _check_inside(what: str, place: Sequence[float], area: tuple[float, float, f
     x0, y0, x1, y1 = area
     if not (x0 <= place[0] <= x1 and y0 <= place[1] <= y1):
         raise InputError(
-            f"{what}: {place[0]:g}, {place[1]:g} is outside the area; "
-            f"x is {x0:g} to {x1:g} m, y is {y0:g} to {y1:g} m"
+            f"{what}: {place[0]:.10g}, {place[1]:.10g} is outside the area; "
+            f"x is {x0:.10g} to {x1:.10g} m, y is {y0:.10g} to {y1:.10g} m"
         )
 
 

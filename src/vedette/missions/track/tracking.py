@@ -38,6 +38,7 @@ class TrackPlan:
     dt: float  # step [s]
     horizon: int  # [steps]
     lead: float  # from freezing a round to the start of its plans, at least [s]
+    origin: tuple[float, float] = (0.0, 0.0)  # of the tracks' numbers, team frame [m]
 
     def step(self, time: float) -> int:
         """Return the step that a time [s] lies in; step k begins at ``k dt``."""
@@ -95,7 +96,9 @@ class Tracking(FlyingMission):
         at = np.array((pose.x, pose.y, pose.heading))
         measured = {t: z for t, z in seen.data.items() if self._has_a_line(at, known, t)}
         self.skipped += len(seen.data) - len(measured)
-        matrix, vector = evidence(self.vehicle.sensor, at, measured, known.means, known.covariances)
+        matrix, vector = evidence(
+            self.vehicle.sensor, at, measured, known.means, known.covariances, known.origin
+        )
         fits = (np.abs(matrix) <= self.bounds.matrix).all(axis=(1, 2))
         fits &= (np.abs(vector) <= self.bounds.vector).all(axis=1)
         self.skipped += int(np.count_nonzero(~fits))
@@ -126,7 +129,8 @@ class Tracking(FlyingMission):
         """Return the team's tracks as this vehicle knows them, at the step that fusion has come to."""
         step, estimate = self.fusion.estimate()
         team = self.team
-        return Tracks(step, team.dt, team.horizon, team.models, estimate.matrix, estimate.vector)
+        matrix, vector = estimate.matrix, estimate.vector
+        return Tracks(step, team.dt, team.horizon, team.models, matrix, vector, team.origin)
 
     # -- planning -----------------------------------------------------------------------------------
 
