@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 import itertools
+import os
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
 
 import pytest
 
-from tests.support.small_missions import robots, room_with_a_wall, run, two_rooms
+from tests.support.small_missions import robots, room_with_a_wall, run, small_office, two_rooms
+from vedette.maps import GridFrame
+from vedette.maps.world import World
 from vedette.team import PlatformSpec
+
+MAPS = Path(os.environ.get("MAPS", Path(__file__).parents[4] / "shared" / "maps"))
 
 
 def check_explored(resolution: float, view: float, beams: int, n: int) -> None:
@@ -53,3 +61,38 @@ def test_what_a_glance_from_afar_does_not_show_is_looked_at_from_close_by() -> N
 def test_every_view_and_number_of_beams_suffices(resolution: float, n: int) -> None:
     for view, beams in itertools.product((30, 60, 90, 180, 270, 360), (8, 16, 64, 360)):
         check_explored(resolution, view, beams, n)
+
+
+def finer(world: World, times: int) -> World:
+    """The same building in cells so many times smaller."""
+    frame, solid = world.frame, world.solid.repeat(times, 0).repeat(times, 1)
+    rows, cols = solid.shape
+    cells = replace(frame, resolution=frame.resolution / times, rows=rows, cols=cols)
+    return World(cells, solid, world.name)
+
+
+@cache
+def building(real: bool) -> World:
+    """A generated office, or the west end of a real building: rooms on a corridor, cupboards, a kitchen."""
+    if not real:
+        return small_office()
+    path = MAPS / "kth-50052751.yaml"
+    if not path.exists():
+        pytest.skip(f"no {path.name} in {MAPS}")
+    solid = World.from_map(path).solid[:, :260].copy()
+    return World(GridFrame(0.1, *solid.shape), solid, "kth")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("j", range(4))
+@pytest.mark.parametrize("i", range(7))
+def test_an_office_and_a_real_building_are_explored_and_what_is_left_is_said(i: int, j: int) -> None:
+    view, beams = (30, 45, 60, 90, 180, 270, 360)[i], (8, 16, 64, 360)[j]
+    world = finer(building((i + j // 2) % 2 == 1), 1 + (i + j) % 2)  # Latin squares over these
+    n = (1, 3)[(i + j + j // 2) % 2]
+    _, report = run(world, robots(n, view=float(view), beams=beams), seed=2, max_time=7200.0)
+    summary = report.summary
+    assert summary.coverage >= 0.99
+    assert summary.collisions == 0
+    unreached = any(spot.why == "unreached" for spot in summary.left_out)
+    assert summary.outcome.value == ("unreached" if unreached else "complete")
