@@ -10,6 +10,7 @@ from typing import Any
 import yaml
 
 from vedette.errors import InputError
+from vedette.file_kind import check_kind
 from vedette.input_file import open_input
 
 _MOST = 1_000_000  # [characters]
@@ -110,9 +111,9 @@ def read_yaml(path: Path, what: str, remedy: str) -> Any:
     Raises:
         InputError: unreadable, no file, longer than a million characters, or not YAML; or it holds half a
             character (``"\\ud800"``), a key twice, a tag, a second document, or references (``*name``) that
-            stand for very much or for themselves.
+            stand for very much or for themselves; or it is plainly another kind of file.
     """
-    return _parsed(yaml_text(path, what, remedy), path, remedy, _Loader)
+    return _parsed(path, what, remedy, _Loader)
 
 
 def read_yaml_texts(path: Path, what: str, remedy: str) -> Any:
@@ -123,7 +124,7 @@ def read_yaml_texts(path: Path, what: str, remedy: str) -> Any:
     Raises:
         InputError: as :func:`read_yaml`, but for tags and other documents.
     """
-    return _parsed(yaml_text(path, what, remedy), path, remedy, _TextLoader)
+    return _parsed(path, what, remedy, _TextLoader)
 
 
 def yaml_text(path: Path, what: str, remedy: str = "write less") -> str:
@@ -152,7 +153,14 @@ def _decoded(raw: bytes) -> str:
         return raw.decode("cp1252", errors="replace")
 
 
-def _parsed(text: str, path: Path, remedy: str, kind: type[_Loader]) -> Any:
+def _parsed(path: Path, what: str, remedy: str, kind: type[_Loader]) -> Any:
+    """Return what a file of the kind that was asked for says."""
+    content = _content(yaml_text(path, what, remedy), path, remedy, kind)
+    check_kind(content, what, path)
+    return content
+
+
+def _content(text: str, path: Path, remedy: str, kind: type[_Loader]) -> Any:
     try:
         loader: Any = kind(text)
         content = loader.get_data() if loader.check_data() else None

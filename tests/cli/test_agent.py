@@ -56,9 +56,9 @@ def config(folder: Path, name: str = "robot.yaml", **changes: Any) -> Path:
 
 
 MISTAKES: list[tuple[dict[str, Any], str]] = [
-    ({"robot": 0}, "robot: expected `int` >= 1; it is 0"),
+    ({"robot": 0}, "robot: must be a whole number from 1 to 65536; got 0"),
     ({"robt": 2}, "unknown field 'robt'; did you mean 'robot'?"),
-    ({"robots": 0}, "robots: expected `int` >= 1"),
+    ({"robots": 0}, "robots: must be a whole number from 1 to 65536"),
     ({"team": "a/b"}, "team must be 1 to 32 letters"),
     ({"team": "garden"}, "is of team 'office', not 'garden'"),
     ({"robot": 2}, "is for office/robot-1, not for office/robot-2"),
@@ -72,12 +72,12 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
     ({"links": {"listen": ["tls/198.51.100.7:7447"]}}, "this machine has no such address"),
     ({"links": {"connect": ["tls/0.0.0.0:7447"]}}, "name the other robot's host"),
     ({"links": {"connect": ["tls/no-such-host.invalid:7447"]}}, "cannot connect to tls/no-such-host"),
-    ({"links": {"lease": 0.01}}, "links.lease: expected `float` >= 0.2"),
+    ({"links": {"lease": 0.01}}, "links.lease: must be a number from 0.2 to 60"),
     ({"explore": {"planner": "tour"}}, "explore.planner: unknown planner 'tour'; did you mean 'tours'?"),
     ({"explore": {"scheme": "tokens"}}, "explore.scheme: unknown scheme 'tokens'"),
     ({"explore": {"fusion": "none"}}, "explore.fusion: unknown fusion 'none'"),
     ({"body": {"map": "no-map.yaml"}}, "no-map.yaml"),
-    ({"body": {"start": [1.0, 1.0]}}, "body.start: expected `array` of length 3"),
+    ({"body": {"start": [1.0, 1.0]}}, "body.start: must be a list of 3 numbers"),
     ({"body": {"start": [100.0, 1.0, 0.0]}}, "start 100,1 is outside the map"),
     ({"body": {"speed": -1.0}}, "speed must be 0.01 to 10 m/s; got -1.0"),
     ({"body": {"map": None}}, "body.map: missing; name the world"),

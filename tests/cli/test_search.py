@@ -203,7 +203,7 @@ GAUSSIAN = SMALL["prior"][0]
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"prior": []}, ["prior", "length >= 1"]),
+        ({"prior": []}, ["prior", "1 to 1000 entries"]),
         ({"prior": [{"type": "gaussain", "mean": [1, 1]}]}, ["prior[0].type", "gaussain", "'gaussian'"]),
         ({"prior": [GAUSSIAN | {"sigma": -5}]}, ["prior[0].sigma", "-5"]),
         ({"prior": [GAUSSIAN | {"sigma": float("nan")}]}, ["prior[0].sigma", "finite"]),
@@ -217,7 +217,7 @@ GAUSSIAN = SMALL["prior"][0]
             {"prior": [{"type": "gaussian", "mean": [500, 400], "covariance": [[1, 2], [2, 1]]}]},
             ["prior[0]", "positive definite"],
         ),
-        ({"prior": [{"type": "polygon", "corners": [[0, 0], [9, 9]]}]}, ["prior[0].corners", "length >= 3"]),
+        ({"prior": [{"type": "polygon", "corners": [[0, 0], [9, 9]]}]}, ["prior[0].corners", "3 or more"]),
         (
             {"prior": [{"type": "polygon", "corners": [[-90, -90], [-50, -90], [-50, -50]]}]},
             ["prior[0]", "nothing of the polygon"],
@@ -232,9 +232,9 @@ GAUSSIAN = SMALL["prior"][0]
             {"vehicles": [ONE | {"detector": {"type": "exponential", "sigma": -1}}]},
             ["vehicles[0].detector", "-1"],
         ),
-        ({"vehicles": []}, ["vehicles", "length >= 1"]),
+        ({"vehicles": []}, ["vehicles", "1 to 64 entries"]),
         ({"vehicles": [ONE | {"start": [5000, 100, 0]}]}, ["vehicles[0].start", "5000", "outside"]),
-        ({"vehicles": [ONE | {"start": [100, 100]}]}, ["vehicles[0].start", "length 3"]),
+        ({"vehicles": [ONE | {"start": [100, 100]}]}, ["vehicles[0].start", "a list of 3 numbers"]),
         ({"vehicles": [ONE | {"spede": 30}]}, ["vehicles[0]", "spede", "'speed'"]),
         ({"vehicles": [ONE | {"turn_rate": 0}]}, ["vehicles[0].turn_rate", "0"]),
         ({"vehicles": [ONE | {"name": "a"}, ONE | {"name": "a"}]}, ["vehicles[1].name", "twice"]),

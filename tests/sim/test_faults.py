@@ -197,15 +197,18 @@ def test_a_seed_gives_its_schedule_and_seeds_give_all_kinds() -> None:
 
 MISTAKES = {
     "at: 1, fault: crash, robot: 4": "faults[1].robot: there is no robot 4; they are 1 to 3",
-    "at: 1, fault: crash, robot: 0": "faults[1].robot: expected `int` >= 1; it is 0",
+    "at: 1, fault: crash, robot: 0": "faults[1].robot: must be a whole number >= 1; got 0",
     "at: 1, fault: crahs, robot: 1": "faults[1].fault: unknown fault 'crahs'; did you mean 'crash'?",
     "at: 1, fault: crash, robto: 1": "faults[1]: unknown field 'robto'; did you mean 'robot'?",
-    "at: 1, robot: 1": "faults[1]: object missing required field `fault`",
-    "fault: crash, robot: 1": "faults[1]: object missing required field `at`",
-    "at: -1, fault: heal": "faults[1].at: expected `float` >= 0.0; it is -1",
+    "at: 1, robot: 1": (
+        "faults[1]: fault is missing; add it, one of loss, delay, duplicate, one-way, cut, partition, heal, "
+        "crash, restart, freeze, skew"
+    ),
+    "fault: crash, robot: 1": "faults[1]: at is missing; add it, a number from 0 to 86400",
+    "at: -1, fault: heal": "faults[1].at: must be a number from 0 to 86400; got -1",
     "at: .inf, fault: heal": "faults[1].at: must be a finite number; got inf",
-    "at: 1, fault: loss, share: 1.5": "faults[1].share: expected `float` <= 1.0; it is 1.5",
-    "at: 1, fault: loss, share: 0.5, for: 0": "faults[1].for: expected `float` > 0.0; it is 0",
+    "at: 1, fault: loss, share: 1.5": "faults[1].share: must be a number from 0 to 1; got 1.5",
+    "at: 1, fault: loss, share: 0.5, for: 0": "faults[1].for: must be a number > 0 and <= 86400; got 0",
     "at: 1, fault: delay, between: [0.3, 0.1]": (
         "faults[1].between: shortest and longest delay in this order; it is [0.3, 0.1]"
     ),
@@ -231,7 +234,7 @@ MISTAKES = {
     "at: 7, fault: freeze, robot: 3, for: 1": (
         "faults[1].robot: robot 3 is frozen until 8 s; freeze it after that"
     ),
-    "at: 1, fault: freeze, robot: 3": "faults[1]: object missing required field `for`",
+    "at: 1, fault: freeze, robot: 3": "faults[1]: for is missing; add it, a number > 0 and <= 86400",
     "at: 1, fault: skew, robot: 3, s: 2": (
         "faults[1].s: a running clock does not jump; give s at 0 s, or ppm alone (at is 1 s)"
     ),
@@ -255,7 +258,9 @@ def test_what_is_neither_file_nor_seed_is_told_in_one_line(tmp_path: Path) -> No
     for text in ("storm.yaml", "-3", "1.5", "", str(tmp_path)):
         with pytest.raises(InputError, match=r"--faults .*: neither a file that is there nor a seed"):
             load_faults(text, 3)
-    with pytest.raises(InputError, match=r"storm.yaml: object missing required field `faults`"):
+    with pytest.raises(
+        InputError, match=r"storm.yaml: faults is missing; add it, a list of at most 10000 entries"
+    ):
         load(tmp_path, "")
     with pytest.raises(InputError, match=r"the duration of random faults must be 1 to 86400 s; got 0.5"):
         load_faults("7", 3, 0.5)

@@ -54,11 +54,11 @@ FIELDS: list[tuple[dict[str, Any], str]] = [
     ({"faults": 7}, "faults is 7; give a Schedule, or None"),
     (
         {"faults": Schedule((Loss(at=-1.0, share=0.5),))},
-        "faults: faults[0].at: expected `float` >= 0.0; it is -1.0",
+        "faults: faults[0].at: must be a number from 0 to 86400; got -1.0",
     ),
     (
         {"faults": Schedule((Loss(at=1.0, share=float("nan")),))},
-        "faults: faults[0].share: expected `float` >= 0.0; it is nan",
+        "faults: faults[0].share: must be a number from 0 to 1; got nan",
     ),
 ]
 

@@ -162,12 +162,12 @@ def test_kills_radio_and_faults_are_read_for_each_team(tmp_path: Path) -> None:
 
 MISTAKES = {
     "planners: [turs]\nworlds: [{kind: maze}]": "planners: unknown planner 'turs': did you mean 'tours'?",
-    "planners: []": "planners: expected `array` of length >= 1; it is []",
+    "planners: []": "planners: must be a list of 1 or more words; got []",
     "planners: [tours]": "nothing to explore; list generated ones under worlds, or files under maps",
     "planners: [tours]\nworlds: [{kind: ofice}]": "worlds[0].kind: unknown kind 'ofice'; did you mean",
     "planners: [tours]\nworlds: [{kind: maze, width: 3}]": "worlds[0]: width of a generated world must be",
     "planners: [tours]\nmaps: [{file: nowhere.yaml}]": "maps[0]: cannot read map",
-    "planners: [tours]\nworlds: [{kind: maze}]\nrobots: [0]": "robots[0]: expected `int` >= 1; it is 0",
+    "planners: [tours]\nworlds: [{kind: maze}]\nrobots: [0]": "robots[0]: must be a whole number from 1",
     "planners: [tours]\nworlds: [{kind: maze}]\nplatform: {rnage: 3}": "platform: unknown field 'rnage'; did",
     "planners: [tours]\nworlds: [{kind: maze}]\nplatform: {range: [4, 900]}": "range must be 0.2 to 200 m",
     "planners: [tours]\nworlds: [{kind: maze}]\nsetup: {seed: 3}": "setup: unknown field 'seed'",

@@ -9,7 +9,6 @@ import click
 
 from vedette.cli.exploring import EXPLORING, exploring_options, team_named, world_named
 from vedette.cli.options import Output, fault_options, output_options
-from vedette.cli.pairs import check_scheme
 from vedette.cli.running import simulate
 from vedette.run import Explore
 from vedette.run.inputs import files_of
@@ -33,7 +32,6 @@ def explore(
     MAP is a ROS map_server .yaml, or an image together with --resolution; without it, a generated office of
     30 x 20 m. Exit status: 0 complete, 1 incomplete, 2 bad input, 130 interrupted.
     """
-    check_scheme(options["planner"], options["scheme"])
     world, specs = world_named(map_path, resolution), team_named(team, robots, starts)
     mission = Explore(world, specs, **options)
     mission.inputs += files_of(None, team)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
@@ -11,11 +12,11 @@ from typing import Any, TypeVar
 import click
 
 from vedette.cli.options import FILE, OneOf, Positive, seed_option, with_options
-from vedette.cli.pairs import tell_moved
 from vedette.cli.running import Kind
 from vedette.domains.mapping.planners import DEFAULT, PLANNERS
-from vedette.errors import InputError
+from vedette.errors import InputError, InputWarning
 from vedette.missions.explore.assemble import FUSIONS
+from vedette.missions.pairs import SCHEME
 from vedette.negotiation import SCHEMES
 from vedette.record.explore.live import ExploreDisplay
 from vedette.record.explore.mcap import ExploreMcapWriter
@@ -62,7 +63,9 @@ def exploring_options(command: CommandT) -> CommandT:
             help="How the team decides.",
         ),
         click.option(
-            "--scheme", type=OneOf(SCHEMES), default="token", show_default=True, help="How it negotiates."
+            "--scheme",
+            type=OneOf(SCHEMES),
+            help=f"How it negotiates.  [default: {SCHEME}, or the planner's own]",
         ),
         click.option(
             "--fusion",
@@ -108,13 +111,21 @@ def team_named(team: Path | None, robots: int | None, starts: str | None) -> lis
         specs = load_team(team)
         if robots is not None and robots > len(specs):
             raise InputError(f"--robots is {robots}, but {team} lists {len(specs)}; add platforms to it")
-        specs = specs[:robots]
+        specs, rest = specs[:robots], specs[robots:] if robots is not None else []
+        if rest:
+            _say(f"--robots {robots} leaves out {', '.join(spec.name for spec in rest)} of {team}")
     else:
         specs = list(team_of(robots or len(places) or ROBOTS))
     if len(places) > len(specs):
         raise InputError(f"--starts has {len(places)} places for {len(specs)} robots; leave some out")
-    tell_moved(places, specs)
+    moved = [spec.name for spec, _ in zip(specs, places, strict=False) if spec.start is not None]
+    if moved:
+        _say(f"--starts replaces the team file's start of {', '.join(moved)}")
     return [replace(spec, start=places[i]) if i < len(places) else spec for i, spec in enumerate(specs)]
+
+
+def _say(text: str) -> None:
+    warnings.warn(text, InputWarning, stacklevel=3)
 
 
 def closing(summary: ExploreSummary, folder: Path) -> list[str]:

@@ -8,7 +8,6 @@ from typing import Any
 import click
 
 from vedette.cli.options import Output, fault_options, output_options
-from vedette.cli.pairs import tell_duration, tell_what_needs_links
 from vedette.cli.running import Say, simulate
 from vedette.cli.searching import SEARCHING, searching_options
 from vedette.record.search.observer import SearchReport
@@ -37,8 +36,6 @@ def search(
     found in time or declared where it is not, 2 bad input, 130 interrupted.
     """
     mission = Search(scenario_path, **options)
-    tell_what_needs_links(options["coordination"])
-    tell_duration(options["max_time"], mission.case.scenario.duration)
 
     def beside(report: SearchReport, say: Say) -> SearchReport:
         return mission.assessed(report, not no_compare, trials, say)

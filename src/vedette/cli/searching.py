@@ -10,6 +10,7 @@ import click
 
 from vedette.cli.options import FILE, OneOf, Positive, seed_option, with_options
 from vedette.cli.running import Kind
+from vedette.missions.pairs import SCHEME
 from vedette.missions.search.options import COORDINATIONS, FUSIONS
 from vedette.negotiation import SCHEMES
 from vedette.record.search.live import search_display
@@ -34,9 +35,7 @@ def searching_options(command: CommandT) -> CommandT:
             show_default=True,
             help="What the vehicles tell each other: nothing, what they see, or also what they mean to do.",
         ),
-        click.option(
-            "--scheme", type=OneOf(SCHEMES), default="token", show_default=True, help="How they negotiate."
-        ),
+        click.option("--scheme", type=OneOf(SCHEMES), help=f"How they negotiate.  [default: {SCHEME}]"),
         click.option(
             "--fusion",
             type=OneOf(FUSIONS),

@@ -15,7 +15,6 @@ import numpy as np
 
 from vedette.cli.exploring import EXPLORING, exploring_options, team_named, world_named
 from vedette.cli.options import Output, Positive, output_options, with_options
-from vedette.cli.pairs import check_scheme, tell_duration, tell_what_needs_links
 from vedette.cli.running import ReportT
 from vedette.cli.searching import SEARCHING, searching_options
 from vedette.cli.staging import Stage
@@ -23,6 +22,7 @@ from vedette.cli.tracking import TRACKING, tracking_options
 from vedette.errors import InputError
 from vedette.interrupt import ending_on_ctrl_c
 from vedette.missions.explore.options import ExploreOptions
+from vedette.missions.pairs import scheme_of, tell_duration, tell_unheeded, tell_unsaid
 from vedette.missions.search.assemble import SearchTeam
 from vedette.missions.search.options import SearchOptions
 from vedette.missions.track.assemble import TrackTeam
@@ -91,7 +91,7 @@ def explore(
     starts: str | None,
     seed: int,
     planner: str,
-    scheme: str,
+    scheme: str | None,
     fusion: str,
     max_time: float,
     return_home: bool,
@@ -105,10 +105,11 @@ def explore(
     Keys are made for the occasion. MAP and the outputs are as for `vedette explore`. Every robot simulates
     its own body. Exit status: 0 complete, 1 incomplete, 2 bad input, 130 interrupted.
     """
-    check_scheme(planner, scheme)
+    agreed = scheme_of(planner, scheme)
     world, specs = world_of(world_named(map_path, resolution), seed), team_named(team, robots, starts)
+    tell_unheeded(planner, len(specs), scheme, fusion=fusion, lease=lease)
     places = choose_starts(world, specs, np.random.default_rng([seed, 1]))
-    options = ExploreOptions(planner, scheme, fusion, return_home)
+    options = ExploreOptions(planner, agreed, fusion, return_home)
     plan = ExplorePlan(world, specs, places, options, seed, speed, lease)
     run = _Processes(plan, max_time, schedule_of(faults, plan.size, clocks=False))
     setting = Setting(seed=seed, faults=faults)
@@ -128,7 +129,7 @@ def track(
     scenario_path: Path | None,
     seed: int,
     coordination: str,
-    scheme: str,
+    scheme: str | None,
     fusion: str,
     objective: str | None,
     continuous: bool,
@@ -146,7 +147,7 @@ def track(
     if coordination == "optimum":
         raise InputError("--coordination optimum: nobody on a network can work it out; see `vedette track`")
     scenario, name = scenario_of(scenario_path)
-    tell_what_needs_links(coordination)
+    tell_unsaid(coordination, len(scenario.vehicles), scheme, fusion=fusion, lease=lease)
     tell_duration(max_time, scenario.duration)
     options = TrackOptions(coordination, scheme, fusion, objective, continuous)
     plan = FlightsPlan("track", options, scenario_path, len(scenario.vehicles), seed, speed, lease)
@@ -170,7 +171,7 @@ def search(
     scenario_path: Path | None,
     seed: int,
     coordination: str,
-    scheme: str,
+    scheme: str | None,
     fusion: str,
     max_time: float | None,
     speed: float,
@@ -184,7 +185,7 @@ def search(
     status: 0 found, 1 not found in time or declared where it is not, 2 bad input, 130 interrupted.
     """
     case = case_of(scenario_path)
-    tell_what_needs_links(coordination)
+    tell_unsaid(coordination, len(case.names), scheme, fusion=fusion, lease=lease)
     tell_duration(max_time, case.scenario.duration)
     options = SearchOptions(coordination, scheme, fusion)
     plan = FlightsPlan("search", options, scenario_path, len(case.names), seed, speed, lease)

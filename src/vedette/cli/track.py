@@ -8,7 +8,6 @@ from typing import Any
 import click
 
 from vedette.cli.options import Output, fault_options, output_options
-from vedette.cli.pairs import tell_duration, tell_what_needs_links
 from vedette.cli.running import simulate
 from vedette.cli.tracking import TRACKING, tracking_options
 from vedette.run import Track
@@ -27,7 +26,5 @@ def track(scenario_path: Path | None, output: Output, no_compare: bool, **option
     1 incomplete, 2 bad input, 130 interrupted.
     """
     mission = Track(scenario_path, **options)
-    tell_what_needs_links(options["coordination"])
-    tell_duration(options["max_time"], mission.scenario.duration)
     beside = (lambda report, say: report) if no_compare else mission.compared
     simulate(TRACKING, mission, mission.scene, output, beside)

@@ -12,6 +12,7 @@ from vedette.cli.options import FILE, OneOf, Positive, seed_option, with_options
 from vedette.cli.running import Kind
 from vedette.domains.tracking.objective import OBJECTIVES
 from vedette.fusion.gaussian import WAYS
+from vedette.missions.pairs import SCHEME
 from vedette.missions.track.options import COORDINATIONS
 from vedette.negotiation import SCHEMES
 from vedette.record.track.live import track_display
@@ -36,9 +37,7 @@ def tracking_options(command: CommandT) -> CommandT:
             show_default=True,
             help="How the vehicles decide.",
         ),
-        click.option(
-            "--scheme", type=OneOf(SCHEMES), default="token", show_default=True, help="How they negotiate."
-        ),
+        click.option("--scheme", type=OneOf(SCHEMES), help=f"How they negotiate.  [default: {SCHEME}]"),
         click.option(
             "--fusion",
             type=OneOf(WAYS),

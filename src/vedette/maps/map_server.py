@@ -50,7 +50,7 @@ def read_map(path: Path | str, resolution: float | None = None) -> tuple[GridFra
         return _read_plain(path, resolution)
     meta = read_meta(path)
     if resolution is not None and meta.resolution not in (None, resolution):
-        said = f"--resolution {resolution:g} replaces that of {path}, {meta.resolution:g} m"
+        said = f"resolution {resolution:g} replaces that of {path}, {meta.resolution:g} m"
         warnings.warn(said, InputWarning, stacklevel=2)
     resolution = resolution if resolution is not None else meta.resolution
     if resolution is None:

@@ -158,9 +158,10 @@ def _check_missions(config: AgentConfig) -> None:
 def _check_explore(config: AgentConfig) -> None:
     options = config.explore or ExploreOptions()
     _check_word("explore.planner", options.planner, list(PLANNERS))
-    _check_word("explore.scheme", options.scheme, SCHEMES)
+    _check_scheme("explore", options.scheme)
     _check_word("explore.fusion", options.fusion, list(FUSIONS))
     planner(options.planner, config.robots)
+    _ = options.negotiates_by
     if config.body.map is None:
         raise InputError("body.map: missing; name the world that the robot is simulated in")
     if config.body.start is None:
@@ -168,6 +169,8 @@ def _check_explore(config: AgentConfig) -> None:
     config.body.spec(f"robot-{config.robot}")
     if config.scenario is not None:
         raise InputError("scenario: is for vehicles that track or search; leave it out")
+    if config.links.delay != LinkSettings().delay:
+        raise InputError("links.delay: is for vehicles, which reckon with it; leave it out")
     if config.faults is not None and config.begins is None:
         raise InputError("begins: missing; faults need the time at which the mission begins")
 
@@ -181,7 +184,7 @@ def _check_flight(config: AgentConfig) -> None:
         else (search_options.COORDINATIONS, search_options.FUSIONS)
     )
     _check_word(f"{mission}.coordination", options.coordination, coordinations)
-    _check_word(f"{mission}.scheme", options.scheme, SCHEMES)
+    _check_scheme(mission, options.scheme)
     _check_word(f"{mission}.fusion", options.fusion, fusions)
     if config.begins is None:
         raise InputError(
@@ -190,6 +193,16 @@ def _check_flight(config: AgentConfig) -> None:
         )
     if config.body.map is not None:
         raise InputError("body.map: vehicles fly over their scenario's area; leave it out")
+    for name in ("resolution", *OF_BODY):
+        if getattr(config.body, name) != getattr(BodySettings(), name):
+            raise InputError(f"body.{name}: the scenario says how each vehicle is; leave it out")
+    if config.best is not None:
+        raise InputError("best: the scenario says how each vehicle is; leave it out")
+
+
+def _check_scheme(mission: str, scheme: str | None) -> None:
+    if scheme is not None:
+        _check_word(f"{mission}.scheme", scheme, SCHEMES)
 
 
 def _check_word(where: str, word: str, words: Sequence[str]) -> None:

@@ -8,6 +8,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from vedette.agent import NetworkedAgent
+from vedette.missions.pairs import tell_unheeded, tell_unsaid
 from vedette.net.clock import MissionClock
 from vedette.net.config import AgentConfig, access_of
 from vedette.net.explore.robot import explorer
@@ -43,6 +44,7 @@ def agent_process(config: AgentConfig, folder: Path, speed: float) -> AgentProce
     Raises:
         InputError: the map, the scenario, the start, the keys or an endpoint cannot be used.
     """
+    _tell_what_is_in_vain(config)
     now = datetime.now(UTC)
     index = config.robot - 1
     begins = None if config.begins is None else time.monotonic() + (config.begins - now).total_seconds()
@@ -56,3 +58,11 @@ def agent_process(config: AgentConfig, folder: Path, speed: float) -> AgentProce
     node = NetworkedAgent(robot.agent, time.monotonic(), lease=config.links.lease, mission_time=clock.shows)
     witness = Witness(node, robot.body, transport, robot.teller, robot_name(index))
     return AgentProcess(node, robot.body, robot.shown, transport, inbox, witness, clock, staged)
+
+
+def _tell_what_is_in_vain(config: AgentConfig) -> None:
+    """Say which of its options a robot's mission makes nothing of; ``robots`` 0: as many as there are."""
+    if (options := config.track or config.search) is not None:
+        tell_unsaid(options.coordination, 0, options.scheme, fusion=options.fusion)
+    elif config.explore is not None:
+        tell_unheeded(config.explore.planner, 0, config.explore.scheme)

@@ -14,6 +14,7 @@ from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.planners import DEFAULT
 from vedette.domains.mapping.platform import Tour
 from vedette.maps import GridFrame
+from vedette.missions.pairs import tell_unheeded
 from vedette.record.explore.log import ExploreLog, ExploreScene, ExploreSnapshot
 from vedette.record.explore.mcap import ExploreMcapWriter
 from vedette.record.explore.observer import ExploreReport
@@ -25,6 +26,7 @@ from vedette.run.inputs import (
     AnyWorld,
     Conditions,
     files_of,
+    links_of,
     setup_of,
     team_of,
     world_of,
@@ -74,7 +76,7 @@ class Explore(_Mission):
         seed: int = 0,
         *,
         planner: str = DEFAULT,
-        scheme: str = "token",
+        scheme: str | None = None,
         fusion: str = "replicated",
         max_time: float = 3600.0,
         return_home: bool = False,
@@ -106,6 +108,7 @@ class Explore(_Mission):
             fusion=fusion,
             return_home=return_home,
         )
+        tell_unheeded(setup.planner, len(specs), **links_of(setup))
         self.world = world_of(world, setup.seed)
         self.simulation = prepare(self.world, specs, setup)
         self.scene = ExploreScene.of(self.world, [spec.name for spec in specs])

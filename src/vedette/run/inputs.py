@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from vedette.errors import InputError, brief
 from vedette.maps import GridFrame, map_files
 from vedette.maps.world import World
+from vedette.missions.pairs import tell_too_late
 from vedette.number import is_number, is_whole
 from vedette.scenario import as_scenario
 from vedette.sim.faults import Schedule, load_faults
@@ -43,7 +44,7 @@ class Conditions(TypedDict, total=False):
 def setup_of(
     robots: int,
     *,
-    scheme: str,
+    scheme: str | None,
     seed: int,
     max_time: float,
     clocks: bool = False,
@@ -59,7 +60,7 @@ def setup_of(
         InputError: as `Setup`, or no radio or no faults can be made of what is given.
     """
     text = None if faults is None else str(faults)
-    return Setup(
+    setup = Setup(
         scheme=scheme,
         seed=seed,
         max_time=max_time,
@@ -70,6 +71,15 @@ def setup_of(
         faults=schedule_of(text, robots, clocks),
         faults_from=text,
     )
+    if faults is None:
+        _check_deaths(setup.kills)
+    tell_too_late(setup.kills, setup.max_time)
+    return setup
+
+
+def links_of(setup: Setup) -> dict[str, Any]:
+    """Return how a mission's robots tell each other anything, by the names of a caller's options."""
+    return {name: getattr(setup, name) for name in ("scheme", "fusion", "radio", "link_delay", "link_loss")}
 
 
 def schedule_of(text: str | None, robots: int, clocks: bool) -> Schedule | None:
@@ -87,6 +97,14 @@ def schedule_of(text: str | None, robots: int, clocks: bool) -> Schedule | None:
     if text.strip().isdecimal():  # a seed asks for chance, within what can be
         return Schedule(tuple(right))
     raise InputError(f"{text}: fault skew: vehicles plan by a common clock; leave it out")
+
+
+def _check_deaths(kills: Sequence[tuple[int, float]]) -> None:
+    """Refuse to kill a robot that is dead; only a schedule of faults starts one anew."""
+    robots = [robot for robot, _ in kills]
+    for robot in robots:
+        if robots.count(robot) > 1:
+            raise InputError(f"kills: robot {robot + 1} dies twice; keep one")
 
 
 def _kill(kill: tuple[int, float], robots: int) -> tuple[int, float]:

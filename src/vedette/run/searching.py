@@ -15,6 +15,7 @@ from vedette.domains.search.flights import Flight
 from vedette.domains.search.impact import Impact
 from vedette.interrupt import ending_on_ctrl_c
 from vedette.maps import GridFrame
+from vedette.missions.pairs import tell_duration, tell_unsaid
 from vedette.missions.search.case import SearchCase, default_case, made, read_case
 from vedette.missions.search.scenario import Heat, SearchScenario
 from vedette.number import is_number
@@ -22,7 +23,7 @@ from vedette.record.search.log import SearchLog, SearchScene, SearchSnapshot
 from vedette.record.search.mcap import SearchMcapWriter
 from vedette.record.search.observer import SearchReport
 from vedette.record.search.summary import SearchSummary
-from vedette.run.inputs import AnyPath, Conditions, described, files_of, setup_of
+from vedette.run.inputs import AnyPath, Conditions, described, files_of, links_of, setup_of
 from vedette.run.mission import Followers, ProgressSink, StepwiseMission
 from vedette.run.result import MissionResult
 from vedette.sim.search.run import SearchRun
@@ -69,7 +70,7 @@ class Search(_Mission):
         seed: int = 0,
         *,
         coordination: str = "negotiated",
-        scheme: str = "token",
+        scheme: str | None = None,
         fusion: str = "replicated",
         max_time: float | None = None,
         record: AnyPath | None = None,
@@ -96,6 +97,8 @@ class Search(_Mission):
             coordination=coordination,
             fusion=fusion,
         )
+        tell_unsaid(setup.coordination, len(self.case.names), **links_of(setup))
+        tell_duration(max_time, longest)
         self.simulation = SearchSimulation(self.case, setup)
         self.scene = SearchScene.of(self.case, limit)
         self._trials = Running()

@@ -16,12 +16,13 @@ from vedette.domains.tracking.courses import Course
 from vedette.domains.tracking.filter import predict
 from vedette.domains.tracking.impact import Impact
 from vedette.interrupt import ending_on_ctrl_c
+from vedette.missions.pairs import tell_duration, tell_unsaid
 from vedette.missions.track.scenario import TrackScenario, checked, default_scenario, read_scenario
 from vedette.record.track.log import TrackLog, TrackScene, TrackSnapshot
 from vedette.record.track.mcap import TrackMcapWriter
 from vedette.record.track.observer import TrackReport
 from vedette.record.track.summary import TrackSummary
-from vedette.run.inputs import AnyPath, Conditions, described, files_of, setup_of
+from vedette.run.inputs import AnyPath, Conditions, described, files_of, links_of, setup_of
 from vedette.run.mission import Followers, ProgressSink, StepwiseMission
 from vedette.run.result import MissionResult
 from vedette.sim.track.run import TrackRun, compared
@@ -73,7 +74,7 @@ class Track(_Mission):
         seed: int = 0,
         *,
         coordination: str = "negotiated",
-        scheme: str = "token",
+        scheme: str | None = None,
         fusion: str = "replicated",
         objective: str | None = None,
         continuous: bool = False,
@@ -106,6 +107,8 @@ class Track(_Mission):
             objective=objective,
             continuous=continuous,
         )
+        tell_unsaid(setup.coordination, size, **links_of(setup))
+        tell_duration(max_time, self.scenario.duration)
         self.simulation = TrackSimulation(self.scenario, setup)
         self.scene = TrackScene.of(self.scenario, name)
         followers = Followers[TrackSnapshot]()

@@ -23,7 +23,7 @@ class Setup:
         InputError: an unknown scheme, or a number that is none or out of its range; the line names the field.
     """
 
-    scheme: str = "token"
+    scheme: str | None = None  # None: the planner's own, or token
     seed: int = 0
     max_time: float = 3600.0  # [s]
     link_delay: float = 0.02  # [s]
@@ -34,7 +34,8 @@ class Setup:
     faults_from: str | None = None  # the schedule's file or seed
 
     def __post_init__(self) -> None:
-        check_word("scheme", self.scheme, SCHEMES)
+        if self.scheme is not None:
+            check_word("scheme", self.scheme, SCHEMES)
         if not is_whole(self.seed) or self.seed < 0:
             raise InputError(f"seed must be a whole number >= 0; got {brief(self.seed)}")
         for name, time in (("max_time", self.max_time), ("link_delay", self.link_delay)):

@@ -12,6 +12,7 @@ from typing import Any
 from vedette.domains.mapping.planners import planner
 from vedette.errors import InputError, check_limits, check_word
 from vedette.missions.explore.assemble import FUSIONS
+from vedette.missions.pairs import scheme_of, tell_unheeded
 from vedette.scenario import as_scenario
 from vedette.sim.explore.simulation import ExploreSetup
 from vedette.sim.faults import Schedule, load_faults
@@ -44,6 +45,8 @@ def runs_of(spec: Spec, path: Path) -> list[Run]:
     count = math.prod(len(axis) for axis in axes)
     if count > MOST_RUNS:
         raise InputError(f"{path}: {count} runs are too many, at most {MOST_RUNS}; shorten a list")
+    for setup, name in itertools.product(choices, spec.planners):
+        _check_scheme(setup.get("scheme"), name, path)
     setups = {robots: [_setup(fields, path, robots) for fields in choices] for robots in spec.robots}
     runs = (
         Run(world, robots, starts, platform, replace(setup, planner=name, seed=seed))
@@ -52,6 +55,15 @@ def runs_of(spec: Spec, path: Path) -> list[Run]:
         for setup, name in itertools.product(setups[robots], spec.planners)
     )
     return list(dict.fromkeys(runs))
+
+
+def _check_scheme(scheme: Any, name: str, path: Path) -> None:
+    """Refuse a scheme that is not the planner's; say so where the planner negotiates by none."""
+    try:
+        scheme_of(name, scheme)
+    except InputError as error:
+        raise InputError(f"{path}: setup: {error}") from None
+    tell_unheeded(name, 0, scheme)
 
 
 def _known_planner(name: str, path: Path) -> None:

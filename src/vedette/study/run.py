@@ -115,6 +115,7 @@ class Run:
             "seed": self.setup.seed,
             **{name: _cell(getattr(self.platform, name)) for name in OF_PLATFORM},
             **{name: _cell(getattr(self.setup, name)) for name in OF_SETUP},
+            "scheme": self.setup.options.negotiates_by,
         }
 
     def __str__(self) -> str:

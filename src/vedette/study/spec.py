@@ -77,7 +77,7 @@ def load_spec(path: Path) -> Spec:
     Raises:
         InputError: as ``load_scenario``; or it has no worlds, or its reference is not among its planners.
     """
-    spec = load_scenario(path, Spec)
+    spec = load_scenario(path, Spec, "study's spec")
     if not spec.worlds and not spec.maps:
         raise InputError(f"{path}: nothing to explore; list generated ones under worlds, or files under maps")
     if spec.reference and spec.reference not in spec.planners:

@@ -94,7 +94,7 @@ def test_detectors_are_made_by_name() -> None:
         ({"type": "definite", "range": -3}, "range must be"),
         ({"type": "definite", "detection": 1.2}, "detection must be 0 to 1"),
         ({"type": "definite", "noise": float("nan")}, "noise: must be a finite number"),
-        ({"type": "definite", "view": "wide"}, "view: expected `float`"),
+        ({"type": "definite", "view": "wide"}, "view: must be a number"),
         ({"type": "exponential", "sigma": 0}, "sigma must be"),
     ],
 )

@@ -249,7 +249,7 @@ def test_scenarios_name_sensors() -> None:
         ),
         (
             {"type": "position", "noise": "small"},
-            "p.yaml: platform 1: noise: expected `float`, got `str`; it is 'small'",
+            "p.yaml: platform 1: noise: must be a number; got 'small'",
         ),
     ],
 )

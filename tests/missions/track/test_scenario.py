@@ -11,7 +11,7 @@ import yaml
 
 from tests.support.places import ROOT
 from tests.support.track_scenes import content, scenario
-from vedette.errors import InputError
+from vedette.errors import InputError, InputWarning
 from vedette.missions.track.scenario import TrackScenario, checked, default_scenario, read_scenario
 from vedette.scenario import as_scenario
 
@@ -47,8 +47,8 @@ SKEW = [[1.0, 0.5, 0, 0], [0, 1.0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"vehicles": []}, ["vehicles", "length"]),
-        ({"targets": []}, ["targets", "length"]),
+        ({"vehicles": []}, ["vehicles", "1 to 64 entries"]),
+        ({"targets": []}, ["targets", "1 to 1000 entries"]),
         ({"horizn": 5}, ["horizn", "did you mean 'horizon'?"]),
         ({"horizon": 0}, ["horizon", "1"]),
         ({"horizon": 2.5}, ["horizon", "2.5"]),
@@ -75,7 +75,7 @@ SKEW = [[1.0, 0.5, 0, 0], [0, 1.0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
         ({"vehicles": [vehicle(sensor={"type": "baering"})]}, ["vehicles[0].sensor", "'bearing'?"]),
         ({"vehicles": [vehicle(sensor={"type": "bearing", "rang": 3})]}, ["'rang'", "'range'?"]),
         ({"vehicles": [vehicle(sensor={"type": "bearing", "range": -3})]}, ["range must be", "-3"]),
-        ({"vehicles": [vehicle(sensor={"type": "bearing", "range": [3]})]}, ["range: expected `float`"]),
+        ({"vehicles": [vehicle(sensor={"type": "bearing", "range": [3]})]}, ["range: must be a number"]),
         ({"targets": [target(model="static")]}, ["targets[0].mean", "4 numbers", "needs 2"]),
         ({"targets": [target(model="statik")]}, ["targets[0]", "statik", "static"]),
         ({"targets": [target(model=None)]}, ["targets[0]", "model"]),
@@ -93,6 +93,7 @@ SKEW = [[1.0, 0.5, 0, 0], [0, 1.0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
         ({"targets": [target(sd=None, covariance=SKEW)]}, ["targets[0].covariance", "symmetric"]),
         ({"targets": [target(sd=None, covariance=[[1, 0], [0, 1]])]}, ["2 rows of 2", "4 x 4"]),
         ({"targets": [target(sd=None, covariance=[])]}, ["no rows", "4 x 4"]),
+        ({"targets": [target(start=[7e4, 9, 0, 0])]}, ["targets[0].start: 70000, 9 is outside the area"]),
         ({"targets": [target(start=[1, 2])]}, ["targets[0].start", "2 numbers", "needs 4"]),
         ({"targets": [target(q=-1)]}, ["targets[0].q"]),
         ({"targets": [target(name="a"), target(name="a")]}, ["targets[1].name", "'a' is used twice"]),
@@ -147,3 +148,10 @@ def test_a_true_start_may_be_given_and_changes_nothing_for_the_others() -> None:
     free = scenario().draw(np.random.default_rng(1))
     assert given[1].tolist() == [50, 190, 0, 0]
     assert (given[[0, 2]] == free[[0, 2]]).all()
+
+
+def test_a_target_that_goes_out_of_every_picture_is_told(tmp_path: Path) -> None:
+    path = tmp_path / "far.yaml"
+    path.write_text(yaml.safe_dump(content(targets=[target(mean=[10, 10, 600, 0])], duration=120)))
+    with pytest.warns(InputWarning, match=r"targets\[0\]: at 600 m/s it is 7\d{4} m outside the area when"):
+        read_scenario(path)

@@ -35,6 +35,7 @@ class Planner:
     turn: float = math.inf  # prices and tours count once frontiers promise less than this [m^2]; 0: never
     alone: str | None = None  # the planner of a team of one; None: the same
     scheme: str | None = None  # the negotiation that is part of the planner; None: any
+    negotiates: bool = True  # what a platform chooses hangs on what the others tell it
     most_robots: int | None = None  # None: any number
 
 
@@ -92,26 +93,35 @@ PLANNERS = {
         f"as rate, the joint optimum by search; at most {MOST_ROBOTS} robots",
         layers.rate(),
         lambda spec: OptimalPlatform(spec, max_stops=1, measured="distance"),
+        negotiates=False,
         most_robots=MOST_ROBOTS,
     ),
-    "nearest": Planner("nearest frontier, uncoordinated (Yamauchi)", layers.plain(), NearestPlatform),
+    "nearest": Planner(
+        "nearest frontier, uncoordinated (Yamauchi)", layers.plain(), NearestPlatform, negotiates=False
+    ),
     "cost-utility": Planner(
         "area against path length, uncoordinated (Gonzalez-Banos & Latombe)",
         layers.plain(),
         CostUtilityPlatform,
+        negotiates=False,
     ),
     "burgard": Planner(
-        "coordinated assignment of frontiers (Burgard et al.)", layers.plain(), BurgardPlatform
+        "coordinated assignment of frontiers (Burgard et al.)",
+        layers.plain(),
+        BurgardPlatform,
+        negotiates=False,
     ),
     "hungarian": Planner(
         "assignment of frontiers with the least total path (Kuhn; Wurm et al.)",
         layers.plain(),
         HungarianPlatform,
+        negotiates=False,
     ),
     "makespan": Planner(
         "routes through all frontiers, the longest as short as can be (min-max salesmen)",
         layers.plain(),
         MakespanPlatform,
+        negotiates=False,
     ),
 }
 

@@ -80,7 +80,7 @@ def read_case(path: Path | str) -> SearchCase:
     Raises:
         InputError: as ``vedette.scenario.load_scenario`` and `made`.
     """
-    return made(load_scenario(path, SearchScenario), Path(path))
+    return made(load_scenario(path, SearchScenario, "search scenario"), Path(path))
 
 
 def made(scenario: SearchScenario, path: Path) -> SearchCase:

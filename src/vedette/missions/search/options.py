@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from msgspec import Struct
 
+from vedette.missions.pairs import SCHEME
+
 COORDINATIONS = ("none", "shared", "negotiated")
 FUSIONS = ("replicated", "sums")
 
@@ -12,5 +14,10 @@ class SearchOptions(Struct, forbid_unknown_fields=True, frozen=True):
     """The same for the whole team."""
 
     coordination: str = "negotiated"  # of COORDINATIONS
-    scheme: str = "token"  # of negotiation
+    scheme: str | None = None  # of negotiation; None: token
     fusion: str = "replicated"  # of FUSIONS
+
+    @property
+    def negotiates_by(self) -> str:
+        """The scheme."""
+        return self.scheme or SCHEME

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from msgspec import Struct
 
+from vedette.missions.pairs import SCHEME
+
 COORDINATIONS = ("none", "shared", "negotiated", "optimum")
 
 
@@ -11,7 +13,12 @@ class TrackOptions(Struct, forbid_unknown_fields=True, frozen=True):
     """The same for the whole team."""
 
     coordination: str = "negotiated"  # of COORDINATIONS; the optimum is to be had in simulation alone
-    scheme: str = "token"  # of negotiation
+    scheme: str | None = None  # of negotiation; None: token
     fusion: str = "replicated"  # a name of ``vedette.fusion.gaussian.WAYS``
     objective: str | None = None  # None: the scenario's
     continuous: bool = False  # the best course is improved by the objective's gradient
+
+    @property
+    def negotiates_by(self) -> str:
+        """The scheme."""
+        return self.scheme or SCHEME

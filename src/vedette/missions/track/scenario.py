@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Sequence
 from importlib import resources
 from pathlib import Path
@@ -18,7 +19,7 @@ from vedette.domains.tracking.belief import Tracks, tracks
 from vedette.domains.tracking.models import STATE, TargetModel, constant_velocity, static
 from vedette.domains.tracking.sensing import Sensor
 from vedette.domains.tracking.sensors import sensor_of
-from vedette.errors import InputError
+from vedette.errors import InputError, InputWarning
 from vedette.scenario import Metre, Name, as_scenario, load_scenario
 
 Numbers: TypeAlias = tuple[Annotated[float, Meta(ge=-1e12, le=1e12)], ...]
@@ -148,7 +149,7 @@ def read_scenario(path: Path | str) -> TrackScenario:
     Raises:
         InputError: as ``vedette.scenario.load_scenario`` and `checked`.
     """
-    return checked(load_scenario(path, TrackScenario), str(path))
+    return checked(load_scenario(path, TrackScenario, "tracking scenario"), str(path))
 
 
 def checked(scenario: TrackScenario, where: str) -> TrackScenario:
@@ -157,6 +158,9 @@ def checked(scenario: TrackScenario, where: str) -> TrackScenario:
     Raises:
         InputError: an area without inside, a step that the simulator cannot make, a name used twice, a start
             or a mean outside the area, a vehicle that cannot turn, a sensor or a prior that is none.
+
+    Warns:
+        InputWarning: a target goes so far away that pictures of the area show nothing of it.
     """
     try:
         _check_area(scenario.area)
@@ -170,6 +174,9 @@ def checked(scenario: TrackScenario, where: str) -> TrackScenario:
         for i, target in enumerate(scenario.targets):
             _check_target(f"targets[{i}]", target)
             _check_inside(f"targets[{i}].mean", target.mean, scenario.area)
+            if target.start is not None:
+                _check_inside(f"targets[{i}].start", target.start, scenario.area)
+            _tell_if_it_goes_far(f"{where}: targets[{i}]", target, scenario)
         _ = scenario.sensors
     except InputError as error:
         raise InputError(f"{where}: {error}") from error
@@ -207,6 +214,22 @@ def _check_inside(what: str, place: Sequence[float], area: tuple[float, float, f
             f"{what}: {place[0]:.10g}, {place[1]:.10g} is outside the area; "
             f"x is {x0:.10g} to {x1:.10g} m, y is {y0:.10g} to {y1:.10g} m"
         )
+
+
+def _tell_if_it_goes_far(what: str, target: StaticTarget | MovingTarget, scenario: TrackScenario) -> None:
+    """Say so where a target's mean ends farther outside the area than the area is wide."""
+    x0, y0, x1, y1 = scenario.area
+    x, y, *velocity = target.mean if target.start is None else target.start
+    for speed, place, low, high in zip(velocity, (x, y), (x0, y0), (x1, y1), strict=False):
+        end = place + speed * scenario.duration
+        away = max(low - end, end - high)
+        if away > math.hypot(x1 - x0, y1 - y0):
+            text = (
+                f"{what}: at {math.hypot(*velocity):g} m/s it is {away:.0f} m outside the area when the "
+                "mission ends; give a larger area or a lower velocity"
+            )
+            warnings.warn(text, InputWarning, stacklevel=4)
+            return
 
 
 def _check_target(what: str, target: StaticTarget | MovingTarget) -> None:

@@ -125,7 +125,7 @@ class SearchObserver:
             bound=IdealSearch.of(curves.times, curves.bound),
             koopman=IdealSearch.of(curves.times, curves.koopman),
             **vars(self._setting),
-            **structs.asdict(self._team.options),
+            **structs.asdict(structs.replace(self._team.options, scheme=self._team.options.negotiates_by)),
             **vars(TeamFigures.of(scene.vehicles, figures, alive)),
         )
 

@@ -103,7 +103,11 @@ class TrackObserver:
 
     def _summary(self, outcome: Outcome, now: float) -> TrackSummary:
         log, scene, team = self.log, self.log.scene, self._team
-        options = structs.replace(team.options, objective=team.options.objective or team.scenario.objective)
+        options = structs.replace(
+            team.options,
+            objective=team.options.objective or team.scenario.objective,
+            scheme=team.options.negotiates_by,
+        )
         figures, alive = zip(*((view.figures, view.sample.alive) for view in self._views), strict=True)
         return TrackSummary(
             completed=outcome.completed,

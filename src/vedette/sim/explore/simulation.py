@@ -51,8 +51,9 @@ class ExploreSimulation(Simulation):
         """Put the team at its starts, (n, 3) x, y, heading [m, m, rad], team frame.
 
         Raises:
-            InputError: the planner is unknown.
+            InputError: the planner is unknown, or negotiates otherwise.
         """
+        _ = setup.options.negotiates_by
         self.setup = setup
         self.world, self.specs, self.starts = world, tuple(specs), starts
         self.robots = Robots(world, self.specs, starts, random_streams(setup.seed, len(specs)))

@@ -32,7 +32,7 @@ def load_faults(file_or_seed: str, robots: int, duration: float = DURATION) -> S
         raise InputError(
             f"--faults {text}: neither a file that is there nor a seed, a whole number such as 7"
         )
-    schedule = load_scenario(text, Schedule)
+    schedule = load_scenario(text, Schedule, "fault schedule")
     check_faults(schedule, robots, text)
     return schedule
 
