@@ -11,8 +11,7 @@ from msgspec import inspect
 
 from vedette.errors import nearest_name
 
-Fields: TypeAlias = inspect.StructType | inspect.DataclassType
-Lists: TypeAlias = inspect.ListType | inspect.VarTupleType
+_Fields: TypeAlias = inspect.StructType | inspect.DataclassType
 
 _PLACE = re.compile(r"(?P<what>.*?)(?: - at `\$(?P<place>[^`]*)`)?", re.DOTALL)
 _STEP = re.compile(r"\.([^.\[\]]+)|\[(\d+)\]|\[\.\.\.\]")
@@ -129,18 +128,18 @@ def _item(value: Any, name: str, number: str) -> Any:
         return None
 
 
-def _structs(schema: inspect.Type | None) -> list[Fields]:
+def _structs(schema: inspect.Type | None) -> list[_Fields]:
     kinds: Sequence[inspect.Type | None] = (
         schema.types if isinstance(schema, inspect.UnionType) else (schema,)
     )
     return [kind for kind in kinds if isinstance(kind, inspect.StructType | inspect.DataclassType)]
 
 
-def _tag_field(schema: Fields) -> str | None:
+def _tag_field(schema: _Fields) -> str | None:
     return schema.tag_field if isinstance(schema, inspect.StructType) else None
 
 
-def _chosen(schema: inspect.Type | None, value: Any) -> list[Fields]:
+def _chosen(schema: inspect.Type | None, value: Any) -> list[_Fields]:
     """Return the structs that a value can be, by its tag if it has one."""
     structs = _structs(schema)
     tagged = [

@@ -284,7 +284,7 @@ def test_options_that_make_no_sense_are_refused(
         (None, ["cannot read"]),
         ("prior: [\n", ["not valid YAML"]),
         ("[1]", ["pairs"]),
-        ("", ["required field"]),
+        ("", ["area is missing"]),
     ],
 )
 def test_a_file_that_is_no_scenario_is_refused(
