@@ -72,12 +72,14 @@ class RoundLaw:
     rounds: int = 0  # decided by a whole team, its value checked
     cut: set[Stamp] = field(default_factory=set)  # rounds from which somebody was cut
     _exact: defaultdict[Stamp, set[int]] = field(default_factory=lambda: defaultdict(set))  # digests
-    _decided: defaultdict[Stamp, dict[Life, RoundOutcome]] = field(default_factory=lambda: defaultdict(dict))
-    _ended: dict[Stamp, list[tuple[RoundOutcome, Impact]]] = field(default_factory=dict)  # and with what team
+    _decided: defaultdict[Stamp, dict[Life, int]] = field(default_factory=lambda: defaultdict(dict))  # ending
+    _ended: defaultdict[Stamp, list[tuple[RoundOutcome, Impact]]] = field(  # and with what team
+        default_factory=lambda: defaultdict(list)
+    )
     _turns: defaultdict[Stamp, list[tuple[int, float]]] = field(default_factory=lambda: defaultdict(list))
 
-    def decided(self, mission: SiteMission, seen: RoundSeen) -> None:
-        """Check a decision that a robot has just taken."""
+    def decided(self, mission: SiteMission, seen: RoundSeen, ended: bool) -> None:
+        """Check a decision that a robot has just taken; ``ended``: it was this robot that ended the round."""
         belief, negotiator = mission.last, seen.negotiator
         assert belief is not None
         assert negotiator is not None
@@ -87,10 +89,9 @@ class RoundLaw:
         if not seen.approximate:
             self._exact[stamp].add(belief.digest)
             check(len(self._exact[stamp]) == 1, "two maps are taken for one", mission.life, stamp)
-        self._decided[stamp][mission.life] = outcome
         if isinstance(negotiator, TokenNode):
             self._check_turns(stamp, negotiator)
-            self._check_team(mission, belief, outcome)
+            self._check_team(mission, belief, outcome, ended)
 
     def _check_turns(self, stamp: Stamp, node: TokenNode[Impact]) -> None:
         """The team's value never falls from turn to turn, unless somebody is cut."""
@@ -99,20 +100,16 @@ class RoundLaw:
             values = [value for _, value in sorted(self._turns[stamp])]
             check(all(b >= a - ROUNDING for a, b in pairwise(values)), "the value falls", values)
 
-    def _check_team(self, mission: SiteMission, belief: Belief, outcome: RoundOutcome) -> None:
+    def _check_team(self, mission: SiteMission, belief: Belief, outcome: RoundOutcome, ended: bool) -> None:
         """When the last one of a team has decided: its choice is worth what the round says."""
         stamp, decided = belief.stamp, self._decided[belief.stamp]
-        endings = self._ended.setdefault(stamp, [])
-        if all(outcome != other for other, _ in endings):  # this robot has ended the round
-            assert mission.whole is not None
-            endings.append((outcome, mission.whole))
-        whole = next(whole for other, whole in endings if other == outcome)
-        if any(decided.get(life) != outcome for life in whole.who):
+        decided[mission.life] = self._ending(mission, stamp, outcome, ended)
+        _, whole = self._ended[stamp][decided[mission.life]]
+        if any(decided.get(life) != decided[mission.life] for life in whole.who):
             return
         team = [self.missions[life] for life in sorted(whole.who)]
         if any(mate.last is None or mate.last.stamp != stamp for mate in team):
             return
-        check(mission.life in whole.who, "a robot decides that is not in the team", mission.life, whole.who)
         after = np.prod([cast(Impact, mate.present).miss for mate in team], axis=0)
         check(np.allclose(after, whole.miss), "the team's impact is not what its robots chose", stamp)
         if len({cast(Belief, mate.last).digest for mate in team}) > 1:
@@ -123,6 +120,16 @@ class RoundLaw:
         before = worth(belief, np.prod([cast(Impact, mate.initial).miss for mate in team], axis=0))
         fell = stamp not in self.cut and value < before - ROUNDING
         check(not fell, "the value of the team's choice has fallen", stamp, before, value)
+
+    def _ending(self, mission: SiteMission, stamp: Stamp, outcome: RoundOutcome, ended: bool) -> int:
+        """Return the ending of a round that a robot decides by: the two parts left by a cut have one each."""
+        endings = self._ended[stamp]
+        if ended:
+            assert mission.whole is not None
+            endings.append((outcome, mission.whole))
+        its = [k for k, (told, whole) in enumerate(endings) if told == outcome and mission.life in whole.who]
+        check(bool(its), "a robot decides that is not in the team", mission.life, endings)
+        return its[-1]
 
 
 def check_strategy(agent: Agent, sites: Sites) -> None:

@@ -17,7 +17,9 @@ from tests.support.faulty_world import FRAME, LEAST_GAIN, Life, SiteMission, Sit
 from tests.support.overlay_network import Edge, random_graph
 from tests.support.site_team import PACE, SiteTeam
 from vedette.agent import Agent, State
+from vedette.agent.round import Round
 from vedette.agent.rounds import CALL_AGAIN, patience
+from vedette.negotiation import TokenNode
 from vedette.outcome import Outcome
 from vedette.sim.datagrams import Datagrams
 from vedette.sim.faults import Schedule, faults_from_seed
@@ -103,7 +105,7 @@ class FaultyTeam(SiteTeam):
 
     def _let(self, i: int, act: Act) -> None:
         rounds = self.network.agents[i].rounds
-        seen, decisions, cuts = rounds.round, rounds.decisions, rounds.cuts
+        seen, decisions, cuts, turns = rounds.round, rounds.decisions, rounds.cuts, _turns_in(rounds.round)
         super()._let(i, act)
         agent = self.network.agents[i]
         mission = mission_of(agent)
@@ -112,7 +114,7 @@ class FaultyTeam(SiteTeam):
             self.round_law.cut.add((seen.tree.epoch, seen.sequence))
         if rounds.decisions > decisions:
             assert seen is not None
-            self.round_law.decided(mission, seen)
+            self.round_law.decided(mission, seen, ended=_turns_in(seen) > turns)
             self._say(f"{i} decides {mission.strategy} in {rounds.stamp}, quiet {agent.quiet}")
         if self.evidence.check(mission):
             self._say(f"{i} holds {versions_of(mission)}")
@@ -225,6 +227,11 @@ class FaultyTeam(SiteTeam):
                     check(bool((seen >= (mate.counts > 0)).all()), "what a robot saw is missing", i, k)
                     for life, version in self._healed.get(mate.life, {}).items():
                         check(now.get(life, 0) >= version, "evidence is missing", i, k, life)
+
+
+def _turns_in(seen: Round | None) -> int:
+    """Return how often a robot has had the token in a round: whoever ends a round does so in its turn."""
+    return len(seen.negotiator.turns) if seen and isinstance(seen.negotiator, TokenNode) else 0
 
 
 def tolerance(n: int, lease: float) -> float:
