@@ -10,7 +10,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from tests.support.faulty_world import Belief, Impact, Life, SiteMission, Sites, Stamp, check, worth
+from tests.support.faulty_world import Belief, Impact, Life, SiteMission, Sites, check, worth
 from vedette.agent import Agent, GroundBehaviour, State
 from vedette.agent.round import Round as RoundSeen
 from vedette.fusion.tiles import WORDS, classes_of, codes_of
@@ -19,6 +19,7 @@ from vedette.negotiation import RoundOutcome, TokenNode
 ROUNDING = 1e-9
 
 Versions = dict[Life, int]
+Name = tuple[int, ...]  # of a round: its stamp, and who holds it, if that is one robot alone
 
 
 def mission_of(agent: Agent) -> SiteMission:
@@ -70,13 +71,13 @@ class RoundLaw:
 
     missions: dict[Life, SiteMission]
     rounds: int = 0  # decided by a whole team, its value checked
-    cut: set[Stamp] = field(default_factory=set)  # rounds from which somebody was cut
-    _exact: defaultdict[Stamp, set[int]] = field(default_factory=lambda: defaultdict(set))  # digests
-    _decided: defaultdict[Stamp, dict[Life, int]] = field(default_factory=lambda: defaultdict(dict))  # ending
-    _ended: defaultdict[Stamp, list[tuple[RoundOutcome, Impact]]] = field(  # and with what team
+    cut: set[Name] = field(default_factory=set)  # rounds from which somebody was cut
+    _exact: defaultdict[Name, set[int]] = field(default_factory=lambda: defaultdict(set))  # digests
+    _decided: defaultdict[Name, dict[Life, int]] = field(default_factory=lambda: defaultdict(dict))  # ending
+    _ended: defaultdict[Name, list[tuple[RoundOutcome, Impact]]] = field(  # and with what team
         default_factory=lambda: defaultdict(list)
     )
-    _turns: defaultdict[Stamp, list[tuple[int, float]]] = field(default_factory=lambda: defaultdict(list))
+    _turns: defaultdict[Name, list[tuple[int, float]]] = field(default_factory=lambda: defaultdict(list))
 
     def decided(self, mission: SiteMission, seen: RoundSeen, ended: bool) -> None:
         """Check a decision that a robot has just taken; ``ended``: it was this robot that ended the round."""
@@ -86,25 +87,27 @@ class RoundLaw:
         outcome, stamp = negotiator.finished, belief.stamp
         assert outcome is not None
         check(stamp[1] == seen.sequence, "a round ends that never froze", stamp, seen.sequence)
+        name = (*stamp, *mission.life) if seen.is_alone else stamp
         if not seen.approximate:
-            self._exact[stamp].add(belief.digest)
-            check(len(self._exact[stamp]) == 1, "two maps are taken for one", mission.life, stamp)
+            self._exact[name].add(belief.digest)
+            check(len(self._exact[name]) == 1, "two maps are taken for one", mission.life, stamp)
         if isinstance(negotiator, TokenNode):
-            self._check_turns(stamp, negotiator)
-            self._check_team(mission, belief, outcome, ended)
+            self._check_turns(name, negotiator)
+            self._check_team(mission, name, outcome, ended)
 
-    def _check_turns(self, stamp: Stamp, node: TokenNode[Impact]) -> None:
+    def _check_turns(self, name: Name, node: TokenNode[Impact]) -> None:
         """The team's value never falls from turn to turn, unless somebody is cut."""
-        self._turns[stamp] += node.turns
-        if stamp not in self.cut and len(self._exact[stamp]) == 1:
-            values = [value for _, value in sorted(self._turns[stamp])]
+        self._turns[name] += node.turns
+        if name not in self.cut and len(self._exact[name]) == 1:
+            values = [value for _, value in sorted(self._turns[name])]
             check(all(b >= a - ROUNDING for a, b in pairwise(values)), "the value falls", values)
 
-    def _check_team(self, mission: SiteMission, belief: Belief, outcome: RoundOutcome, ended: bool) -> None:
+    def _check_team(self, mission: SiteMission, name: Name, outcome: RoundOutcome, ended: bool) -> None:
         """When the last one of a team has decided: its choice is worth what the round says."""
-        stamp, decided = belief.stamp, self._decided[belief.stamp]
-        decided[mission.life] = self._ending(mission, stamp, outcome, ended)
-        _, whole = self._ended[stamp][decided[mission.life]]
+        belief, decided = cast(Belief, mission.last), self._decided[name]
+        stamp = belief.stamp
+        decided[mission.life] = self._ending(mission, name, outcome, ended)
+        _, whole = self._ended[name][decided[mission.life]]
         if any(decided.get(life) != decided[mission.life] for life in whole.who):
             return
         team = [self.missions[life] for life in sorted(whole.who)]
@@ -118,12 +121,12 @@ class RoundLaw:
         value = worth(belief, after)
         check(abs(value - outcome.value) < 1e-6, "the round's value is wrong", stamp, value, outcome)
         before = worth(belief, np.prod([cast(Impact, mate.initial).miss for mate in team], axis=0))
-        fell = stamp not in self.cut and value < before - ROUNDING
+        fell = name not in self.cut and value < before - ROUNDING
         check(not fell, "the value of the team's choice has fallen", stamp, before, value)
 
-    def _ending(self, mission: SiteMission, stamp: Stamp, outcome: RoundOutcome, ended: bool) -> int:
+    def _ending(self, mission: SiteMission, name: Name, outcome: RoundOutcome, ended: bool) -> int:
         """Return the ending of a round that a robot decides by: the two parts left by a cut have one each."""
-        endings = self._ended[stamp]
+        endings = self._ended[name]
         if ended:
             assert mission.whole is not None
             endings.append((outcome, mission.whole))

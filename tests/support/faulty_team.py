@@ -16,7 +16,7 @@ from tests.support.faulty_laws import EvidenceLaw, RoundLaw, check_strategy, mis
 from tests.support.faulty_world import FRAME, LEAST_GAIN, Life, SiteMission, Sites, check
 from tests.support.overlay_network import Edge, random_graph
 from tests.support.site_team import PACE, SiteTeam
-from vedette.agent import Agent, State
+from vedette.agent import Agent, NetworkedAgent, State
 from vedette.agent.round import Round
 from vedette.agent.rounds import CALL_AGAIN, patience
 from vedette.negotiation import TokenNode
@@ -76,6 +76,8 @@ class Plan:
 class FaultyTeam(SiteTeam):
     """A toy team; after whatever one of its agents does, all laws are checked."""
 
+    suffers = False  # from somebody who says what is not so
+
     def __init__(self, plan: Plan, trace: bool = False) -> None:
         """Bring the team to life."""
         self.plan, self.trace = plan, trace
@@ -94,7 +96,16 @@ class FaultyTeam(SiteTeam):
             Setup(plan.scheme, plan.seed, AT_MOST, faults=plan.faults),
             lease=plan.lease,
             published=self.evidence.published,
+            live=self._program,
         )
+
+    def _program(self, i: int, agent: Agent, now: float, lease: float) -> NetworkedAgent:
+        return NetworkedAgent(agent, now, lease=lease)
+
+    @property
+    def honest(self) -> list[int]:
+        """The living members that behave: all of them."""
+        return self.living
 
     def _spawn(self, robot: int, boot: int) -> Agent:
         agent = super()._spawn(robot, boot)
@@ -109,21 +120,23 @@ class FaultyTeam(SiteTeam):
         super()._let(i, act)
         agent = self.network.agents[i]
         mission = mission_of(agent)
-        check(agent.dropped == 0, "an agent's message makes no sense to its neighbour", i)
+        check(self.suffers or agent.dropped == 0, "an agent's message makes no sense to its neighbour", i)
         if rounds.cuts > cuts and mission.last is not None and seen is not None:
             self.round_law.cut.add((seen.tree.epoch, seen.sequence))
         if rounds.decisions > decisions:
             assert seen is not None
-            self.round_law.decided(mission, seen, ended=_turns_in(seen) > turns)
+            if not self.suffers:
+                self.round_law.decided(mission, seen, ended=_turns_in(seen) > turns)
             self._say(f"{i} decides {mission.strategy} in {rounds.stamp}, quiet {agent.quiet}")
         if self.evidence.check(mission):
             self._say(f"{i} holds {versions_of(mission)}")
-        check_strategy(agent, self.sites)
+        if i in self.honest:
+            check_strategy(agent, self.sites)
 
     def _tick(self) -> None:
         super()._tick()
         if self._healed is None and self.now >= FAULTY:
-            self._healed = {mission.life: versions_of(mission) for mission in self._living_missions()}
+            self._healed = {mission.life: versions_of(mission) for mission in self._honest_missions()}
         if self._healed is not None and self.now >= self._looked + LOOK:
             self._looked = self.now
             self._check_idle()
@@ -133,7 +146,7 @@ class FaultyTeam(SiteTeam):
         """How it ends, once all that was healed agree."""
         if self._healed is None:
             return None
-        done = all(self.network.agents[i].done for i in self.living)
+        done = all(self.network.agents[i].done for i in self.honest)
         if done and all(self._agrees(part) and not self._wakes(part) for part in self.parts()):
             return Outcome.COMPLETE
         return Outcome.TIME_LIMIT if self.now >= AT_MOST else None
@@ -163,8 +176,8 @@ class FaultyTeam(SiteTeam):
     def _mission(self, i: int) -> SiteMission:
         return mission_of(self.network.agents[i])
 
-    def _living_missions(self) -> list[SiteMission]:
-        return [self._mission(i) for i in self.living]
+    def _honest_missions(self) -> list[SiteMission]:
+        return [self._mission(i) for i in self.honest]
 
     def _say(self, what: str) -> None:
         if self.trace:
@@ -173,8 +186,8 @@ class FaultyTeam(SiteTeam):
     # -- what must hold ------------------------------------------------------------------------------
 
     def parts(self) -> list[list[int]]:
-        """Return the living robots, by who can reach whom."""
-        left, parts = set(self.living), []
+        """Return the living robots that behave, by who can reach whom by these alone."""
+        left, parts = set(self.honest), []
         while left:
             part, ahead = [], [left.pop()]
             while ahead:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tests.support.faulty_world import FRAME, NEAR, SPEED, Published, SiteMission, Sites
 from tests.support.overlay_network import Edge
-from vedette.agent import Agent, GroundBehaviour
+from vedette.agent import Agent, GroundBehaviour, NetworkedAgent
 from vedette.agent.driving import Driver
 from vedette.agent.effects import Drive, Motion
 from vedette.agent.events import Arrived, Event, Pose, Sensed
@@ -21,7 +21,7 @@ from vedette.outcome import Outcome
 from vedette.sim.datagrams import Datagrams, linked
 from vedette.sim.faults import Timeline
 from vedette.sim.network import Network, Spawn
-from vedette.sim.overlaid import OverlaidNetwork
+from vedette.sim.overlaid import Live, OverlaidNetwork
 from vedette.sim.setup import Setup
 from vedette.sim.simulation import Simulation
 from vedette.team import PlatformSpec
@@ -96,18 +96,21 @@ class SiteTeam(Simulation):
         *,
         lease: float,
         published: Published,
+        live: Live = lambda i, agent, now, lease: NetworkedAgent(agent, now, lease=lease),
     ) -> None:
         """Bring the team to life at its places, ``(n, 2)`` [m]."""
         self.sites, self.lease = sites, lease
         self.bodies = Bodies(places, sites)
-        self._datagrams, self._published = datagrams, published
+        self._datagrams, self._published, self._live = datagrams, published, live
         datagrams.set_links(linked(len(places), edges))
         super().__init__(self._spawn, self.bodies, setup)
 
     def _overlaid(self, spawn: Spawn, walls: World | None) -> Network:
         assert self.setup.faults is not None
         timeline = Timeline(self.setup.faults, len(self.bodies.places))
-        return OverlaidNetwork(spawn, self.bodies, self._datagrams, timeline=timeline, lease=self.lease)
+        return OverlaidNetwork(
+            spawn, self.bodies, self._datagrams, timeline=timeline, lease=self.lease, live=self._live
+        )
 
     def _spawn(self, robot: int, boot: int) -> Agent:
         fusion = ReplicatedEvidence(robot, boot, FRAME.shape, len(self.sites.cells))

@@ -32,6 +32,13 @@ class Send:
     payload: bytes
 
 
+@dataclass(frozen=True)
+class Shun:
+    """Do without the link to a neighbour for a while: no round gets anywhere over it."""
+
+    robot: int
+
+
 @dataclass(frozen=True, eq=False)
 class Route:
     """A way to drive, and the map it was found on."""
@@ -68,4 +75,4 @@ class Job:
 
 
 Motion: TypeAlias = Drive | Fly
-Effect: TypeAlias = Send | Motion | Job
+Effect: TypeAlias = Send | Shun | Motion | Job

@@ -70,6 +70,7 @@ class TreeChanged:
     parent: int | None  # None at the root
     neighbours: tuple[int, ...]
     size: int  # robots on the tree
+    distance: int = 0  # to the root, in links or more
 
 
 Event: TypeAlias = Message | Pose | Scan | Sensed | Arrived | Stuck | JobDone | TreeChanged

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from vedette.agent.agent import step
-from vedette.agent.effects import Job, Motion, Send, TrafficKind
+from vedette.agent.effects import Job, Motion, Send, Shun, TrafficKind
 from vedette.agent.events import Event, Message, TreeChanged
 from vedette.agent.state import Agent
 from vedette.overlay import Overlay, Place, ReliableLink
@@ -51,6 +51,7 @@ class NetworkedAgent:
         *,
         lease: float = 3.0,
         mission_time: Callable[[float], float] = lambda now: now,
+        tempo: float = 1.0,
     ) -> None:
         """Start alone.
 
@@ -59,8 +60,10 @@ class NetworkedAgent:
             now: [s].
             lease: after which a silent neighbour is given up [s].
             mission_time: what the agent's clock shows when the transport's shows ``now`` [s].
+            tempo: by how much the agent's clock goes on in a second of the transport's, at most [s].
         """
         self.agent = agent
+        agent.rounds.tempo = tempo
         self.overlay = Overlay(agent.robot, agent.boot, now, lease)
         self.hold = False
         self.malformed = 0  # datagrams that did not make sense
@@ -151,7 +154,7 @@ class NetworkedAgent:
         if place != self._found:
             self._found, self._settled = place, now + SETTLED
         if place != self._told and (self._told or now >= self._begin_at):
-            tree = TreeChanged(place.epoch, place.parent, place.neighbours, place.size)
+            tree = TreeChanged(place.epoch, place.parent, place.neighbours, place.size, place.distance)
             # What came before the first tree, came from neighbours on it.
             self._waiting.insert(len(self._waiting) if self._told else 0, tree)
             self._told = place
@@ -167,18 +170,22 @@ class NetworkedAgent:
         """Run the agent, and give its messages to the links."""
         effects: list[Output] = []
         for effect in step(self.agent, events, self._mission_time(now)):
-            if not isinstance(effect, Send):
-                effects.append(effect)
+            if isinstance(effect, Shun):
+                self.overlay.shun(effect.robot, now)
                 continue
-            if effect.to not in self._links:  # no longer a neighbour; the agent is yet to be told
-                continue
-            self.messages_sent[effect.traffic] += 1
-            self.bytes_sent[effect.traffic] += len(effect.payload)
-            if effect.traffic is TrafficKind.BEACONS:  # the next one is worth more than this one again
-                effects.append(self._datagram(effect.to, BEACON + effect.payload, len(effect.payload)))
-            else:
-                self._links[effect.to].send(effect.payload, now)
+            effects += self._say(effect, now) if isinstance(effect, Send) else [effect]
         return effects
+
+    def _say(self, send: Send, now: float) -> list[Output]:
+        """Give a message to its link; return what goes as a datagram of its own."""
+        if send.to not in self._links:  # no longer a neighbour; the agent is yet to be told
+            return []
+        self.messages_sent[send.traffic] += 1
+        self.bytes_sent[send.traffic] += len(send.payload)
+        if send.traffic is TrafficKind.BEACONS:  # the next one is worth more than this one again
+            return [self._datagram(send.to, BEACON + send.payload, len(send.payload))]
+        self._links[send.to].send(send.payload, now)
+        return []
 
     def _poll(self, now: float) -> list[Output]:
         datagrams: list[Output] = []

@@ -67,6 +67,11 @@ class Round:
         self.waiting = set(self.children)
 
     @property
+    def is_alone(self) -> bool:
+        """Whether nobody else has part in it."""
+        return self.sequence < 0
+
+    @property
     def children(self) -> list[int]:
         """The neighbours further from the root."""
         return [k for k in self.tree.neighbours if k != self.tree.parent]
@@ -202,6 +207,11 @@ class Round:
         self.robots.pop(child, None)
         self.tree = replace(self.tree, neighbours=tuple(k for k in self.tree.neighbours if k != child))
         return self.flush(now) if self.negotiator is None else self._replies(self.negotiator.cut(child))
+
+    def go_on_alone(self, now: float) -> list[Effect]:
+        """Choose alone, on the belief that all have frozen: the rest of the team is silent."""
+        self.tree = replace(self.tree, parent=None, neighbours=())
+        return self.start(now)
 
 
 def say(to: int, message: Call | Begin | Flushed | Freeze | Negotiate) -> Send:

@@ -1,16 +1,19 @@
 """Rounds: when the team begins one, what this robot hears of it, and what it says in the end.
 
 A round that a child holds up goes on without it; one whose parent is silent is given up, and the robot keeps
-its strategy. What happens in a round: ``vedette.agent.round``.
+its strategy for a while. A child that keeps being cut is left out for longer each time, and a parent by which
+no round comes to anything is shunned. Who takes part in none plans alone: nobody stands idle because somebody
+else is slow, mute, or worse. What happens in a round: ``vedette.agent.round``.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
-from vedette.agent.effects import Effect, Job
+from vedette.agent.attendance import Attendance
+from vedette.agent.effects import Effect, Job, Shun
 from vedette.agent.events import Pose, TreeChanged
 from vedette.agent.mates import Mate
 from vedette.agent.messages import Begin, Call, Flushed, Freeze, Negotiate
@@ -19,15 +22,18 @@ from vedette.agent.pace import Pace
 from vedette.agent.round import Round, say, send_news
 from vedette.negotiation import RoundOutcome
 
+IDLE = 1.0  # a robot that did not look after its rounds for longer did not want any [s of the transport]
 CALL_AGAIN = 1.0  # a call not answered is repeated after so long [s]
 SETTLING = 0.2  # a new tree is left alone for so long before a round [s]
+AS_LONG = 3.0  # a robot waits for others so many times as long as its own last preparation took, and more
 CLOCKS_APART = 20.0  # that the root's may be from this robot's, where rounds keep to beats [s]
 
 
 def patience(size: int, depth: int = 0) -> float:
     """Return how long a robot, ``depth`` links below the root of so many, waits for a child's answer [s].
 
-    The lower a robot, the sooner it cuts a child off: before its own parent loses patience with it.
+    At least, and by the transport's clock: members think in real time, however fast the mission is. The
+    lower a robot, the sooner it cuts a child off: before its own parent loses patience with it.
     """
     return 1.0 + 0.3 * max(size - depth, 1)
 
@@ -38,7 +44,7 @@ class Decision:
 
     time: float
     outcome: RoundOutcome
-    approximate: bool  # this robot's belief was not the root's
+    approximate: bool  # this robot's belief was not the root's, or it decided without the team
     blocked: bool  # this robot planned with its mates in the way
 
 
@@ -50,6 +56,7 @@ class Rounds:
     scheme: str  # "token" or "jacobi"
     decided: Callable[[Decision], None]
     pace: Pace = field(default_factory=Pace)
+    tempo: float = 1.0  # of the mission, in seconds a second of the transport's clock
     tree: TreeChanged = field(default_factory=lambda: TreeChanged(0, None, (), 1))
     decisions: int = 0
     sweeps: int = 0
@@ -64,6 +71,13 @@ class Rounds:
     _called: float = -1e9
     _began: float = -1e9
     _ended: float = -1e9
+    _attendance: Attendance = field(default_factory=Attendance)
+    _prepares: float = -1e9  # since when [s]
+    _preparation: float = 0.0  # what its own last one took [s]
+    _together: float = -1e9  # when it last decided as others did, or wanted nothing [s]
+    _ticked: float = -1e9
+    _failed: int = 0  # rounds in a row that the parent let come to nothing
+    _solos: int = 0  # rounds that this robot began for itself alone
 
     @property
     def busy(self) -> bool:
@@ -73,7 +87,12 @@ class Rounds:
     @property
     def stamp(self) -> tuple[int, int]:
         """Epoch and sequence number of the round going on, or of the last one."""
-        return self.tree.epoch, self._sequence
+        return self.tree.epoch, self._sequence if self.round is None else self.round.sequence
+
+    @property
+    def absent(self) -> frozenset[int]:
+        """Children that rounds go on without for a while, since they kept being cut."""
+        return self._attendance.absent(self._ticked)
 
     # -- when rounds begin and end --------------------------------------------------------------------
 
@@ -84,6 +103,7 @@ class Rounds:
         gone, makes a plan worth having soon.
         """
         before, self.tree = self.tree, tree
+        self._attendance.keep(tree.neighbours)
         if (tree.epoch, tree.neighbours) == (before.epoch, before.neighbours):
             return
         self._wanted = True
@@ -91,7 +111,7 @@ class Rounds:
         if tree.epoch == before.epoch:
             return
         self.round = None
-        self._sequence = 0
+        self._sequence = self._failed = 0
         self._called = -1e9
 
     def want(self) -> None:
@@ -105,6 +125,9 @@ class Rounds:
 
     def tick(self, now: float) -> list[Effect]:
         """Do what is due: go on without who does not answer, call or begin a round that is wanted."""
+        if now > self._ticked + self.tempo * IDLE:
+            self._together = now
+        self._ticked = now
         effects = self._hurry(now)
         if self.round or now < self._ended + self.pace.interval:
             return effects
@@ -113,30 +136,68 @@ class Rounds:
     def _hurry(self, now: float) -> list[Effect]:
         """Cut children that do not answer in time from the round; give it up if it is the parent."""
         round_ = self.round
-        if round_ is None or now <= round_.heard + patience(self.tree.size, round_.depth):
+        if round_ is None or now <= round_.heard + self._patience(round_.depth):
             return []
         effects: list[Effect] = []
         for silent in sorted(round_.awaited - {round_.tree.parent}):
             if self.round is not round_:  # cutting the one before has ended it
                 break
             self.cuts += 1
+            self._attendance.missed(silent, now, self.tempo)
             effects += self._after(round_.cut(silent, now), now)
-        if not effects and now > round_.heard + 1.5 * patience(self.tree.size):
-            self._end(now)
-            self._wanted = True
-        return effects
+        if effects or now <= round_.heard + 1.5 * self._patience():
+            return effects
+        if self._is_lonely(now) and round_.participant is not None:
+            return [*self._after(round_.go_on_alone(now), now), *self._fail()]
+        self._end(now)
+        self._wanted = True
+        return self._fail()
+
+    def _patience(self, depth: int = 0) -> float:
+        """Return how long this robot waits for others [s]: the longer, the longer it took itself."""
+        return self.tempo * patience(self.tree.size, depth) + AS_LONG * self._preparation
+
+    def _is_lonely(self, now: float) -> bool:
+        """Tell whether this robot has decided with nobody for so long that it had better plan alone."""
+        return now > self._together + self.pace.overdue + 3.0 * self._patience()
+
+    def _fail(self) -> list[Effect]:
+        """Note that the parent let a round come to nothing; shun it if that goes on.
+
+        The farther from the root, the later: whose neighbour is at fault acts before those behind it.
+        """
+        self._failed += 1
+        parent = self.tree.parent
+        if parent is None or self._failed <= min(max(self.tree.distance, 1), self.tree.size):
+            return []
+        self._failed = 0
+        return [Shun(parent)]
 
     def _ask(self, now: float) -> list[Effect]:
         if self.tree.parent is None:
             wanted = self._wanted or now >= self._ended + self.pace.period
             begins = wanted and self.pace.on_beat(self._began, now)
             return self.begin(Begin(self.tree.epoch, self._sequence + 1, 0), now) if begins else []
+        if self._is_lonely(now) and self._wanted and self.pace.on_beat(self._began, now):
+            return [*self._call(now), *self._begin_alone(now), *self._fail()]
         # A root that takes the mission for finished begins no round: who does not, calls for one.
-        wanted = self._wanted or now >= self._ended + self.pace.overdue
-        if wanted and now >= self._called + CALL_AGAIN:
-            self._called = now
-            return [say(self.tree.parent, Call(self.tree.epoch))]
-        return []
+        self._wanted |= now >= self._ended + self.pace.overdue
+        return self._call(now) if self._wanted else []
+
+    def _call(self, now: float) -> list[Effect]:
+        """Tell the parent that a plan is needed, unless it has just been told."""
+        if self.tree.parent is None or now < self._called + CALL_AGAIN:
+            return []
+        self._called = now
+        return [say(self.tree.parent, Call(self.tree.epoch))]
+
+    def _begin_alone(self, now: float) -> list[Effect]:
+        """Begin a round that nobody else hears of."""
+        self._solos += 1
+        self._began, self._wanted = now, False
+        tree = replace(self.tree, parent=None, neighbours=())
+        self.round = Round(self.mission, self.scheme, tree, -self._solos, 0, now)
+        return self.round.begin(Begin(self.tree.epoch, -self._solos, 0), now)
 
     def _after(self, effects: list[Effect], now: float) -> list[Effect]:
         """Take up what a round has come to, if that was its last step."""
@@ -152,8 +213,12 @@ class Rounds:
         if outcome.bound is not None and outcome.bound > 0:
             self.bound_ratios.append(outcome.value / outcome.bound)
         self.blocked &= not round_.blocked  # taken into account
+        lonely = not round_.tree.neighbours and self.tree.parent is not None
+        if not lonely:
+            self._together, self._failed = now, 0
+            self._attendance.attended(round_.children)
         self._end(now)
-        self.decided(Decision(now, outcome, round_.approximate, round_.blocked))
+        self.decided(Decision(now, outcome, round_.approximate or lonely, round_.blocked))
         return effects
 
     def _end(self, now: float) -> None:
@@ -165,13 +230,15 @@ class Rounds:
     def begin(self, message: Begin, now: float) -> list[Effect]:
         """Enter a round."""
         # Between rounds any new number will do: one that came wrong must not shut this robot out for good.
-        old = self.busy and message.sequence < self._sequence
+        old = self.busy and not (self.round and self.round.is_alone) and message.sequence < self._sequence
         if message.epoch != self.tree.epoch or message.sequence == self._sequence or old:
             return []
         self._sequence = message.sequence
         self._began = now
         self._wanted = False
-        self.round = Round(self.mission, self.scheme, self.tree, message.sequence, message.depth, now)
+        absent = self._attendance.absent(now) - {self.tree.parent}
+        tree = replace(self.tree, neighbours=tuple(k for k in self.tree.neighbours if k not in absent))
+        self.round = Round(self.mission, self.scheme, tree, message.sequence, message.depth, now)
         return self.round.begin(message, now)
 
     def flushed(self, sender: int, message: Flushed, now: float) -> list[Effect]:
@@ -203,10 +270,13 @@ class Rounds:
     def preparation(self, pose: Pose, mates: list[Mate], now: float) -> Job:
         """Return the job to do on a belief just frozen; ``pose``: where the strategy will start."""
         assert self.round
+        self._prepares = now
         return self.round.prepare(pose, mates, self.blocked, now)
 
     def prepared(self, key: tuple[int, int], now: float) -> list[Effect]:
         """Start negotiating."""
+        self._preparation = now - self._prepares
+        self._ticked = now  # while it prepared, it could not
         round_ = self._of(*key)
         return [] if round_ is None else self._after(round_.start(now), now)
 

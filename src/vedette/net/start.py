@@ -55,7 +55,9 @@ def agent_process(config: AgentConfig, folder: Path, speed: float) -> AgentProce
     robot = ROBOTS[config.mission](config, folder, boot_at(now), speed)
     inbox = Inbox()
     transport = Transport(access_of(config, folder, now), index, inbox)
-    node = NetworkedAgent(robot.agent, time.monotonic(), lease=config.links.lease, mission_time=clock.shows)
+    node = NetworkedAgent(
+        robot.agent, time.monotonic(), lease=config.links.lease, mission_time=clock.shows, tempo=speed
+    )
     witness = Witness(node, robot.body, transport, robot.teller, robot_name(index))
     return AgentProcess(node, robot.body, robot.shown, transport, inbox, witness, clock, staged)
 

@@ -95,6 +95,13 @@ class Overlay:
             self._peers[robot].forget()
             self.wake = now
 
+    def shun(self, robot: int, now: float) -> None:
+        """Do without the link to a neighbour for a while, longer each time: it is as good as dead."""
+        now = self._pass(now)
+        if robot in self._peers:
+            self._peers[robot].shun(now)
+            self.wake = now
+
     def leave(self, now: float) -> list[tuple[int, bytes]]:
         """Return the goodbyes to send; say nothing from then on."""
         now = self._pass(now)
@@ -171,7 +178,7 @@ class Overlay:
             assert parent.hello
             size = max(own, parent.hello.size if parent.stamp == at.stamp else self.place.size)
             self._to_root = parent.hello.to_root / TICKS + (parent.clock.offset or 0.0)
-        place = Place(at.number, at.parent, tuple(at.edges), size)
+        place = Place(at.number, at.parent, tuple(at.edges), size, at.distance)
         if (place, own) == (self.place, self._own_size):
             return
         self.place, self._own_size = place, own

@@ -15,6 +15,7 @@ QUIET = 0.4  # of the lease: a neighbour silent for longer is asked to answer
 PROBE = 0.25  # between hellos that ask [s]
 FIRST_HOLD, MOST_HOLD = 1.0, 10.0  # for which a link that failed is left alone, doubling [s]
 SETTLED = 30.0  # a link that was up for so long starts with the first hold again [s]
+FIRST_SHUN, MOST_SHUN = 10.0, 160.0  # for which a neighbour is shunned, doubling [s]
 SMOOTHING = 0.1  # of the loss estimate, a hello
 MOST_MISSED = 8  # hellos that one gap counts for: silence is the lease's business
 NOWHERE = Stamp(1, 0, 0)
@@ -43,6 +44,7 @@ class Peer:
     _level: int = 0  # of COSTS
     _up_since: float = 0.0
     _hold: float = 0.0
+    _shun: float = FIRST_SHUN / 2
     _trusted: float = -float("inf")  # when the link may be used again
     _past: deque[int] = field(default_factory=lambda: deque(maxlen=8))  # its earlier boots
     _last_sent: float = -float("inf")
@@ -130,6 +132,12 @@ class Peer:
             self._trusted = now + self._hold
             self.up = False
             self.tell(now)
+
+    def shun(self, now: float) -> None:
+        """Leave the link alone for a while, however well it works."""
+        self._go_down(now)
+        self._shun = min(2 * self._shun, MOST_SHUN)
+        self._trusted = max(self._trusted, now + self._shun)
 
     def forget(self) -> None:
         """Count the neighbour as silent from now on, until it is heard again."""

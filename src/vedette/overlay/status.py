@@ -16,6 +16,7 @@ class Place:
     parent: int | None  # None at the root
     neighbours: tuple[int, ...]  # ascending
     size: int  # robots on the tree, as far as the count has come round
+    distance: int = 0  # to the root: what the links to it cost, one each or more
 
 
 @dataclass(frozen=True)

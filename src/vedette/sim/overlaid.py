@@ -26,6 +26,9 @@ ROUNDING = 1e-7  # clocks round: a robot that wakes is never too early [s]
 RADIO_PERIOD = 0.5  # links follow the robots so often [s]
 BUFFER = 512  # datagrams that wait for a frozen robot
 
+Live = Callable[[int, Agent, float, float], NetworkedAgent]
+"""``live(i, agent, now, lease)``: the program of the i-th robot, at the time that its clock shows [s]."""
+
 LossesNow = Callable[[], NDArray[np.float64]]
 """The links as they are now: ``(n, n)`` share of datagrams lost, 1 where there is no link."""
 
@@ -62,6 +65,7 @@ class OverlaidNetwork:
         timeline: Timeline | None = None,
         losses: LossesNow | None = None,
         lease: float = 3.0,
+        live: Live = lambda i, agent, now, lease: NetworkedAgent(agent, now, lease=lease),
     ) -> None:
         """Bring the robots of a field to life.
 
@@ -72,9 +76,11 @@ class OverlaidNetwork:
             timeline: of faults.
             losses: the links, which follow the robots; None: as they are.
             lease: after which a silent neighbour is given up [s].
+            live: what runs a robot's agent, a test's double of it among them.
         """
         self._spawn, self._field, self._datagrams = spawn, field, datagrams
         self._timeline, self._losses, self._lease = timeline, losses, lease
+        self._live = live
         n = len(field.alive)
         self._earlier = {
             kind: ([0] * n, [0] * n) for kind in TrafficKind
@@ -217,7 +223,7 @@ class OverlaidNetwork:
                     yield i, self._act(i, partial(robot.life.step, ()), now)
 
     def _start(self, i: int, boot: int, clock: SkewedClock, now: float) -> _Robot:
-        life = NetworkedAgent(self._spawn(i, boot), clock.shows(now), lease=self._lease)
+        life = self._live(i, self._spawn(i, boot), clock.shows(now), self._lease)
         return _Robot(life, boot, clock)
 
     def _bury(self, i: int) -> None:

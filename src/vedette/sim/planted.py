@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.agent import Agent, step
-from vedette.agent.effects import TrafficKind
+from vedette.agent.effects import Send, TrafficKind
 from vedette.agent.events import Event, Message, TreeChanged
 from vedette.negotiation import Tree
 from vedette.sim.links import Wires
@@ -79,8 +79,9 @@ class PlantedTree:
         return partial(step, self.agents[i], events, now)
 
     def send(self, i: int, effect: Any, now: float) -> None:
-        """Put a message on its link."""
-        self.wires.send(i, effect, now)
+        """Put a message on its link; nobody can be shunned here, where the tree is given."""
+        if isinstance(effect, Send):
+            self.wires.send(i, effect, now)
 
     def due(self) -> float:
         """Return when the next message arrives [s]."""

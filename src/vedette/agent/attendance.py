@@ -1,0 +1,47 @@
+"""Which neighbours take part in rounds, by what this robot has seen of them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+MISSES = 2  # rounds in a row that a child may be cut from before the next ones go on without it
+PAUSE, MOST_PAUSE = 10.0, 160.0  # for which they do, doubling each time [s]
+
+
+@dataclass
+class Attendance:
+    """A child that keeps being cut from rounds is left out of them for a while, then asked again.
+
+    It stays on the tree: evidence goes both ways, and nobody else waits for it any more. Whoever takes part
+    in no round plans alone meanwhile (``vedette.agent.rounds``).
+    """
+
+    _missed: Counter[int] = field(default_factory=Counter)  # rounds in a row, by child
+    _pauses: dict[int, float] = field(default_factory=dict)  # the latest of each [s]
+    _until: dict[int, float] = field(default_factory=dict)  # left out until [s]
+
+    def keep(self, neighbours: Iterable[int]) -> None:
+        """Forget all but these; whoever comes again has a fresh start."""
+        for robot in (self._missed.keys() | self._until.keys()) - set(neighbours):
+            self._missed.pop(robot, None)
+            self._pauses.pop(robot, None)
+            self._until.pop(robot, None)
+
+    def missed(self, child: int, now: float, tempo: float) -> None:
+        """Note that a child was cut from a round; ``tempo``: seconds of ``now``'s clock in a real one."""
+        self._missed[child] += 1
+        if self._missed[child] >= MISSES:
+            self._pauses[child] = min(2.0 * self._pauses.get(child, PAUSE / 2.0), MOST_PAUSE)
+            self._until[child] = now + self._pauses[child] * tempo
+
+    def attended(self, children: Iterable[int]) -> None:
+        """Note that children were there to a round's end."""
+        for child in children:
+            self._missed.pop(child, None)
+            self._pauses.pop(child, None)
+
+    def absent(self, now: float) -> frozenset[int]:
+        """Return the children that rounds go on without."""
+        return frozenset(child for child, until in self._until.items() if now < until)

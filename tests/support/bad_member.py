@@ -1,0 +1,89 @@
+"""Teams with members that misbehave, all of which follows from a seed: the others keep the laws and finish.
+
+A failing team replays with ``python -m tests.support.bad_member MODE SEED``; ``--trace`` tells what happens.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from tests.support import misbehaving
+from tests.support.faulty_team import FaultyTeam, Plan
+from tests.support.faulty_world import FRAME, Sites, check
+from tests.support.overlay_network import random_graph
+from vedette.agent import Agent, NetworkedAgent
+from vedette.outcome import Outcome
+from vedette.sim.faults import Schedule
+
+Program = Callable[..., NetworkedAgent]
+
+MODES: Mapping[str, Callable[[np.random.Generator], Program]] = {
+    "slow": lambda rng: _slow(misbehaving.delay_of(rng)),
+    "hung": lambda rng: _slow(misbehaving.NEVER),
+    "mute": lambda rng: misbehaving.Mute,
+    "truncating": lambda rng: misbehaving.Truncating,
+}
+
+
+LIES = frozenset({"truncating"})  # the others cannot tell what is so
+
+
+def _slow(takes: float) -> Program:
+    def slow(agent: Agent, now: float, *, lease: float) -> NetworkedAgent:
+        return misbehaving.Slow(agent, now, lease=lease, takes=takes)
+
+    return slow
+
+
+class BadTeam(FaultyTeam):
+    """A team some of whose members misbehave; the laws are for the others."""
+
+    def __init__(self, plan: Plan, bad: Mapping[int, Program], suffers: bool, trace: bool = False) -> None:
+        """Bring the team to life; ``bad``: the programs of those that misbehave."""
+        self.bad, self.suffers = bad, suffers
+        super().__init__(plan, trace)
+
+    def _program(self, i: int, agent: Agent, now: float, lease: float) -> NetworkedAgent:
+        return self.bad.get(i, NetworkedAgent)(agent, now, lease=lease)
+
+    @property
+    def honest(self) -> list[int]:
+        """The living members that behave."""
+        return [i for i in self.living if i not in self.bad]
+
+
+def plan_of(mode: str, seed: int) -> tuple[Plan, dict[int, Program]]:
+    """Return a team of three to six without faults but for its bad members: one, or sometimes two."""
+    rng = np.random.default_rng((seed, 11))
+    n = int(rng.integers(3, 7))
+    edges = random_graph(n, rng, float(rng.choice([0.0, 0.5, 2.0])))
+    sites = Sites.random(n, int(rng.integers(n, 3 + 3 * n)), rng)
+    places = rng.uniform(0.0, FRAME.cols * FRAME.resolution, (n, 2))
+    bad = rng.choice(n, 1 + int(n > 4 and rng.random() < 0.3), replace=False).tolist()
+    plan = replace(Plan.of(seed), edges=edges, sites=sites, places=places, lease=3.0, faults=Schedule(()))
+    return plan, {i: MODES[mode](rng) for i in bad}
+
+
+def play(mode: str, seed: int, trace: bool = False) -> BadTeam:
+    """Play one team to its end; a failure names the command that replays it."""
+    plan, bad = plan_of(mode, seed)
+    team = BadTeam(plan, bad, mode in LIES, trace)
+    try:
+        outcome = team.run(lambda: None)
+        check(outcome is Outcome.COMPLETE, "the mission does not end", outcome)
+        team.check_end()
+    except Exception as error:
+        replay = f"replay: python -m tests.support.bad_member {mode} {seed} --trace"
+        raise AssertionError(
+            f"{replay}\n  {sorted(bad)} of {plan.edges}\nat {team.now:.3f} s: {error}"
+        ) from error
+    return team
+
+
+if __name__ == "__main__":
+    played = play(sys.argv[1], int(sys.argv[2]), "--trace" in sys.argv)
+    print(f"complete after {played.now:.1f} s; {played.round_law.rounds} rounds checked")

@@ -1,0 +1,130 @@
+"""Members that misbehave, each in one way: the honest program, but for what it does or says."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from vedette.agent import Agent, Datagram, NetworkedAgent, messages
+from vedette.agent.effects import Job, Send, TrafficKind
+from vedette.agent.events import Event, JobDone
+from vedette.agent.messages import Beacon, Negotiate
+from vedette.agent.networked import HELLO, Output
+
+NEVER = float("inf")
+ECHO = -1  # a hello's field
+
+
+class Slow(NetworkedAgent):
+    """Takes so long [s] for every job; for ever: it hangs. Its overlay goes on."""
+
+    def __init__(self, agent: Agent, now: float, *, lease: float, takes: float) -> None:
+        super().__init__(agent, now, lease=lease)
+        self._takes, self._back = takes, NEVER
+        self._job: JobDone | None = None
+
+    @property
+    def wake(self) -> float:
+        """When the job is back, if nothing is before."""
+        return min(super().wake, self._back)
+
+    def step(self, events: Iterable[Event], now: float) -> list[Output]:
+        """Hold back what has been done until it would have been."""
+        told: list[Event] = []
+        for event in events:
+            if isinstance(event, JobDone):
+                self._job = event
+            else:
+                told.append(event)
+        if self._job is not None and now >= self._back:
+            told.append(self._job)
+            self.hold, self._back, self._job = False, NEVER, None
+        outputs = super().step(told, now)
+        if any(isinstance(each, Job) for each in outputs):
+            self.hold, self._back = True, now + self._takes
+        return outputs
+
+
+class Mute(NetworkedAgent):
+    """Says hello, shares evidence, and says nothing in rounds."""
+
+    def _say(self, send: Send, now: float) -> list[Output]:
+        return [] if send.traffic is TrafficKind.NEGOTIATION else super()._say(send, now)
+
+
+class Truncating(NetworkedAgent):
+    """Ends all that it negotiates too soon."""
+
+    def _say(self, send: Send, now: float) -> list[Output]:
+        message = messages.decode(send.payload)
+        if isinstance(message, Negotiate):
+            cut = msgspec.structs.replace(message, data=message.data[:-3])
+            send = replace(send, payload=messages.encode(cut))
+        return super()._say(send, now)
+
+
+class Hailing(NetworkedAgent):
+    """Changes its hellos."""
+
+    def _datagram(self, to: int, payload: bytes, carried: int = 0) -> Datagram:
+        if payload.startswith(HELLO):
+            hello = msgspec.msgpack.decode(payload[1:])
+            self._change(hello)
+            payload = HELLO + msgspec.msgpack.encode(hello)
+        return super()._datagram(to, payload, carried)
+
+    def _change(self, hello: list[Any]) -> None:
+        raise NotImplementedError
+
+
+class Echoing(Hailing):
+    """Has heard hellos that were never said."""
+
+    def _change(self, hello: list[Any]) -> None:
+        if hello[ECHO] is not None:
+            hello[ECHO][1] += 1_000_000
+
+
+class Inventing(NetworkedAgent):
+    """Passes on beacons of robots that there are not."""
+
+    _invented = 0
+
+    def _say(self, send: Send, now: float) -> list[Output]:
+        outputs = super()._say(send, now)
+        if send.traffic is TrafficKind.BEACONS:
+            beacon = messages.decode(send.payload)
+            assert isinstance(beacon, Beacon)
+            for _ in range(30):
+                self._invented += 1
+                told = msgspec.structs.replace(beacon, robot=100 + self._invented % 1000)
+                outputs += super()._say(replace(send, payload=messages.encode(told)), now)
+        return outputs
+
+
+class Flooding(NetworkedAgent):
+    """Says each beacon fifty times, each a new one, and long."""
+
+    _said = 0
+
+    def _say(self, send: Send, now: float) -> list[Output]:
+        outputs = super()._say(send, now)
+        if send.traffic is TrafficKind.BEACONS:
+            beacon = messages.decode(send.payload)
+            assert isinstance(beacon, Beacon)
+            for _ in range(50):
+                self._said += 1
+                told = msgspec.structs.replace(
+                    beacon, sequence=beacon.sequence + self._said, path=(1000,) * 1000
+                )
+                outputs += super()._say(replace(send, payload=messages.encode(told)), now)
+        return outputs
+
+
+def delay_of(rng: np.random.Generator) -> float:
+    """Return how long a slow member takes: a tenth of a second to for ever [s]."""
+    return float(rng.choice([0.1, 0.7, 2.0, 3.0, 5.0, 12.0]))
