@@ -134,7 +134,7 @@ def test_a_vehicle_that_hears_nobody_circles_for_a_while_and_then_plans_alone() 
     def look() -> None:
         if late.simulation.now >= 5.0:
             late.fall_silent()
-        states.append(late.behaviour(1).state)
+            states.append(late.behaviour(1).state)
 
     late.simulation.run(look, TICK)
     circling = states.index(State.CIRCLING)
