@@ -10,6 +10,7 @@ import click
 from bench import RESULTS, command, machine
 from bench.criteria import BenchReport, Criterion, Measurement, verdicts
 from bench.frontiers import Effort, measure_frontiers
+from bench.heartbeats import measure_heartbeats
 from bench.porous import WEARS, Site, measure_porous
 from bench.scale import report as scale
 from bench.speed import Run, run_mission
@@ -80,6 +81,7 @@ def measure(quick: bool, progress: Callable[[str], None]) -> list[Measurement]:
         sent(Criterion("negotiation sent by a robot", 800.0, "kB"), small, Run.negotiation),
         sent(Criterion("fusion sent by a robot", 250.0, "kB"), small, Run.fusion),
         *porous,
+        measure_heartbeats(20.0, 20 if quick else 200),
     ]
 
 

@@ -47,7 +47,7 @@ fn py_viewpoints<'py>(
     let ground = Ground { field, source: checked_cell(source, field.len())?, resolution };
     let cols = classes.as_array().ncols();
     let (cells, starts) = (cells.as_slice()?, starts.as_slice()?);
-    let found = viewpoints(&ground, classes_flat, cols, cells, starts, reach, most, work);
+    let found = py.detach(|| viewpoints(&ground, classes_flat, cols, cells, starts, reach, most, work));
     Ok((
         found.clusters.into_pyarray(py),
         found.targets.into_pyarray(py),
@@ -75,8 +75,9 @@ fn py_footprints<'py>(
 ) -> PyResult<PyFootprints<'py>> {
     let [rows, cols] = [classes.as_array().nrows(), classes.as_array().ncols()];
     let sensor = Sensor { range_cells, view, table: table.as_slice()?, by_distance, rays, floor };
+    let (classes, views, facing) = (classes.as_slice()?, views.as_slice()?, facing.as_slice()?);
     let (starts, cells, shares) =
-        footprints(classes.as_slice()?, rows, cols, views.as_slice()?, facing.as_slice()?, &sensor, factor);
+        py.detach(|| footprints(classes, rows, cols, views, facing, &sensor, factor));
     Ok((starts.into_pyarray(py), cells.into_pyarray(py), shares.into_pyarray(py)))
 }
 
@@ -145,20 +146,16 @@ fn py_best_tour<'py>(
         legs: legs.as_slice()?,
         edges: edges.as_slice()?,
     };
-    let reply = best_tour(
-        stops,
-        weights.as_slice()?,
-        layer_weights.as_slice()?,
-        (others_keys.as_slice()?, others_misses.as_slice()?),
-        current.as_slice()?,
-        max_stops,
-        stickiness,
-    );
+    let (weights, layer_weights) = (weights.as_slice()?, layer_weights.as_slice()?);
+    let (others, current) = ((others_keys.as_slice()?, others_misses.as_slice()?), current.as_slice()?);
+    let reply =
+        py.detach(|| best_tour(stops, weights, layer_weights, others, current, max_stops, stickiness));
     Ok((reply.tour.into_pyarray(py), reply.gain, reply.current_gain))
 }
 
 #[pyfunction(name = "most_any_tour_adds")]
 fn py_most_any_tour_adds(
+    py: Python<'_>,
     weights: PyReadonlyArray1<'_, f32>,
     layer_weights: PyReadonlyArray1<'_, f64>,
     edges: PyReadonlyArray1<'_, f64>,
@@ -179,13 +176,9 @@ fn py_most_any_tour_adds(
         legs: legs.as_slice()?,
         edges: edges.as_slice()?,
     };
-    Ok(most_any_tour_adds(
-        stops,
-        weights.as_slice()?,
-        layer_weights.as_slice()?,
-        (team_keys.as_slice()?, team_misses.as_slice()?),
-        max_stops,
-    ))
+    let (weights, layer_weights) = (weights.as_slice()?, layer_weights.as_slice()?);
+    let team = (team_keys.as_slice()?, team_misses.as_slice()?);
+    Ok(py.detach(|| most_any_tour_adds(stops, weights, layer_weights, team, max_stops)))
 }
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -89,7 +89,8 @@ fn py_distance_field<'py>(
     let [rows, cols] = [traversable.shape()[0], traversable.shape()[1]];
     check_resolution(resolution)?;
     let source = checked_cell(source, rows * cols)?;
-    let field = distance_field(traversable.as_slice()?, cols, source, resolution);
+    let open = traversable.as_slice()?;
+    let field = py.detach(|| distance_field(open, cols, source, resolution));
     field.into_pyarray(py).reshape([rows, cols])
 }
 
@@ -105,7 +106,8 @@ fn py_lengths_to<'py>(
     check_resolution(resolution)?;
     let source = checked_cell(source, rows * cols)?;
     let targets = checked_cells(&targets, rows * cols)?;
-    Ok(lengths_to(traversable.as_slice()?, cols, source, &targets, resolution).into_pyarray(py))
+    let open = traversable.as_slice()?;
+    Ok(py.detach(|| lengths_to(open, cols, source, &targets, resolution)).into_pyarray(py))
 }
 
 #[pyfunction(name = "shortest_path")]
@@ -119,7 +121,8 @@ fn py_shortest_path<'py>(
     let [rows, cols] = [traversable.shape()[0], traversable.shape()[1]];
     check_resolution(resolution)?;
     let (source, target) = (checked_cell(source, rows * cols)?, checked_cell(target, rows * cols)?);
-    Ok(shortest_path(traversable.as_slice()?, cols, source, target, resolution).into_pyarray(py))
+    let open = traversable.as_slice()?;
+    Ok(py.detach(|| shortest_path(open, cols, source, target, resolution)).into_pyarray(py))
 }
 
 #[pyfunction(name = "distance_matrix")]
@@ -136,10 +139,11 @@ fn py_distance_matrix<'py>(
         return Err(PyValueError::new_err(format!("limit_m must be >= 0 m; got {limit_m}")));
     }
     let cells = checked_cells(&cells, rows * cols)?;
+    let open = traversable.as_slice()?;
     let matrix = if cells.is_empty() {
         Vec::new()
     } else {
-        distance_matrix(traversable.as_slice()?, cols, &cells, resolution, limit_m)
+        py.detach(|| distance_matrix(open, cols, &cells, resolution, limit_m))
     };
     matrix.into_pyarray(py).reshape([cells.len(), cells.len()])
 }

@@ -246,7 +246,8 @@ fn py_traversable<'py>(
         return Vec::new().into_pyarray(py).reshape([rows, cols]);
     }
     let radius_cells = (radius_m / resolution).min((rows + cols) as f64);
-    traversable(classes.as_slice()?, rows, cols, radius_cells).into_pyarray(py).reshape([rows, cols])
+    let classes = classes.as_slice()?;
+    py.detach(|| traversable(classes, rows, cols, radius_cells)).into_pyarray(py).reshape([rows, cols])
 }
 
 #[pyfunction(name = "find_frontiers")]
@@ -259,9 +260,10 @@ fn py_find_frontiers<'py>(
     if max_extent_cells == 0 {
         return Err(PyValueError::new_err("max_extent_cells must be >= 1; got 0"));
     }
-    let (cells, starts) = match classes.shape()[1] {
+    let (cols, classes) = (classes.shape()[1], classes.as_slice()?);
+    let (cells, starts) = match cols {
         0 => (Vec::new(), vec![0]),
-        cols => find_frontiers(classes.as_slice()?, cols, min_cells, max_extent_cells),
+        _ => py.detach(|| find_frontiers(classes, cols, min_cells, max_extent_cells)),
     };
     Ok((cells.into_pyarray(py), starts.into_pyarray(py)))
 }

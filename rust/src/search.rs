@@ -73,7 +73,8 @@ fn py_detected_mass<'py>(
     let grid = Grid { rows: mass.as_array().nrows(), cols: mass.as_array().ncols() };
     let stencil = Stencil { first, row_taps: row_taps.as_slice()?, col_taps: col_taps.as_slice()? };
     let impact = (keys.as_slice()?, misses.as_slice()?);
-    Ok(detected_mass(grid, mass.as_slice()?, &stencil, steps, layers, impact).into_pyarray(py))
+    let mass = mass.as_slice()?;
+    Ok(py.detach(|| detected_mass(grid, mass, &stencil, steps, layers, impact)).into_pyarray(py))
 }
 
 #[pyfunction(name = "path_gains")]
@@ -101,8 +102,8 @@ fn py_path_gains<'py>(
         misses: misses.as_slice()?,
     };
     let others = (others_keys.as_slice()?, others_misses.as_slice()?);
-    Ok(path_gains(grid, mass.as_slice()?, &stencil, steps, weights.as_slice()?, others, &paths)
-        .into_pyarray(py))
+    let (mass, weights) = (mass.as_slice()?, weights.as_slice()?);
+    Ok(py.detach(|| path_gains(grid, mass, &stencil, steps, weights, others, &paths)).into_pyarray(py))
 }
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {

@@ -141,7 +141,8 @@ fn py_track_values<'py>(
     check(mine.fits(belief.count()), "own blocks")?;
     let ordered = starts.first() == Some(&0) && starts.windows(2).all(|pair| pair[0] <= pair[1]);
     check(ordered && starts.last() == Some(&(mine.targets.len() as i64)), "starts")?;
-    Ok(values(belief, measure_of(measure)?, theirs, starts, mine).into_pyarray(py))
+    let measure = measure_of(measure)?;
+    Ok(py.detach(|| values(belief, measure, theirs, starts, mine)).into_pyarray(py))
 }
 
 #[pyfunction(name = "track_gradient")]

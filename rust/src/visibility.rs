@@ -150,7 +150,8 @@ fn py_visible_cells<'py>(
             poses.shape()
         )));
     }
-    let seen = visible_cells(solid.as_slice()?, poses.as_slice()?, rows, cols, range_cells);
+    let (solid, poses) = (solid.as_slice()?, poses.as_slice()?);
+    let seen = py.detach(|| visible_cells(solid, poses, rows, cols, range_cells));
     seen.into_pyarray(py).reshape([rows, cols])
 }
 
