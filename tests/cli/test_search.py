@@ -16,6 +16,7 @@ from PIL import Image
 from tests.support.commands import FILES, Command, check_files, refused, start
 from tests.support.places import ROOT
 from tests.support.search_missions import SMALL
+from vedette.domains.search import prediction
 from vedette.record.summary import Traffic
 
 FIELDS = [
@@ -194,6 +195,40 @@ def test_the_example_is_the_search_without_a_file(vedette: Command) -> None:
     assert json.loads(ran.out)["vehicles"] == 4
 
 
+# -- cells that are large for a sensor ------------------------------------------------------------------
+
+
+def test_cells_of_more_than_half_a_range_are_told_and_half_are_not(vedette: Command) -> None:
+    for reach, said in ((20, True), (80, False)):
+        sensor = {"type": "definite", "detection": 0.9, "range": reach}
+        ran = vedette("search", scenario(detector=sensor, duration=20), "--out", "out", "--force", *QUICK)
+        assert ran.status in (0, 1)
+        assert ("vedette: cell: 40 m is more than half" in ran.err) is said
+        assert ("take 10 m or less" in ran.err) is said
+
+
+def test_cells_of_many_ranges_are_predicted_as_counted(vedette: Command) -> None:
+    sensor = {"type": "definite", "detection": 0.9, "range": 3}
+    ran = vedette(
+        "search", scenario(detector=sensor), "--no-compare", "--trials", 20000, "--json", "--out", "out"
+    )
+    summary = json.loads(ran.out)
+    assert summary["counted"]["off"] <= summary["counted"]["band"] < 0.01
+    assert summary["detection"] > 0.02
+
+
+def test_where_prediction_and_count_disagree_a_line_says_so(
+    vedette: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    arguments = ("search", scenario(detector={"type": "definite", "range": 40}), "--no-compare", "--force")
+    assert "predicted" not in vedette(*arguments, "--trials", 4000, "--out", "out").out
+    monkeypatch.setattr(prediction, "parts_of", lambda pdf, detectors: 1)  # cells as they are: too large
+    ran = vedette(*arguments, "--trials", 4000, "--out", "out")
+    summary = json.loads((Path("out") / "summary.json").read_text())
+    assert summary["counted"]["off"] > summary["counted"]["band"]
+    assert "more than the 95 % band of 0.021: smaller cells predict better" in ran.out
+
+
 # -- bad input ----------------------------------------------------------------------------------------
 
 ONE = SMALL["vehicles"][0]
@@ -241,6 +276,10 @@ GAUSSIAN = SMALL["prior"][0]
         ({"vehicels": []}, ["vehicels", "'vehicles'"]),
         ({"area": [0, 0, 0, 800]}, ["area"]),
         ({"cell": 0.5}, ["cell", "at most"]),
+        (
+            {"detector": {"type": "definite", "range": 0.3}},
+            ["cell", "133 times", "vehicle-1", "0.3 m", "smaller area"],
+        ),
         ({"step": 0.25}, ["step", "multiple"]),
         ({"duration": 1}, ["duration", "at least a step"]),
         ({"horizon": 2}, ["horizon", "plan more than"]),

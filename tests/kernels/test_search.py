@@ -72,7 +72,15 @@ def test_look_footprints_equal_their_twin(seed: int) -> None:
     shape = tuple(rng.integers(1, 25, 2).tolist())
     poses = rng.uniform((-5, -5, -7), (25, 25, 7), (rng.integers(1, 4), rng.integers(1, 4), 3))
     view = rng.choice([2 * np.pi, rng.uniform(0.1, 6.2)])
-    arguments = (shape, rng.uniform(0.5, 2), poses, rng.random(50), rng.uniform(0.3, 8), view, 2)
+    arguments = (
+        shape,
+        rng.uniform(0.5, 2),
+        poses,
+        rng.random(50),
+        rng.uniform(0.1, 8),
+        view,
+        rng.integers(1, 7),
+    )
     for mine, twin in zip(
         search.look_footprints(*arguments), reference_search.look_footprints(*arguments), strict=True
     ):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -9,10 +10,11 @@ import numpy as np
 
 from vedette.domains.search.belief import TargetPdf
 from vedette.domains.search.evidence import evidence_of_looks
+from vedette.domains.search.prediction import predicted
+from vedette.errors import InputWarning
 from vedette.missions.search.case import SearchCase, made
 from vedette.missions.search.scenario import SearchScenario
 from vedette.record.log import Floats
-from vedette.record.search.curves import predicted
 from vedette.scenario import as_scenario
 from vedette.sim.search.simulation import SearchSetup, SearchSimulation
 
@@ -39,8 +41,10 @@ SMALL: dict[str, Any] = {
 
 
 def case(**changes: Any) -> SearchCase:
-    """Return the small search with other fields."""
-    return made(as_scenario(SMALL | changes, SearchScenario, "small.yaml"), Path("small.yaml"))
+    """Return the small search with other fields; its cells may be large, for speed."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", InputWarning)
+        return made(as_scenario(SMALL | changes, SearchScenario, "small.yaml"), Path("small.yaml"))
 
 
 def scattered(seed: int) -> SearchCase:

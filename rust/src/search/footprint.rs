@@ -66,7 +66,10 @@ impl Points {
         let scale = miss.len() as f64 / square;
         let all_round = detector.view >= std::f64::consts::TAU;
         let (facing, cos_half_view) = ((pose[2].cos(), pose[2].sin()), (detector.view / 2.0).cos());
-        for row in 0..self.rows {
+        let near = |y: f64| (y / self.spacing - self.first.0 as f64).clamp(0.0, self.rows as f64);
+        let rows = near(pose[1] - detector.range - self.spacing).floor() as usize
+            ..near(pose[1] + detector.range + self.spacing).ceil() as usize;
+        for row in rows {
             let dy = ((self.first.0 + row) as f64 + 0.5) * self.spacing - pose[1];
             let half_chord = (square - dy * dy).max(0.0).sqrt();
             // A point more on each side: the exact test is below.

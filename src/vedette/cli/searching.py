@@ -64,6 +64,13 @@ def closing(summary: SearchSummary, folder: Path) -> list[str]:
     if summary.comparison:
         means = (f"{name} {quality.mean_time_s:.0f} s" for name, quality in summary.comparison.items())
         lines.insert(1, f"mean time to detection, cut at {summary.duration_s:.0f} s: {', '.join(means)}")
+    counted = summary.counted
+    if counted is not None and counted.off is not None and counted.off > counted.band:
+        lines.insert(
+            1,
+            f"counted over {counted.trials} targets detection is off the predicted by up to "
+            f"{counted.off:.3f}, more than the 95 % band of {counted.band:.3f}: smaller cells predict better",
+        )
     return lines
 
 

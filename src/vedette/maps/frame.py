@@ -82,3 +82,9 @@ class GridFrame:
             self.origin_x,
             self.origin_y,
         )
+
+    def finer(self, parts: int) -> GridFrame:
+        """Return the frame of ``parts x parts`` cells in each of these."""
+        return GridFrame(
+            self.resolution / parts, self.rows * parts, self.cols * parts, self.origin_x, self.origin_y
+        )

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.support.search_missions import BOX, case
+from vedette.domains.search.prediction import predicted
 from vedette.missions.flying import RoundTimes
 from vedette.missions.search.assemble import SearchTeam
 from vedette.missions.search.options import SearchOptions
@@ -13,7 +14,7 @@ from vedette.missions.search.searching import Declared
 from vedette.outcome import Outcome
 from vedette.record.figures import RobotFigures, RoundFigures
 from vedette.record.log import Floats
-from vedette.record.search.curves import ideal, predicted
+from vedette.record.search.curves import ideal
 from vedette.record.search.log import SearchSample
 from vedette.record.search.observer import Hiding, SearchObserver, SearchView, first_declared
 from vedette.record.search.summary import SearchSummary

@@ -48,6 +48,13 @@ class TargetPdf:
             mass = search.propagate(mass, stencil)
         return replace(self, mass=mass, step=self.step + steps)
 
+    def finer(self, parts: int) -> TargetPdf:
+        """Return the same density on cells of which ``parts x parts`` make up one of these."""
+        if parts == 1:
+            return self
+        shares = np.repeat(np.repeat(self.mass, parts, axis=0), parts, axis=1) / parts**2
+        return replace(self, frame=self.frame.finer(parts), mass=shares)
+
     def observe(self, cells: NDArray[np.integer], log_likelihood: NDArray[np.float64]) -> TargetPdf:
         """``P(x | z) ~ P(x) p(z | x)``: Bayes' rule (paper, eq. (3)); docs/search.md (V42).
 

@@ -19,7 +19,9 @@ from vedette.scenario import as_one_of
 Report: TypeAlias = tuple[float, float] | None  # where a target was reported [m], team frame; None: nowhere
 Pose: TypeAlias = ArrayLike  # (3,) x, y, heading [m, m, rad], team frame
 
-SAMPLES = 2  # points along each side of a cell over which a look is averaged
+LEAST_SAMPLES, MOST_SAMPLES = 2, 256  # points along each side of a cell over which a look is averaged
+POINTS = 4.0  # along a sensor's half width, at least
+COARSEST = 2.0  # cells along a sensor's half width, at least, for a grid to tell apart what it sees
 LEAST_FALSE_ALARM = 1e-9  # assumed at least, so that no report is taken for proof
 LEAST_MISS = 1e-9  # likewise for looks that cannot miss
 _TABLE = 4096  # entries in the squared distance
@@ -49,25 +51,44 @@ class Detector(ABC):
     def probability(self, distance: ArrayLike) -> NDArray[np.float64]:
         """Probability that one look detects a target at this distance [m] in the field of view."""
 
+    @property
+    @abstractmethod
+    def breadth(self) -> float:
+        """Distance at which P has fallen to e^-2 of its best, at most the range [m]."""
+
+    @property
+    def half_width(self) -> float:
+        """Half of what it sweeps when it flies ahead [m]; docs/search.md (V53)."""
+        return self.breadth * math.sin(math.radians(min(self.view, 180.0)) / 2.0)
+
+    def parts(self, resolution: float, each: float) -> int:
+        """In how many parts to cut a side of ``resolution`` [m] for ``each`` of them in a half width."""
+        return max(1, math.ceil(each * resolution / self.half_width - 1e-9))
+
     def table(self) -> NDArray[np.float64]:
         """Return the probability in equal steps of the squared distance, as the kernel takes it."""
         return self.probability(self.range * np.sqrt((np.arange(_TABLE) + 0.5) / _TABLE))
 
     def footprints(
-        self, frame: GridFrame, poses: NDArray[np.float64]
+        self, frame: GridFrame, poses: NDArray[np.float64], least: int = LEAST_SAMPLES
     ) -> tuple[NDArray[np.int64], NDArray[np.uint32], NDArray[np.float64]]:
         """Probability that at least one of L looks detects a target that is anywhere in a cell.
+
+        The mean over a cell is taken over points so close that even a cell far larger than the range has
+        many in range.
 
         Args:
             frame: the grid.
             poses: ``(N, L, 3)`` x, y, heading [m, m, rad], team frame.
+            least: number of points along a cell's side.
 
         Returns:
             starts ``(N + 1,)``, cells ``(M,)`` and probabilities ``(M,)``, the rows of a sparse matrix.
         """
         local = np.asarray(poses, np.float64) - (frame.origin_x, frame.origin_y, 0.0)
         view = math.radians(self.view) if self.view < 360.0 else 2.0 * math.pi
-        return look_footprints(frame.shape, frame.resolution, local, self.table(), self.range, view, SAMPLES)
+        samples = min(max(least, self.parts(frame.resolution, POINTS)), MOST_SAMPLES)
+        return look_footprints(frame.shape, frame.resolution, local, self.table(), self.range, view, samples)
 
     def chance(self, pose: Pose, targets: ArrayLike) -> NDArray[np.float64]:
         """Probability that one look detects each of the targets at ``targets`` (n, 2) [m], ``(n,)``."""
@@ -97,26 +118,40 @@ class Detector(ABC):
         """``ln p(report | target in cell) / p(report | target elsewhere)`` of one look, where it is not 0.
 
         None: ``ln (1 - P)``. A place z: ``ln (1 - P + P N(z; x, noise) A / P_FA)``, A the area of the field
-        of view. The noise is widened by that of a target anywhere in its cell. ``P_FA`` counts as 1e-9 at
-        least, and a miss likewise.  docs/search.md (V42)
+        of view, the mean over the parts of a cell that is large for the sensor. The noise is widened by that
+        of a target anywhere in its part. ``P_FA`` counts as 1e-9 at least, and a miss likewise.
+        docs/search.md (V42)
 
         Returns:
             cells ``(M,)`` and log-likelihood ratios ``(M,)`` [nat].
         """
-        _, cells, detection = self.footprints(frame, np.asarray(pose, np.float64)[None, None])
+        look = np.asarray(pose, np.float64)[None, None]
         if report is None:
+            _, cells, detection = self.footprints(frame, look)
             return cells, np.log(np.maximum(1.0 - detection, LEAST_MISS))
-        variance = self.noise**2 + frame.resolution**2 / 12.0
-        square = ((frame.centres(cells) - report) ** 2).sum(axis=1)
+        parts = self.parts(frame.resolution, COARSEST)
+        fine = frame.finer(parts)
+        _, inside, detection = self.footprints(fine, look)
+        variance = self.noise**2 + fine.resolution**2 / 12.0
+        square = ((fine.centres(inside) - report) ** 2).sum(axis=1)
         density = np.exp(-square / (2.0 * variance)) / (2.0 * math.pi * variance)
         area = math.radians(self.view) / 2.0 * self.range**2
         alarms = max(self.false_alarm, LEAST_FALSE_ALARM) / area
-        return cells, np.log(np.maximum(1.0 - detection, LEAST_MISS) + detection * density / alarms)
+        ratio = np.maximum(1.0 - detection, LEAST_MISS) + detection * density / alarms
+        row, col = np.divmod(inside, np.uint32(fine.cols))
+        cells, part = np.unique(row // parts * np.uint32(frame.cols) + col // parts, return_inverse=True)
+        mean = 1.0 + np.bincount(part, ratio - 1.0) / parts**2  # 1 in the parts that are not in view
+        return cells.astype(np.uint32), np.log(np.maximum(mean, LEAST_MISS))
 
 
 @dataclass(frozen=True)
 class DefiniteRange(Detector):
     """``P(r) = P_D`` up to the range."""
+
+    @property
+    def breadth(self) -> float:
+        """The range."""
+        return self.range
 
     def probability(self, distance: ArrayLike) -> NDArray[np.float64]:
         """``P_D [r <= R]``."""
@@ -129,6 +164,11 @@ class ExponentialRange(Detector):
 
     sigma: float = 50.0  # distance at which P is P_D / e [m]
     power: float = 2.0  # k
+
+    @property
+    def breadth(self) -> float:
+        """``2^(1/k) sigma``, at most the range."""
+        return min(self.range, self.sigma * math.pow(2.0, 1.0 / self.power))
 
     def probability(self, distance: ArrayLike) -> NDArray[np.float64]:
         """``P_D exp(-(r / sigma)^k) [r <= R]``."""

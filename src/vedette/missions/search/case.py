@@ -21,9 +21,9 @@ from vedette.domains.search.priors import GaussianPart, gaussians, heat_map, mix
 from vedette.errors import InputError
 from vedette.maps import GridFrame
 from vedette.missions.search.scenario import Gaussian, Heat, Polygon, Prior, SearchScenario, Uniform
+from vedette.missions.search.suits import MOST_CELLS, check_cells
 from vedette.scenario import as_scenario, load_scenario
 
-MOST_CELLS = 400_000
 DEFAULT = "search.yaml"
 
 
@@ -88,8 +88,9 @@ def made(scenario: SearchScenario, path: Path) -> SearchCase:
 
     Raises:
         InputError: an area without inside or with too many cells, a step that the simulator cannot make, a
-            name used twice, a start outside the area, a detector or a prior that is none; the line names file
-            and field.
+            name used twice, a start outside the area, a detector or a prior that is none, cells far too large
+            for a sensor; the line names file and field.
+        InputWarning: cells that are large for a sensor.
     """
     try:
         _check_area(scenario)
@@ -102,7 +103,9 @@ def made(scenario: SearchScenario, path: Path) -> SearchCase:
         motion = TargetMotion(target.drift, target.diffusion)
         pdf = TargetPdf(frame, mixture(frame, parts), motion, scenario.step)
         _ = pdf.stencil
-        return SearchCase(path.stem, scenario, pdf, tuple(_detectors(scenario)))
+        detectors = tuple(_detectors(scenario))
+        check_cells(pdf, detectors, scenario.vehicle_names)
+        return SearchCase(path.stem, scenario, pdf, detectors)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
 

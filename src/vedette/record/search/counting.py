@@ -27,8 +27,8 @@ class Trials:
         counts = np.bincount(self.steps, minlength=steps + 2)[: steps + 1]
         return np.asarray(counts.cumsum() / len(self.steps))
 
-    def figures(self, times: Floats) -> Counted:
-        """Return what they say of a search whose steps end at ``times`` (K + 1,) [s]."""
+    def figures(self, times: Floats, predicted: Floats) -> Counted:
+        """Return what they say of a search whose steps end at ``times`` [s], both (K + 1,)."""
         steps, count = len(times) - 1, len(self.steps)
         found = int(np.count_nonzero(self.steps <= steps))
         low, high = wilson(found, count)
@@ -45,6 +45,7 @@ class Trials:
             mean_time_low_s=None if half is None else mean - half,
             mean_time_high_s=None if half is None else mean + half,
             band=dkw(count),
+            off=float(np.abs(self.curve(steps) - predicted).max()) if self.of == "looks" else None,
             mistaken=self.mistaken,
         )
 

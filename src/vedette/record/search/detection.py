@@ -79,8 +79,8 @@ def _counted(axes: Axes, curves: Curves, summary: SearchSummary) -> None:
     low, high = (np.clip(share + way * counted.band, 0.0, 1.0) for way in (-1.0, 1.0))
     what = "targets drawn" if counted.of == "looks" else "searches run"
     axes.fill_between(
-        curves.times, low, high, step="post", color=colour, alpha=0.16, lw=0, zorder=1,
+        curves.times, low, high, color=colour, alpha=0.16, lw=0, zorder=1,
         label=f"{summary.coordination}, counted over {counted.trials} {what}, 95 % band",
     )  # fmt: skip
     if counted.of == "runs":
-        axes.plot(curves.times, share, color=colour, lw=1.0, drawstyle="steps-post", zorder=2)
+        axes.plot(curves.times, share, color=colour, lw=1.0, zorder=2)

@@ -14,13 +14,14 @@ from msgspec import structs
 
 from vedette.agent.flight import Itinerary
 from vedette.domains.search.belief import TargetPdf
+from vedette.domains.search.prediction import Looks, Undetected
 from vedette.missions.search.assemble import SearchTeam
 from vedette.missions.search.case import SearchCase
 from vedette.missions.search.searching import Declared, SearchPlan
 from vedette.outcome import Outcome
 from vedette.record.figures import RobotFigures, TeamFigures
 from vedette.record.log import Floats, Sink
-from vedette.record.search.curves import Curves, Looks, missed
+from vedette.record.search.curves import Curves
 from vedette.record.search.log import SearchLog, SearchSample, SearchScene, SearchSnapshot
 from vedette.record.search.summary import IdealSearch, SearchSummary
 from vedette.record.summary import Setting, Timing
@@ -67,7 +68,7 @@ class SearchObserver:
     ) -> None:
         """Prepare to observe a search that has not begun and may take so long [s]."""
         self._team, self._setting, self._truth = team, setting, truth
-        self._left = team.case.pdf.mass  # probability by cell that no look has taken away
+        self._undetected = Undetected(team.case.pdf, team.case.detectors)
         self._views: tuple[SearchView, ...] = ()  # of the last look
         self.log = SearchLog(SearchScene.of(team.case, duration), sinks)
 
@@ -76,7 +77,7 @@ class SearchObserver:
         self._views = tuple(views)
         step, case, truth = self.log.step, self._team.case, self._truth
         if step > 0:
-            self._left = missed(self._left, case.pdf, case.detectors, truth.looks, step)
+            self._undetected.look(truth.looks)
         known = next(view.pdf for view in views if view.pdf is not None)
         x, y = truth.place(step).tolist()
         self.log.add(
@@ -85,7 +86,7 @@ class SearchObserver:
                 vehicles=tuple(view.sample for view in views),
                 mass=known.mass.astype(np.float32),
                 entropy=known.entropy,
-                detection=1.0 - float(self._left.sum()),
+                detection=self._undetected.detected,
                 target=(x, y),
             )
         )

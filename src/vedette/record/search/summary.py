@@ -48,6 +48,7 @@ class Counted:
     mean_time_low_s: float | None  # None: of a single trial
     mean_time_high_s: float | None
     band: float
+    off: float | None  # largest distance from the predicted curve; None: it predicts something else
     mistaken: int
 
 

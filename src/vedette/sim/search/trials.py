@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 
 from vedette.domains.search.belief import TargetPdf
 from vedette.domains.search.detectors import Detector
+from vedette.domains.search.prediction import Looks, predicted
 from vedette.missions.search.case import SearchCase
 from vedette.missions.search.options import COORDINATIONS
 from vedette.outcome import Outcome
 from vedette.record.search.counting import Trials
-from vedette.record.search.curves import Looks, predicted
 from vedette.record.search.observer import SearchReport, ended_as
 from vedette.record.search.summary import SearchQuality
 from vedette.sim.search.hidden import draw_places
@@ -136,7 +136,7 @@ def _joined(
         outcome=outcome,
         completed=outcome.completed,
         **({} if own is None else vars(own)),
-        counted=None if trials is None else trials.figures(times),
+        counted=None if trials is None else trials.figures(times, detection[report.summary.coordination]),
         comparison=comparison,
     )
     curve = None if trials is None else trials.curve(len(times) - 1)
