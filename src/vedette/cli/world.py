@@ -1,4 +1,4 @@
-"""``vedette world``: generate a world and write it as a map."""
+"""``vedette world``: make a world and write it as a map, generated or of a recorded building."""
 
 from __future__ import annotations
 
@@ -6,29 +6,90 @@ from pathlib import Path
 
 import click
 import numpy as np
+from click.core import ParameterSource
 
-from vedette.cli.options import FILE, OneOf
+from vedette.cli.options import FILE, OneOf, Positive
+from vedette.errors import InputError
+from vedette.logs import read_carmen
+from vedette.maps.world import World
 from vedette.record.folder import OutputFolder
-from vedette.sim.worlds import GENERATORS
+from vedette.sim.worlds import GENERATORS, NO_RETURNS, logged
+
+LOG = "log"
+_OF_GENERATED = ("seed", "width", "height")
+_OF_LOGS = ("reach", "no_return")
 
 
 @click.command()
-@click.argument("kind", type=OneOf(list(GENERATORS)))
+@click.argument("kind", type=OneOf([*GENERATORS, LOG]))
+@click.argument("file", metavar="[FILE]", required=False, type=FILE)
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Which one to make.")
 @click.option("--out", type=FILE, required=True, metavar="DIR", help="New folder for the map.")
 @click.option("--width", type=float, default=30.0, show_default=True, help="Size in x [m].")
 @click.option("--height", type=float, default=20.0, show_default=True, help="Size in y [m].")
 @click.option("--resolution", type=float, default=0.1, show_default=True, help="Side of a cell [m].")
+@click.option(
+    "--range", "reach", type=Positive("m"), default=20.0, show_default=True,
+    help="How far a log's beams count [m].",
+)  # fmt: skip
+@click.option(
+    "--no-return", type=OneOf(NO_RETURNS), default="ignore", show_default=True,
+    help="What a log's beam says that did not come back: nothing, or that the way is free.",
+)  # fmt: skip
 @click.option("--force", is_flag=True, help="Write into DIR although it exists.")
+@click.pass_context
 def world(
-    kind: str, seed: int, out: Path, width: float, height: float, resolution: float, force: bool
+    context: click.Context,
+    kind: str,
+    file: Path | None,
+    seed: int,
+    out: Path,
+    width: float,
+    height: float,
+    resolution: float,
+    reach: float,
+    no_return: str,
+    force: bool,
 ) -> None:
-    """Generate an office, a cave or a maze: DIR gets map.yaml and map.pgm, as ROS map_server reads them,
-    and preview.png. The same seed and size give the same world."""
-    made = GENERATORS[kind](np.random.default_rng(seed), width, height, resolution)
-    with OutputFolder.make(out, force, kind) as folder:
+    """Make a world: DIR gets map.yaml and map.pgm, as ROS map_server reads them, and preview.png.
+
+    KIND is office, cave or maze, generated: the same seed and size give the same world. Or it is log: the
+    building in which FILE, a CARMEN log, was recorded.
+    """
+    of_log = kind == LOG
+    _refuse(context, _OF_GENERATED if of_log else _OF_LOGS, "generated worlds" if of_log else "logs")
+    if of_log:
+        made = _of_log(file, resolution, reach, no_return)
+    else:
+        made = _generated(kind, file, seed, width, height, resolution)
+    with OutputFolder.make(out, force, kind, [] if file is None else [file]) as folder:
         path = made.save(folder.path)
+    rows, cols = made.frame.shape
     free = np.count_nonzero(~made.solid) * resolution**2
+    named = made.name if of_log else f"{kind}, seed {seed}"
     click.echo(
-        f"{kind}, seed {seed}: {width:g} x {height:g} m at {resolution:g} m, {free:.0f} m2 free -> {path}"
+        f"{named}: {cols * resolution:g} x {rows * resolution:g} m at {resolution:g} m, "
+        f"{free:.0f} m2 free -> {path}"
     )
+
+
+def _refuse(context: click.Context, options: tuple[str, ...], others: str) -> None:
+    """Refuse options that would be overridden in silence."""
+    for parameter in context.command.params:
+        given = context.get_parameter_source(parameter.name or "") is ParameterSource.COMMANDLINE
+        if given and parameter.name in options:
+            raise InputError(f"{parameter.opts[0]} is of {others}; leave it out")
+
+
+def _generated(
+    kind: str, file: Path | None, seed: int, width: float, height: float, resolution: float
+) -> World:
+    if file is not None:
+        raise InputError(f"{kind} is generated, without a file; of a recording: vedette world log {file}")
+    return GENERATORS[kind](np.random.default_rng(seed), width, height, resolution)
+
+
+def _of_log(file: Path | None, resolution: float, reach: float, no_return: str) -> World:
+    if file is None:
+        raise InputError("vedette world log needs a FILE: a CARMEN log, plain or gzipped")
+    return logged(read_carmen(file), resolution, reach, no_return)

@@ -1,9 +1,10 @@
-"""Generated worlds: offices, caves and mazes, each seed another, each fit for a team of robots."""
+"""Worlds: generated offices, caves and mazes, each seed another, and real buildings that a lidar has seen."""
 
 from vedette.sim.worlds.cave import cave
+from vedette.sim.worlds.logged import NO_RETURNS, logged
 from vedette.sim.worlds.maze import maze
 from vedette.sim.worlds.office import office
 
 GENERATORS = {"office": office, "cave": cave, "maze": maze}
 
-__all__ = ["GENERATORS", "cave", "maze", "office"]
+__all__ = ["GENERATORS", "NO_RETURNS", "cave", "logged", "maze", "office"]

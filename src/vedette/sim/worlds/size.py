@@ -1,4 +1,4 @@
-"""How large a generated world may be, and its metres in cells."""
+"""How large a world may be, and its metres in cells."""
 
 from __future__ import annotations
 
@@ -29,16 +29,24 @@ def world_frame(width: float, height: float, resolution: float) -> GridFrame:
     Raises:
         InputError: a size out of range, or more cells a side than a map file may have.
     """
-    for name, value, (low, high) in (
-        ("width", width, SIDES),
-        ("height", height, SIDES),
-        ("resolution", resolution, RESOLUTIONS),
-    ):
-        if not low <= value <= high:
-            raise InputError(f"{name} of a generated world must be {low:g} to {high:g} m; got {value:g}")
+    for name, value in (("width", width), ("height", height)):
+        check_length(f"{name} of a generated world", value, SIDES)
+    check_length("resolution of a world", resolution, RESOLUTIONS)
     rows, cols = round(height / resolution), round(width / resolution)
+    check_cells(rows, cols)
+    return GridFrame(resolution, rows, cols)
+
+
+def check_length(what: str, value: float, limits: tuple[float, float]) -> None:
+    """Raise InputError for a length out of its limits [m]."""
+    low, high = limits
+    if not low <= value <= high:
+        raise InputError(f"{what} must be {low:g} to {high:g} m; got {value:g}")
+
+
+def check_cells(rows: int, cols: int) -> None:
+    """Raise InputError for more cells a side than a map file may have."""
     if max(rows, cols) > MAX_SIDE:
         raise InputError(
             f"{cols}x{rows} cells are too many, at most {MAX_SIDE} a side; use a coarser resolution"
         )
-    return GridFrame(resolution, rows, cols)

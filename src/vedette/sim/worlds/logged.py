@@ -1,0 +1,85 @@
+"""A real building as a world: what a recorded lidar saw of it is free or solid, and the rest is solid."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.errors import InputError
+from vedette.kernels import lidar
+from vedette.logs import RecordedLog, RecordedScan
+from vedette.maps import GridFrame
+from vedette.maps.world import World
+from vedette.missions.explore.exploring import CLAMP, GAIN_HIT, GAIN_MISS, NUDGE
+from vedette.sim.components import components, largest
+from vedette.sim.worlds.size import RESOLUTIONS, check_cells, check_length
+
+NO_RETURNS = ("ignore", "free")
+SPECK = 0.25  # solid things that nothing came back from are no smaller [m^2]
+_MARGIN = 0.5  # about what was seen [m]
+
+
+def logged(log: RecordedLog, resolution: float, reach: float, no_return: str) -> World:
+    """Return the building in which a log was recorded.
+
+    A cell is free where more beams passed than came back, and solid where they came back, or where none
+    was. Specks that no beam fell into, between the beams of far scans, are free as what is round them; of
+    the free cells the largest connected part is kept.
+
+    Args:
+        log: of a lidar.
+        resolution: cell side [m].
+        reach: of the beams; what lies farther is left out [m].
+        no_return: what a beam says that did not come back: ``ignore`` nothing, ``free`` that nothing is
+            within reach; glass and black walls return none.
+
+    Raises:
+        InputError: a resolution out of range, more than 8000 cells a side, or nothing free.
+    """
+    check_length("resolution of a world", resolution, RESOLUTIONS)
+    frame = _frame(log, resolution, reach)
+    evidence = np.zeros(frame.shape, np.int8)
+    for scan in log.scans:
+        ranges, hits = beams(scan, reach, no_return)
+        x, y = scan.x - frame.origin_x, scan.y - frame.origin_y
+        gains = GAIN_HIT, GAIN_MISS, CLAMP, NUDGE * resolution
+        lidar.integrate_scan(evidence, resolution, x, y, scan.angles, ranges, hits, *gains)
+    solid = ~largest(_specks_freed(evidence, round(SPECK / resolution**2)))
+    if solid.all():
+        raise InputError(f"{log.name}: its scans leave nothing free within {reach:g} m; raise --range")
+    return World(frame, solid, log.name)
+
+
+def beams(scan: RecordedScan, reach: float, no_return: str) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Return how far each beam of a scan tells of, 0 where it tells nothing [m], and whether it came back."""
+    lost = np.isinf(scan.ranges)
+    told = ~np.isnan(scan.ranges) & ~(lost & (no_return == "ignore"))
+    hits = told & ~lost & (scan.ranges < reach)
+    return np.where(told, np.minimum(scan.ranges, reach), 0.0), hits
+
+
+def _frame(log: RecordedLog, resolution: float, reach: float) -> GridFrame:
+    """Return the grid that holds all that came back, on whole multiples of its cells."""
+    low, high = np.full(2, math.inf), np.full(2, -math.inf)
+    for scan in log.scans:
+        ranges, hits = beams(scan, reach, "ignore")
+        at, angles, away = np.array([scan.x, scan.y]), scan.angles[hits], ranges[hits]
+        ends = at + away[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+        seen = np.vstack([at, ends])
+        low, high = np.minimum(low, seen.min(axis=0)), np.maximum(high, seen.max(axis=0))
+    first, last = np.floor((low - _MARGIN) / resolution), np.ceil((high + _MARGIN) / resolution)
+    cols, rows = (last - first).astype(int).tolist()
+    check_cells(rows, cols)
+    x, y = (first * resolution).tolist()
+    return GridFrame(resolution, rows, cols, x, y)
+
+
+def _specks_freed(evidence: NDArray[np.int8], cells: int) -> NDArray[np.bool_]:
+    """Return what is free, with parts of the unknown that are smaller than so many cells."""
+    free, unknown = evidence < 0, evidence == 0
+    labels = components(unknown)
+    small = np.bincount(labels[unknown]) < cells
+    free[unknown] = small[labels[unknown]]
+    return free
