@@ -73,6 +73,16 @@ class GridFrame:
             )
         )
 
+    def window(self, rows: slice, cols: slice) -> GridFrame:
+        """Return the frame of some of the rows and columns."""
+        return GridFrame(
+            self.resolution,
+            rows.stop - rows.start,
+            cols.stop - cols.start,
+            self.origin_x + cols.start * self.resolution,
+            self.origin_y + rows.start * self.resolution,
+        )
+
     def coarse(self, factor: int) -> GridFrame:
         """Return the frame whose cells are ``factor x factor`` of these, padded at the far edges."""
         return GridFrame(

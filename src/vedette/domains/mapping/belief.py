@@ -16,7 +16,8 @@ from vedette.maps import UNKNOWN, GridFrame
 from vedette.maps.bounds import EVERYWHERE, Extent
 
 PLANNING_CELL = 0.2  # [m]; coarser costs quality, finer only bytes (docs/mapping.md, section 3)
-MIN_FRONTIER = 0.25  # shortest frontier worth a name [m]
+SHORTEST = 0.25  # frontier worth a name [m] ...
+OF_RADIUS = 1.25  # ... or shorter for a small robot, so many times its radius
 LN2 = float(np.log(2.0))  # entropy of a cell with P = 0.5 [nats]
 
 
@@ -53,9 +54,14 @@ def longest_frontier(reach: float) -> float:
     return max(2.5, 0.35 * reach)
 
 
-def frontier_limits(extent: float, resolution: float) -> tuple[int, int]:
+def shortest_frontier(radius: float) -> float:
+    """Return how long a frontier is at least [m], for robots of such a radius [m]."""
+    return min(SHORTEST, OF_RADIUS * radius)
+
+
+def frontier_limits(extent: float, resolution: float, shortest: float = SHORTEST) -> tuple[int, int]:
     """Return how many cells a frontier has at least, and how long it may be [cells]; from its length [m]."""
-    return max(1, round(MIN_FRONTIER / resolution)), max(2, round(extent / resolution))
+    return max(1, round(shortest / resolution)), max(2, round(extent / resolution))
 
 
 def freeze(
@@ -64,6 +70,7 @@ def freeze(
     *,
     reach: float,
     extent: float,
+    shortest: float = SHORTEST,
     hidden: float,
     return_price: float = 0.0,
     turn: float = math.inf,
@@ -81,6 +88,7 @@ def freeze(
         frame: where it lies.
         reach: how far beyond what is known the sensors may see [m].
         extent: longest frontier before it is split [m].
+        shortest: length from which a frontier counts [m].
         hidden: area expected behind a frontier [m^2].
         return_price: more for a frontier that is far from others [m^2 a metre].
         turn: gather up what was left behind, at these prices, once frontiers promise less than this [m^2].
@@ -92,14 +100,8 @@ def freeze(
     planning = frame.coarse(factor)
     rows, cols = _window(classes, known, factor, int(np.ceil(reach / frame.resolution)))
     crop = classes[rows, cols].copy()  # the map goes on changing while a round lasts
-    window = GridFrame(
-        frame.resolution,
-        crop.shape[0],
-        crop.shape[1],
-        frame.origin_x + cols.start * frame.resolution,
-        frame.origin_y + rows.start * frame.resolution,
-    )
-    cells, starts = find_frontiers(crop, *frontier_limits(extent, frame.resolution))
+    window = frame.window(rows, cols)
+    cells, starts = find_frontiers(crop, *frontier_limits(extent, frame.resolution, shortest))
     unknown = _block_sum(crop == UNKNOWN, factor)
     local = unknown.astype(np.float32) * LN2
     frontiers = cells, starts

@@ -100,7 +100,9 @@ class MappingPlatform:
     given_up: list[GivenUp] = field(default_factory=list)  # by this robot
     told: list[GivenUp] = field(default_factory=list)  # by anybody, as of the last round
     avoided: list[tuple[float, float, float]] = field(default_factory=list)  # x, y, until [s]
+    doubtful: NDArray[np.bool_] | None = None  # (R, C) of the window: occupied, but not for sure
     ground: Ground | None = None
+    daring: bool = False  # the round's stops are behind what is doubtful
     stops: Stops | None = None
     considered: NDArray[np.float64] = field(init=False)  # (N, 2) frontiers of stops, those left alone too [m]
     cut_short: bool = field(init=False, default=False)  # the round's work ended before all was looked at
@@ -117,9 +119,14 @@ class MappingPlatform:
         obstacles: list[Disc],
         team: list[tuple[int, float, float]],
         now: float,
+        doubtful: NDArray[np.bool_] | None = None,
     ) -> None:
-        """Say where the robot and its mates are [m], team frame, which discs do not move, what time it is."""
+        """Say where the robot and its mates are [m], team frame, which discs do not move, what time it is.
+
+        ``doubtful``: ``(R, C)`` cells of the round's window that are occupied, but perhaps by mistake.
+        """
         self.x, self.y, self.obstacles, self.team, self.now = x, y, obstacles, team, now
+        self.doubtful = doubtful
 
     def model(self, belief: MapBelief) -> SightingModel:
         """Return the sighting model that the belief's counts give this robot's sensor."""
@@ -134,23 +141,42 @@ class MappingPlatform:
     def prepare(self, belief: MapBelief) -> None:
         """Survey the ground and find the stops; the slow part, before the round.
 
-        A robot that finds none looks at the frontiers from close by, and then for narrower ways. Its work is
-        bounded: if so much of it finds nothing and there are frontiers left, it works more the next time.
+        A robot that finds none looks at the frontiers from close by, then for narrower ways, and in the end
+        for ways that only doubtful cells close. Its work is bounded: if so much of it finds nothing and there
+        are frontiers left, it works more the next time.
         """
         self._update_given_up(belief)
         self.ahead = self.max_stops if belief.gathering else 1
-        self.cut_short = False
+        self.cut_short = self.daring = False
         model = self.model(belief)
         for clearance in CLEARANCES:
             self.ground = survey(belief, self.spec, self.x, self.y, self.obstacles, clearance)
-            last = clearance == CLEARANCES[-1]
-            if any(
-                self._find_stops(belief, self.ground, model, *close)
-                for close in ((False, False), (True, last))
-            ):
-                self.patience = PATIENCE
+            if self._leads_on(belief, self.ground, model, last=clearance == CLEARANCES[-1]):
                 return
-        self.patience *= 2 if self.cut_short else 1
+        self.daring = self._dares(belief, model)
+        self.patience *= 2 if self.cut_short and not self.daring else 1
+
+    def _leads_on(self, belief: MapBelief, ground: Ground, model: SightingModel, *, last: bool) -> bool:
+        """Find stops on the ground; tell if one can be visited."""
+        ways = ((False, False), (True, last))
+        if any(self._find_stops(belief, ground, model, *close) for close in ways):
+            self.patience = PATIENCE
+            return True
+        return False
+
+    def _dares(self, belief: MapBelief, model: SightingModel) -> bool:
+        """Find stops beyond what is doubtful, which the robot will see better on its way there."""
+        assert self.ground is not None
+        if self.doubtful is None or not self.doubtful.any():
+            return False
+        dared = survey(belief, self.spec, self.x, self.y, self.obstacles, CLEARANCES[-1], self.doubtful)
+        if not (np.isfinite(dared.field) & ~np.isfinite(self.ground.field)).any():
+            return False
+        sure, self.ground = self.ground, dared
+        if self._leads_on(belief, dared, model, last=True):
+            return True
+        self.ground = sure
+        return False
 
     def _find_stops(
         self, belief: MapBelief, ground: Ground, model: SightingModel, close: bool, last: bool

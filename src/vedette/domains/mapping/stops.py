@@ -55,11 +55,22 @@ class Stops:
 
 
 def survey(
-    belief: MapBelief, spec: PlatformSpec, x: float, y: float, discs: list[Disc], clearance: float
+    belief: MapBelief,
+    spec: PlatformSpec,
+    x: float,
+    y: float,
+    discs: list[Disc],
+    clearance: float,
+    doubtful: NDArray[np.bool_] | None = None,
 ) -> Ground:
-    """Find where a robot at (x, y) can drive in the belief's window, around discs that stand still."""
-    frame = belief.frame
-    passable = frontier.traversable(belief.classes, spec.radius + clearance, frame.resolution)
+    """Find where a robot at (x, y) can drive in the belief's window, around discs that stand still.
+
+    With ``doubtful``, ``(R, C)`` occupied cells of the window, as if these were free.
+    """
+    frame, classes = belief.frame, belief.classes
+    if doubtful is not None:
+        classes = np.where(doubtful, np.uint8(FREE), classes)
+    passable = frontier.traversable(classes, spec.radius + clearance, frame.resolution)
     for disc in discs:
         block(passable, frame, disc, spec.radius + clearance)
     row, col = np.clip(frame.cell(x, y), 0, (frame.rows - 1, frame.cols - 1))

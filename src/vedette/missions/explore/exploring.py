@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -11,7 +11,13 @@ from numpy.typing import NDArray
 from vedette.agent.effects import Route
 from vedette.agent.events import Pose, Scan
 from vedette.agent.mates import Mate
-from vedette.domains.mapping.belief import MapBelief, freeze, longest_frontier, planning_factor
+from vedette.domains.mapping.belief import (
+    MapBelief,
+    freeze,
+    longest_frontier,
+    planning_factor,
+    shortest_frontier,
+)
 from vedette.domains.mapping.impact import Impact, MapImpactCodec, check_claim
 from vedette.domains.mapping.leftovers import Leftover, given_up, leftovers
 from vedette.domains.mapping.objective import MappingObjective
@@ -30,9 +36,10 @@ from vedette.domains.mapping.stops import (
 from vedette.domains.mapping.views import MOST_STOPS
 from vedette.fusion import Fusion
 from vedette.kernels import distance, frontier, lidar
-from vedette.maps import GridFrame
+from vedette.maps import FREE, GridFrame
 from vedette.maps.bounds import Bounds, Extent
 from vedette.maps.disc import cells_under
+from vedette.missions.explore.doubts import Doubts
 from vedette.missions.explore.looking import Looking
 from vedette.missions.explore.resort import LastResort, hemmed_in
 from vedette.outcome import Outcome
@@ -80,8 +87,10 @@ class Exploring:
     _learned: tuple[float, float] | None = None  # where it last learned
     _then: NDArray[np.int8] = field(init=False)  # (R, C) its evidence then, to the class
     _since: list[NDArray[np.int64]] = field(default_factory=list)  # cells whose own class changed since
+    _at: tuple[float, float] = (np.inf, np.inf)  # where it last observed [m], team frame
     _looking: Looking = field(init=False)
     _resort: LastResort = field(init=False)
+    _doubts: Doubts = field(init=False)
     _left: list[Leftover] | None = None  # as of the last round; None: there was a stop
     _released: list[tuple[float, float]] = field(default_factory=list)  # stops that could not be carried out
     _passable: dict[float, tuple[int, NDArray[np.bool_]]] = field(default_factory=dict)  # by clearance
@@ -93,6 +102,7 @@ class Exploring:
         self.counts = empty_counts()
         self._looking = Looking(self.spec, self.frame.resolution)
         self._resort = LastResort(self._looking)
+        self._doubts = Doubts(self.spec.radius)
 
     # -- evidence -----------------------------------------------------------------------------------
 
@@ -112,6 +122,7 @@ class Exploring:
         else:
             changed = lidar.integrate_scan(*beams, GAIN_HIT, GAIN_MISS, CLAMP, nudge)
         self._note(changed)
+        self._at = pose.x, pose.y
         self._stand(pose)
         self._looking.add(pose, scan.angles)
 
@@ -233,6 +244,7 @@ class Exploring:
             self.frame,
             reach=max(self.spec.range, NEARBY + self.frame.resolution),
             extent=longest_frontier(self.spec.range),
+            shortest=shortest_frontier(self.spec.radius),
             hidden=self.planner.hidden,
             return_price=self.planner.return_price,
             turn=self.planner.turn,
@@ -247,7 +259,12 @@ class Exploring:
         """Find the stops of a round and restate the present tour over them; else what is left to try."""
         team = [(mate.robot, mate.x, mate.y) for mate in mates if not mate.silent(now)]
         self.platform.place(
-            pose.x, pose.y, self._discs(pose, mates, blocked, now), [(-1, pose.x, pose.y), *team], now
+            pose.x,
+            pose.y,
+            self._discs(pose, mates, blocked, now),
+            [(-1, pose.x, pose.y), *team],
+            now,
+            self._doubtful(belief),
         )
         self.platform.prepare(belief)
         self.strategy = self.platform.carry_over(self.strategy)
@@ -257,6 +274,12 @@ class Exploring:
             self._left = leftovers(belief, self.platform)
             frontiers = len(belief.frontier_cells) > 0
             self._resort.consider(pose, belief.frame, self.platform.ground, frontiers)
+
+    def _doubtful(self, belief: MapBelief) -> NDArray[np.bool_]:
+        """Return ``(R, C)`` which cells of a round's window are occupied, but perhaps by mistake."""
+        row, col = (first * belief.factor for first in belief.first)
+        own = self.log_odds[row : row + belief.frame.rows, col : col + belief.frame.cols]
+        return self._doubts.about(belief.classes, own, belief.frame)
 
     @property
     def left_out(self) -> list[Leftover]:
@@ -344,8 +367,13 @@ class Exploring:
         return self._looking.toward(pose, float(np.arctan2(ahead[1], ahead[0])), distance)
 
     def release(self, now: float) -> None:
-        """Drop the tour; leave its first stop alone for a while, after some tries until the map changes."""
-        if len(self.strategy):
+        """Drop the tour; leave its first stop alone for a while, after some tries until the map changes.
+
+        What closes a way that was doubtful is not doubted here any more.
+        """
+        if self.platform.daring:
+            self._doubts.settle(*self._at)
+        elif len(self.strategy):
             self._put_off(now)
         self.strategy, self._resort.goal = STAY, None
 
@@ -383,8 +411,7 @@ class Exploring:
         """
         discs = self._discs(pose, mates, blocked, now)
         source, target = self._cell(pose.x, pose.y), self._cell(*goal)
-        for clearance in CLEARANCES:
-            passable = self._passable_now(clearance)
+        for clearance, passable in self._ways(goal):
             if discs:
                 passable = self._within_known(passable[self.fusion.known])
             for disc in discs:
@@ -396,6 +423,13 @@ class Exploring:
                 there = np.hypot(pose.x - goal[0], pose.y - goal[1]) <= THERE and goal == self.goal()
                 return Route(path, passable, clearance, self._facing(pose) if there else None)
         return None
+
+    def _ways(self, goal: tuple[float, float]) -> Iterator[tuple[float, NDArray[np.bool_]]]:
+        """Yield clearances and where they let the robot's centre be, the widest first, the doubtful last."""
+        for clearance in CLEARANCES:
+            yield clearance, self._passable_now(clearance)
+        if self.platform.daring and goal == self.goal():
+            yield CLEARANCES[-1], self._passable_daring(CLEARANCES[-1])
 
     def _cell(self, x: float, y: float) -> int:
         row, col = self.frame.cell(x, y)
@@ -409,6 +443,13 @@ class Exploring:
             known = digest, self._within_known(frontier.traversable(crop, reach, self.frame.resolution))
             self._passable[clearance] = known
         return known[1]
+
+    def _passable_daring(self, clearance: float) -> NDArray[np.bool_]:
+        rows, cols = known = self.fusion.known
+        crop, frame = self.fusion.classes[known], self.frame.window(rows, cols)
+        free = np.where(self._doubts.about(crop, self.log_odds[known], frame), np.uint8(FREE), crop)
+        passable = frontier.traversable(free, self.spec.radius + clearance, frame.resolution)
+        return self._within_known(passable)
 
     def _within_known(self, mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Return a mask over the whole map that holds another within what is known, and nothing outside."""
