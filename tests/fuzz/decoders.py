@@ -77,8 +77,8 @@ def _agent_messages() -> list[Any]:
 def _hellos() -> list[Any]:
     echo = hello.Echo(12, 40, 900)
     return [
-        hello.Hello(12, 1, 0, 1, 3, 12, 0, 0, 1, 0, 0),
-        hello.Hello(12, 41, 123_456, 9, 1, 5, 400, 3, 4, 10, -777, echo),
+        hello.Hello(12, 1, 0, 1, 3, 12, 0, 0, 1, 0, 0, 5),
+        hello.Hello(12, 41, 123_456, 9, 1, 5, 400, 3, 4, 10, -777, 1 << 62, echo),
     ]
 
 
@@ -171,7 +171,20 @@ def conditions() -> list[Any]:
     link = report.LinkReport(1, "child", 0.25, 0.003, -1.5, None)
     counts = {"negotiation": 12, "beacons": 40}
     place = [0, 3, 40, None, (1, 2), 3, 12.5]
-    figures = [7, 9, 0, 5, 4.2, 31.0, 0, 0.4, counts, counts, {"agent": 1}, None]
+    figures = [
+        7,
+        9,
+        0,
+        5,
+        4.2,
+        31.0,
+        0,
+        0.4,
+        counts,
+        counts,
+        {"agent": 1},
+        (report.Complaint(2, "rounds go on without it"),),
+    ]
     return [
         report.Condition(
             0, 99, "robot-1", 20.0, 1.5, "driving", 1.0, 2.0, 0.5, (1.0, 2.0, 1.5, 2.0),

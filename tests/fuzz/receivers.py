@@ -246,6 +246,6 @@ def receivers() -> list[Target]:
     }
     return [
         *(scripted(name, partial(_stage, make), _refuses, _go_on) for name, make in makers.items()),
-        scripted("overlay", _overlay_stage, _overlay_refuses, _overlay_goes_on),
+        scripted("overlay", _overlay_stage, _overlay_refuses, _overlay_goes_on, frozenset({"complaints"})),
         scripted("link", _link_stage, _link_refuses, _link_goes_on),
     ]

@@ -8,6 +8,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -22,21 +23,19 @@ from vedette.sim.faults import Schedule
 Program = Callable[..., NetworkedAgent]
 
 MODES: Mapping[str, Callable[[np.random.Generator], Program]] = {
-    "slow": lambda rng: _slow(misbehaving.delay_of(rng)),
-    "hung": lambda rng: _slow(misbehaving.NEVER),
+    "slow": lambda rng: partial(misbehaving.Slow, takes=misbehaving.delay_of(rng)),
+    "hung": lambda rng: partial(misbehaving.Slow, takes=misbehaving.NEVER),
     "mute": lambda rng: misbehaving.Mute,
     "truncating": lambda rng: misbehaving.Truncating,
+    "wrong map": lambda rng: misbehaving.Disagreeing,
+    "echo": lambda rng: misbehaving.Echoing,
+    "epoch": lambda rng: partial(misbehaving.Raising, epoch=2 ** int(rng.integers(20, 64)) - 2),
+    "mates": lambda rng: partial(misbehaving.Beaconing, robots=1000, points=2),
+    "flood": lambda rng: partial(misbehaving.Beaconing, robots=1, points=500),
 }
 
 
-LIES = frozenset({"truncating"})  # the others cannot tell what is so
-
-
-def _slow(takes: float) -> Program:
-    def slow(agent: Agent, now: float, *, lease: float) -> NetworkedAgent:
-        return misbehaving.Slow(agent, now, lease=lease, takes=takes)
-
-    return slow
+LIES = frozenset({"truncating", "mates"})  # the others cannot tell what is so
 
 
 class BadTeam(FaultyTeam):
@@ -48,7 +47,9 @@ class BadTeam(FaultyTeam):
         super().__init__(plan, trace)
 
     def _program(self, i: int, agent: Agent, now: float, lease: float) -> NetworkedAgent:
-        return self.bad.get(i, NetworkedAgent)(agent, now, lease=lease)
+        if i in self.bad:
+            return self.bad[i](agent, now, lease=lease)
+        return NetworkedAgent(agent, now, lease=lease)
 
     @property
     def honest(self) -> list[int]:

@@ -13,10 +13,11 @@ from vedette.agent import Agent, Datagram, NetworkedAgent, messages
 from vedette.agent.effects import Job, Send, TrafficKind
 from vedette.agent.events import Event, JobDone
 from vedette.agent.messages import Beacon, Negotiate
-from vedette.agent.networked import HELLO, Output
+from vedette.agent.networked import BEACON, HELLO, Output
 
 NEVER = float("inf")
-ECHO = -1  # a hello's field
+EPOCH, ECHO = 4, -1  # fields of a hello
+BEACONS_EVERY, BEACONS_AT_ONCE = 0.1, 40  # [s]
 
 
 class Slow(NetworkedAgent):
@@ -89,40 +90,48 @@ class Echoing(Hailing):
             hello[ECHO][1] += 1_000_000
 
 
-class Inventing(NetworkedAgent):
-    """Passes on beacons of robots that there are not."""
+class Raising(Hailing):
+    """Says once to each that the epoch is the highest there can be, or somewhat lower."""
 
-    _invented = 0
+    def __init__(self, agent: Agent, now: float, *, lease: float, epoch: int) -> None:
+        super().__init__(agent, now, lease=lease)
+        self._epoch, self._said = epoch, 0
 
-    def _say(self, send: Send, now: float) -> list[Output]:
-        outputs = super()._say(send, now)
-        if send.traffic is TrafficKind.BEACONS:
-            beacon = messages.decode(send.payload)
-            assert isinstance(beacon, Beacon)
-            for _ in range(30):
-                self._invented += 1
-                told = msgspec.structs.replace(beacon, robot=100 + self._invented % 1000)
-                outputs += super()._say(replace(send, payload=messages.encode(told)), now)
+    def _change(self, hello: list[Any]) -> None:
+        self._said += 1
+        if self._said % 20 == 0:
+            hello[EPOCH] = self._epoch
+
+
+class Disagreeing(NetworkedAgent):
+    """Has another map than all the others."""
+
+    def __init__(self, agent: Agent, now: float, *, lease: float) -> None:
+        super().__init__(agent, now, lease=lease, terms={"map.resolution": "0.05"})
+
+
+class Beaconing(NetworkedAgent):
+    """Sends so many beacons at once, again and again: of itself, or of robots that there are not."""
+
+    def __init__(self, agent: Agent, now: float, *, lease: float, robots: int, points: int) -> None:
+        super().__init__(agent, now, lease=lease)
+        self._robots, self._path = robots, (1000,) * 2 * points
+        self._said, self._next = 0, now
+
+    def step(self, events: Iterable[Event], now: float) -> list[Output]:
+        """Beacon, too."""
+        outputs = super().step(events, now)
+        if now >= self._next:
+            self._next = now + BEACONS_EVERY
+            for to in self._links:
+                outputs += [self._datagram(to, BEACON + each) for each in self._beacons()]
         return outputs
 
-
-class Flooding(NetworkedAgent):
-    """Says each beacon fifty times, each a new one, and long."""
-
-    _said = 0
-
-    def _say(self, send: Send, now: float) -> list[Output]:
-        outputs = super()._say(send, now)
-        if send.traffic is TrafficKind.BEACONS:
-            beacon = messages.decode(send.payload)
-            assert isinstance(beacon, Beacon)
-            for _ in range(50):
-                self._said += 1
-                told = msgspec.structs.replace(
-                    beacon, sequence=beacon.sequence + self._said, path=(1000,) * 1000
-                )
-                outputs += super()._say(replace(send, payload=messages.encode(told)), now)
-        return outputs
+    def _beacons(self) -> Iterable[bytes]:
+        for _ in range(BEACONS_AT_ONCE):
+            self._said += 1
+            robot = self.agent.robot if self._robots == 1 else self._said % self._robots
+            yield messages.encode(Beacon(robot, 1 << 40, self._said, 0, 0, 0, 0, 20, 50, self._path))
 
 
 def delay_of(rng: np.random.Generator) -> float:

@@ -11,7 +11,8 @@ from typing import TypeVar
 
 import numpy as np
 
-from vedette.overlay import Overlay, Place, ReliableLink
+from vedette.overlay import Overlay, Place, ReliableLink, Stamp
+from vedette.overlay.peer import NOWHERE
 
 Edge = tuple[int, int]
 Life = tuple[int, int]  # robot and boot
@@ -38,6 +39,7 @@ class Node:
     overlay: Overlay
     offset: float  # of its clock [s]
     rate: float = 1.0  # of its clock
+    stamp: Stamp = NOWHERE  # the latest
     alive: bool = True
     frozen: bool = False
     inbox: deque[tuple[int, bytes]] = field(default_factory=lambda: deque(maxlen=BUFFER))
@@ -275,7 +277,9 @@ class Network:
             return
         node = self.nodes[i]
         place = node.overlay.place
-        assert place.epoch >= before.epoch
+        stamp = node.overlay._position.stamp
+        assert stamp >= node.stamp
+        node.stamp = stamp
         if place.epoch == before.epoch:
             assert place.parent == before.parent
             assert set(place.neighbours) >= set(before.neighbours)

@@ -11,13 +11,15 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from vedette.agent.acquaintance import Acquaintance
 from vedette.agent.agent import step
 from vedette.agent.effects import Job, Motion, Send, Shun, TrafficKind
 from vedette.agent.events import Event, Message, TreeChanged
 from vedette.agent.state import Agent
+from vedette.agent.terms import Terms, fingerprint_of
 from vedette.overlay import Overlay, Place, ReliableLink
 
-HELLO, PACKET, BEACON = b"H", b"P", b"B"  # a datagram's first byte
+HELLO, PACKET, BEACON, TERMS = b"H", b"P", b"B", b"T"  # a datagram's first byte
 SETTLED = 0.5  # a first place on a tree has to last so long before the agent is told of it [s]
 ALONE_AT_FIRST = 2.0  # a robot waits so long to be taken in by others before it begins on its own [s]
 MOST_WAITING = 4096  # events that wait for a job to end, beside new places on the tree
@@ -52,6 +54,8 @@ class NetworkedAgent:
         lease: float = 3.0,
         mission_time: Callable[[float], float] = lambda now: now,
         tempo: float = 1.0,
+        terms: Terms | None = None,
+        time_of_day: Callable[[float], float] = lambda now: now,
     ) -> None:
         """Start alone.
 
@@ -61,10 +65,13 @@ class NetworkedAgent:
             lease: after which a silent neighbour is given up [s].
             mission_time: what the agent's clock shows when the transport's shows ``now`` [s].
             tempo: by how much the agent's clock goes on in a second of the transport's, at most [s].
+            terms: what the team has to agree on: no link is used to who differs.
+            time_of_day: what the host's clock shows when the transport's shows ``now`` [s].
         """
         self.agent = agent
         agent.rounds.tempo = tempo
-        self.overlay = Overlay(agent.robot, agent.boot, now, lease)
+        self.overlay = Overlay(agent.robot, agent.boot, now, lease, fingerprint_of(terms or {}))
+        self._acquaintance = Acquaintance(terms or {}, time_of_day)
         self.hold = False
         self.malformed = 0  # datagrams that did not make sense
         self.messages_sent: Counter[TrafficKind] = Counter()
@@ -86,6 +93,13 @@ class NetworkedAgent:
             times.append(self._begin_at)
         return min(times)
 
+    @property
+    def complaints(self) -> dict[int, str]:
+        """What is wrong with whom, by robot; this robot's own number among them."""
+        absent = dict.fromkeys(self.agent.rounds.absent, "rounds go on without it: it does not answer")
+        known = self._acquaintance
+        return known.warnings | absent | self.overlay.complaints | known.complaints
+
     # -- what happens --------------------------------------------------------------------------------
 
     def peers(self, robots: Iterable[int], now: float) -> list[Output]:
@@ -100,12 +114,20 @@ class NetworkedAgent:
 
     def hear(self, sender: int, datagram: bytes, now: float) -> list[Output]:
         """Take in a datagram; one that makes no sense is counted and dropped."""
+        events: list[Event] = []
+        answers: list[bytes] = []
+        kind, data, boot = datagram[:1], datagram[1:], self.agent.boot
         try:
-            events = self._take(sender, datagram[:1], datagram[1:], now)
+            if kind == TERMS:
+                answers = self._acquaintance.hear(sender, data, boot, now)
+            elif kind == HELLO:
+                self.overlay.hear(sender, data, now)
+                answers = self._acquaintance.ask(sender, self.overlay.boot_of(sender), boot, now)
+            else:
+                events = self._take(sender, kind, data, now)
         except ValueError:
             self.malformed += 1
-            events = []
-        return self.step(events, now)
+        return [*(self._datagram(sender, TERMS + told) for told in answers), *self.step(events, now)]
 
     def step(self, events: Iterable[Event], now: float) -> list[Output]:
         """Let the agent take in what its robot senses, or just the time."""
@@ -129,9 +151,6 @@ class NetworkedAgent:
     # -- hearing -------------------------------------------------------------------------------------
 
     def _take(self, sender: int, kind: bytes, data: bytes, now: float) -> list[Event]:
-        if kind == HELLO:
-            self.overlay.hear(sender, data, now)
-            return []
         if kind == PACKET:
             link = self._links.get(sender)
             return [] if link is None else [Message(sender, payload) for payload in link.hear(data, now)]

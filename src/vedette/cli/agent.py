@@ -37,7 +37,9 @@ def agent(config_path: Path, speed: float, starter: int | None) -> None:
     """
     config = load_config(config_path)
     try:
-        process = agent_process(config, config_path.resolve().parent, speed)
+        process = agent_process(
+            config, config_path.resolve().parent, speed, lambda line: click.echo(f"vedette: {line}", err=True)
+        )
     except InputError as error:
         raise InputError(f"{config_path}: {error}") from error
     for number in ENDINGS:

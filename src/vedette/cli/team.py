@@ -233,5 +233,7 @@ def _remarks(watch: TeamWatch[Any], pace: float, speed: float) -> Iterator[str]:
     """Say what else whoever started the team should know."""
     for robot, said in watch.failures.items():
         yield f"{robot_name(robot)} failed: {said}; see {watch.team.log_of(robot)}"
+    for (robot, other), what in sorted(watch.complaints.items()):
+        yield f"{robot_name(robot)} of {robot_name(other)}: {what}"
     if 0 < pace < KEPT_UP * speed:
         yield f"this host kept up {pace:.1f} times real time; robots think better at a --speed below"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Protocol
 
@@ -17,7 +17,7 @@ from vedette.agent.networked import Output
 from vedette.net.clock import MissionClock
 from vedette.net.inbox import Inbox, PeerGone, PeerSeen
 from vedette.net.inbox import ReceivedDatagram as Received
-from vedette.net.names import Topic
+from vedette.net.names import Topic, robot_name
 from vedette.net.transport import Published, Transport
 from vedette.net.witness import Witness
 
@@ -59,11 +59,13 @@ class AgentProcess:
     inbox: Inbox
     witness: Witness
     mission: MissionClock
+    say: Callable[[str], None]  # tells whoever watches this process, a line each
     staged: Staged | None = None  # what befalls its links, to try a team
     clock: Callable[[], float] = time.monotonic
     stopped: bool = False
     _reported: float = -1e9  # [s]
     _reported_at: float = -1e9  # mission time [s]
+    _said: dict[int, str] = field(default_factory=dict)  # complaints, by robot
 
     def stop(self) -> None:
         """End ``run`` soon; may be called from a signal handler."""
@@ -147,6 +149,10 @@ class AgentProcess:
             return
         at = self.mission.shows(now)
         self._reported, self._reported_at = now, at
+        for robot, what in self.node.complaints.items():
+            if self._said.get(robot) != what:
+                self._said[robot] = what
+                self.say(f"{robot_name(robot)}: {what}")
         self.transport.publish(Topic.REPORT, self.witness.report(now, at, state))
 
     def _do(self, act: Callable[[], Iterable[Output]]) -> None:

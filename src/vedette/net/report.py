@@ -12,11 +12,13 @@ from vedette import wire
 
 MOST_BYTES = 1 << 24
 Count = Annotated[int, Meta(ge=0, le=2**53)]
-Real = Annotated[float, Meta(ge=-1e9, le=1e9)]
+FARTHEST = 1e9
+Real = Annotated[float, Meta(ge=-FARTHEST, le=FARTHEST)]
 Ending = Literal["complete", "unreached", "enclosed"]  # words of ``vedette.outcome.Outcome``
 PRINTABLE = r"^[^\x00-\x1f\x7f-\x9f\[\]]*\Z"  # what a terminal shows as it is, markup left out
 Word = Annotated[str, Meta(max_length=64, pattern=PRINTABLE)]
-Sentence = Annotated[str, Meta(max_length=500, pattern=PRINTABLE)]
+MOST_WORDS = 500  # characters of a sentence
+Sentence = Annotated[str, Meta(max_length=MOST_WORDS, pattern=PRINTABLE)]
 
 
 class SpreadReport(msgspec.Struct, frozen=True, array_like=True):
@@ -39,7 +41,14 @@ class LinkReport(msgspec.Struct, frozen=True, array_like=True):
     silent: Real | None
 
 
-class Condition(msgspec.Struct, frozen=True, array_like=True, tag=1):
+class Complaint(msgspec.Struct, frozen=True, array_like=True):
+    """What is wrong with a neighbour, or with this robot's own number."""
+
+    robot: Count
+    what: Sentence
+
+
+class Condition(msgspec.Struct, frozen=True, array_like=True, tag=2):
     """A robot's state, all but the map; the tag is the format's version."""
 
     robot: Count
@@ -53,8 +62,8 @@ class Condition(msgspec.Struct, frozen=True, array_like=True, tag=1):
     heading: Real  # [rad]
     path: Annotated[tuple[Real, ...], Meta(max_length=2000)]  # x, y, x, y, ...: what is ahead [m]
     root: Count
-    epoch: Count
-    number: Count  # the tree's stamp
+    epoch: Annotated[int, Meta(ge=0, le=2**63 - 1)]
+    number: Count  # the name of the tree's stamp
     parent: Count | None
     neighbours: Annotated[tuple[Count, ...], Meta(max_length=1024)]  # on the tree
     size: Count  # of the tree
@@ -73,7 +82,7 @@ class Condition(msgspec.Struct, frozen=True, array_like=True, tag=1):
     messages: Annotated[dict[Word, Count], Meta(max_length=16)]  # sent, by kind
     bytes: Annotated[dict[Word, int], Meta(max_length=16)]
     dropped: Annotated[dict[Word, Count], Meta(max_length=16)]  # what failed a check, by where
-    refusal: Sentence | None  # why it must start anew to join a team again
+    complaints: Annotated[tuple[Complaint, ...], Meta(max_length=1024)]  # what is wrong with whom
     planning_ms: SpreadReport | None  # a round's preparation and answers
     answer_ms: SpreadReport | None  # a negotiation message
     round_ms: SpreadReport | None  # rounds that this robot began, as the root, from end to end

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from vedette.agent import Agent
 from vedette.agent.body import Body, Shown
+from vedette.agent.terms import Terms
 from vedette.net.witness import Teller
 
 
@@ -17,3 +18,4 @@ class Robot:
     body: Body
     shown: Shown | None  # the body, where it is simulated and others are to see it
     teller: Teller
+    terms: Terms  # what its team has to agree on

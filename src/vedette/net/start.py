@@ -38,8 +38,17 @@ def boot_at(now: datetime) -> int:
     return max(int((now - EPOCH).total_seconds() * 16), 0) % (1 << 38)
 
 
-def agent_process(config: AgentConfig, folder: Path, speed: float) -> AgentProcess:
+def time_of_day(now: float) -> float:
+    """Return what this host's clock shows when the process's shows ``now`` [s]."""
+    return time.time() - time.monotonic() + now
+
+
+def agent_process(
+    config: AgentConfig, folder: Path, speed: float, say: Callable[[str], None] = print
+) -> AgentProcess:
     """Open a robot's session and bring it to life; ``folder``: what paths in its file are relative to.
+
+    ``say``: tells whoever watches the process what is wrong with whom, a line each.
 
     Raises:
         InputError: the map, the scenario, the start, the keys or an endpoint cannot be used.
@@ -56,10 +65,16 @@ def agent_process(config: AgentConfig, folder: Path, speed: float) -> AgentProce
     inbox = Inbox()
     transport = Transport(access_of(config, folder, now), index, inbox)
     node = NetworkedAgent(
-        robot.agent, time.monotonic(), lease=config.links.lease, mission_time=clock.shows, tempo=speed
+        robot.agent,
+        time.monotonic(),
+        lease=config.links.lease,
+        mission_time=clock.shows,
+        tempo=speed,
+        terms=robot.terms,
+        time_of_day=time_of_day,
     )
     witness = Witness(node, robot.body, transport, robot.teller, robot_name(index))
-    return AgentProcess(node, robot.body, robot.shown, transport, inbox, witness, clock, staged)
+    return AgentProcess(node, robot.body, robot.shown, transport, inbox, witness, clock, say, staged)
 
 
 def _tell_what_is_in_vain(config: AgentConfig) -> None:

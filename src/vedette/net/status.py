@@ -57,6 +57,7 @@ def _numbered(said: Condition) -> Condition:
         parent=None if said.parent is None else said.parent + 1,
         neighbours=tuple(robot + 1 for robot in said.neighbours),
         links=tuple(replace(link, robot=link.robot + 1) for link in said.links),
+        complaints=tuple(replace(each, robot=each.robot + 1) for each in said.complaints),
     )
 
 
@@ -76,14 +77,19 @@ def status_table(told: Mapping[int, Condition | None]) -> RenderableType:
     for said in answered:
         for link in said.links:
             links.add_row(robot_name(said.robot), robot_name(link.robot), *_link(link))
-    return Group(agents, Text(""), links, Text(_verdict(told)))
+    complaints = (
+        Text(f"{robot_name(said.robot)} of {robot_name(each.robot)}: {each.what}")
+        for said in answered
+        for each in said.complaints
+    )
+    return Group(agents, Text(""), links, *complaints, Text(_verdict(told)))
 
 
 def _row(said: Condition, digest: int) -> list[str]:
     dropped = ", ".join(f"{where} {count}" for where, count in said.dropped.items() if count)
     parent = "root" if said.parent is None else robot_name(said.parent)
     return [
-        said.state if said.refusal is None else f"refused: {said.refusal}",
+        said.state,
         "-" if said.known is None else f"{100 * said.known:.1f} %",
         "same" if said.digest == digest else "differs",
         f"{robot_name(said.root)}, {said.size} robot{'s' * (said.size != 1)}, {said.age:.0f} s old",

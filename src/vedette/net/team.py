@@ -62,6 +62,7 @@ class TeamWatch(Generic[ReportT_co]):
     stopped: bool = False
     malformed: int = 0  # reports that did not make sense
     conditions: dict[int, Condition] = field(default_factory=dict)  # the latest, by robot
+    complaints: dict[tuple[int, int], str] = field(default_factory=dict)  # by who and of whom; the latest
     _heard: dict[int, float] = field(default_factory=dict)  # when each robot last reported [s]
     _first: tuple[float, float] | None = None  # mission time when it was first known, and when [s]
 
@@ -114,6 +115,7 @@ class TeamWatch(Generic[ReportT_co]):
             self.malformed += 1
             return
         self.conditions[robot] = report.condition
+        self.complaints |= {(robot, each.robot): each.what for each in report.condition.complaints}
         self._heard[robot] = time.monotonic()
         if self._first is None and self.now > 0.0:
             self._first = self.now, self._heard[robot]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from vedette.agent import NetworkedAgent
 from vedette.agent.body import Body
 from vedette.net import report as wire
-from vedette.net.report import Condition, Ending, LinkReport, SpreadReport
+from vedette.net.report import FARTHEST, MOST_WORDS, Complaint, Condition, Ending, LinkReport, SpreadReport
 from vedette.net.transport import Transport
 from vedette.overlay import LinkStatus
 from vedette.record.clock import Clock
@@ -115,7 +115,9 @@ class Witness:
                 "agent": agent.dropped,
                 "bodies": self.malformed,
             },
-            refusal=self.node.overlay.refusal,
+            complaints=tuple(
+                Complaint(robot, what[:MOST_WORDS]) for robot, what in sorted(self.node.complaints.items())
+            ),
             planning_ms=_spread(self.clock.planning_ms, len(self.clock.planning)),
             answer_ms=_spread(self.clock.answer_ms, len(self.clock.answers)),
             round_ms=_spread(Statistics.of([1e3 * took for took in self._rounds]), len(self._rounds)),
@@ -125,7 +127,9 @@ class Witness:
 
 
 def _link(link: LinkStatus) -> LinkReport:
-    return LinkReport(link.robot, link.role, link.loss, link.round_trip, link.offset, link.silent)
+    offset = None if link.offset is None else min(max(link.offset, -FARTHEST), FARTHEST)
+    round_trip = None if link.round_trip is None else min(link.round_trip, FARTHEST)
+    return LinkReport(link.robot, link.role, link.loss, round_trip, offset, link.silent)
 
 
 def _spread(statistics: Statistics | None, count: int) -> SpreadReport | None:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from vedette.overlay import hello as wire
-from vedette.overlay.hello import BYE, PARENT, TICKS, Hello
+from vedette.overlay.hello import BYE, PARENT, TICKS, TWICE, Hello, OtherVersion
 from vedette.overlay.peer import Peer
 from vedette.overlay.position import TreePosition
-from vedette.overlay.stamp import BOOT_BITS, EPOCH_BITS, ROBOT_BITS
+from vedette.overlay.stamp import BOOT_BITS, ROBOT_BITS
 from vedette.overlay.status import LinkStatus, Place, Status
 
 MOST_PEERS = 1024  # in a robot's life
@@ -25,8 +25,12 @@ class Overlay:
     time asks for. ``place`` is what it was at the latest tick. ``now`` is a clock that never goes back [s].
     """
 
-    def __init__(self, robot: int, boot: int, now: float, lease: float = 3.0) -> None:
-        """Start alone; ``boot < 2**38`` must differ from those of the robot's earlier lives."""
+    def __init__(self, robot: int, boot: int, now: float, lease: float = 3.0, terms: int = 0) -> None:
+        """Start alone.
+
+        ``boot < 2**38`` must be above those of the robot's earlier lives; ``terms < 2**63``: a fingerprint of
+        what the team has to agree on, without which no link is used.
+        """
         if not 0 <= robot < 1 << ROBOT_BITS:
             raise ValueError(f"robot must lie in 0..{(1 << ROBOT_BITS) - 1}; got {robot}")
         if not 0 <= boot < 1 << BOOT_BITS:
@@ -34,13 +38,14 @@ class Overlay:
         if not lease > 0:
             raise ValueError(f"lease must be > 0 s; got {lease}")
         self.robot, self.boot, self.lease = robot, boot, lease
-        self.refusal: str | None = None  # why this robot must start anew before it can join a team again
+        self.terms = terms
+        self.complaints: dict[int, str] = {}  # of neighbours, and of this robot's own number; the latest
         self.wake = now  # when ``tick`` next has something to do [s]
         self._now = now
         self._silent = False  # for good
         self._peers: dict[int, Peer] = {}
         self._position = TreePosition(robot, boot, self._peers, now)
-        self.place = Place(self._position.number, None, (), 1)
+        self.place = Place(self._position.stamp.name, None, (), 1)
         self._own_size = 1  # of this robot's part of the tree
         self._to_root = 0.0  # the root's clock minus ours [s]
 
@@ -57,7 +62,7 @@ class Overlay:
             raise ValueError(f"overlay: more than {MOST_PEERS} neighbours in the life of robot {self.robot}")
         now = self._pass(now)
         for robot in sorted(wanted - self._peers.keys()):
-            self._peers[robot] = Peer(robot, self.lease, due=now)
+            self._peers[robot] = Peer(robot, self.lease, self.terms, due=now)
         for robot, peer in self._peers.items():
             if robot in wanted and not peer.reachable:
                 peer.tell(now)
@@ -70,14 +75,22 @@ class Overlay:
         Raises:
             ValueError: malformed; nothing changes.
         """
-        hello = wire.decode(robot, payload)
-        now = self._pass(now)
+        hello = self._decode(robot, payload)
         peer = self._peers.get(robot)
-        if peer is None or not peer.reachable or self._silent or not peer.is_news(hello):
+        if peer is None or not peer.reachable or self._silent:
             return
-        if hello.echo and hello.echo.boot == self.boot and hello.echo.sequence > peer.sent:
-            self._refuse(f"robot {robot} has heard more of boot {self.boot} than this robot has said", now)
+        self._check(peer, hello)
+        now = self._pass(now)
+        peer.refuse_the_younger(hello, self.boot, now)
+        if peer.is_double(now):
+            self.complaints[robot] = "two processes have this number; the one started later is refused"
+        if hello.flags & TWICE:
+            self._told_of_another(hello)
+        if not peer.is_news(hello, now):
             return
+        if hello.boot == peer.boot and hello.stamp < peer.stamp:
+            self.shun(peer.robot, now)
+            self.complaints[peer.robot] = "it has gone back to a tree that it had left, as nobody does"
         peer.take(hello, self.boot, now)
         self.wake = now
 
@@ -100,6 +113,7 @@ class Overlay:
         now = self._pass(now)
         if robot in self._peers:
             self._peers[robot].shun(now)
+            self.complaints[robot] = "no round gets anywhere by it; its link is left alone for a while"
             self.wake = now
 
     def leave(self, now: float) -> list[tuple[int, bytes]]:
@@ -134,6 +148,30 @@ class Overlay:
         age = max(now - at.since, 0.0)
         return Status(at.stamp.root, at.stamp.epoch, at.distance, self.place, age, self._to_root, links)
 
+    # -- what cannot be ------------------------------------------------------------------------------
+
+    def _decode(self, robot: int, payload: bytes) -> Hello:
+        try:
+            return wire.decode(robot, payload)
+        except OtherVersion as error:
+            self.complaints[robot] = f"it speaks another version of the protocol ({error}); update the older"
+            raise
+
+    def _check(self, peer: Peer, hello: Hello) -> None:
+        """Raise ValueError for what no honest neighbour says; it makes nobody silent but who says it."""
+        if hello.echo and hello.echo.boot == self.boot and hello.echo.sequence > peer.sent:
+            self.complaints[peer.robot] = f"it has heard more of boot {self.boot} than this robot has said"
+            raise ValueError(f"hello: robot {peer.robot} {self.complaints[peer.robot]}")
+        if not self._position.stamp.may_follow(hello.epoch):
+            self.complaints[peer.robot] = f"its epoch, {hello.epoch}, is far beyond any that there can be"
+            raise ValueError(f"hello: robot {peer.robot}: {self.complaints[peer.robot]}")
+
+    def _told_of_another(self, hello: Hello) -> None:
+        """Note that a neighbour hears two processes of this robot's number."""
+        refused = hello.echo is None or hello.echo.boot != self.boot
+        mine = "this one is refused" if refused else "the other, started later, is refused"
+        self.complaints[self.robot] = f"two processes have this number, as a neighbour hears: {mine}"
+
     # -- how it is taken in --------------------------------------------------------------------------
 
     def _pass(self, now: float) -> float:
@@ -148,11 +186,12 @@ class Overlay:
 
     def _settle(self, now: float) -> None:
         for peer in self._peers.values():
+            was_up = peer.up
             peer.judge(self.boot, now)
+            if peer.up and not was_up:
+                self.complaints.pop(peer.robot, None)
         before = self._position.stamp
         self._position.settle(now)
-        if self._position.stamp.epoch >> EPOCH_BITS:
-            self._refuse("the team has used up all epochs; start all its agents anew", now)
         if self._position.stamp != before:
             self._announce(now)
         self._count(now)
@@ -178,22 +217,18 @@ class Overlay:
             assert parent.hello
             size = max(own, parent.hello.size if parent.stamp == at.stamp else self.place.size)
             self._to_root = parent.hello.to_root / TICKS + (parent.clock.offset or 0.0)
-        place = Place(at.number, at.parent, tuple(at.edges), size, at.distance)
+        place = Place(at.stamp.name, at.parent, tuple(at.edges), size, at.distance)
         if (place, own) == (self.place, self._own_size):
             return
         self.place, self._own_size = place, own
         for k in place.neighbours:
             self._peers[k].due = min(self._peers[k].due, now + RECOUNT)
 
-    def _refuse(self, reason: str, now: float) -> None:
-        self.refusal = reason
-        self._fall_silent(now)
-
     def _fall_silent(self, now: float) -> None:
         """Say nothing any more, and be on nobody's tree."""
         self._silent, self.wake = True, float("inf")
         self._position.go_alone(now)
-        self.place = Place(self._position.number, None, (), 1)
+        self.place = Place(self._position.stamp.name, None, (), 1)
 
     # -- what is told ----------------------------------------------------------------------------------
 
@@ -212,6 +247,7 @@ class Overlay:
                 self._own_size if is_parent else self.place.size,
                 round(100 * peer.loss),
                 round(self._to_root * TICKS),
+                self.terms,
                 echo,
             )
         )

@@ -6,7 +6,7 @@ from collections import deque
 from dataclasses import dataclass, field
 
 from vedette.overlay.clock import ClockFilter
-from vedette.overlay.hello import ASK, BYE, TICKS, UP, Echo, Hello
+from vedette.overlay.hello import ASK, BYE, TICKS, TWICE, UP, Echo, Hello
 from vedette.overlay.stamp import Stamp
 
 HELLOS_A_LEASE = 3
@@ -18,7 +18,7 @@ SETTLED = 30.0  # a link that was up for so long starts with the first hold agai
 FIRST_SHUN, MOST_SHUN = 10.0, 160.0  # for which a neighbour is shunned, doubling [s]
 SMOOTHING = 0.1  # of the loss estimate, a hello
 MOST_MISSED = 8  # hellos that one gap counts for: silence is the lease's business
-NOWHERE = Stamp(1, 0, 0)
+NOWHERE = Stamp(0, 0, 0)  # below all others
 COSTS = ((0.0, 0.0, 1), (0.15, 0.08, 2), (0.45, 0.3, 4))  # loss to enter a class, to leave it; hops it counts
 
 
@@ -28,15 +28,17 @@ class Peer:
 
     robot: int
     lease: float
+    terms: int  # what this robot takes the team to agree on, as a fingerprint
     reachable: bool = True  # the transport can send to it
     boot: int = -1  # -1: never heard
     hello: Hello | None = None  # the latest
     stamp: Stamp = NOWHERE  # of the tree that it is on
-    number: int = -1
     since: float = 0.0  # when that stamp was first heard [s]
     heard: float = -float("inf")  # when anything was [s]
     greeted: float = -float("inf")  # when the latest hello was [s]
     up: bool = False  # we would use the link
+    twice: int | None = None  # boot of another process under this number, started later
+    twice_heard: float = -float("inf")  # when it was [s]
     loss: float = 0.0  # share of its hellos that do not arrive
     due: float = 0.0  # the next hello to it [s]
     sent: int = 0  # hellos
@@ -47,6 +49,7 @@ class Peer:
     _shun: float = FIRST_SHUN / 2
     _trusted: float = -float("inf")  # when the link may be used again
     _past: deque[int] = field(default_factory=lambda: deque(maxlen=8))  # its earlier boots
+    _restarted: int = 0  # our hellos to it before its present life
     _last_sent: float = -float("inf")
     _sent_at: dict[int, float] = field(default_factory=dict)  # the latest hellos
     _told: int = 1  # the hello from which on all news is in
@@ -54,8 +57,14 @@ class Peer:
 
     # -- hearing -----------------------------------------------------------------------------------
 
-    def is_news(self, hello: Hello) -> bool:
-        """Tell whether a hello is neither a copy, nor overtaken, nor from an earlier life of the robot."""
+    def is_news(self, hello: Hello, now: float) -> bool:
+        """Tell whether a hello is neither a copy, nor overtaken, nor from an earlier life of the robot.
+
+        Nor from a process started later under the number of one that lives.
+        """
+        if hello.boot == self.twice:
+            self.twice_heard = now
+            return now >= self.greeted + self.lease
         if hello.boot != self.boot:
             return hello.boot not in self._past
         return self.hello is None or hello.sequence > self.hello.sequence
@@ -69,7 +78,6 @@ class Peer:
             self._count(min(hello.sequence - before.sequence - 1, MOST_MISSED), hello.loss / 100)
         if hello.stamp != self.stamp or before is None:
             self.stamp, self.since = hello.stamp, now
-            self.number = self.stamp.number
         self.heard = -float("inf") if hello.flags & BYE else now
         self.greeted = now
         self._take_times(hello, own_boot, now)
@@ -77,9 +85,32 @@ class Peer:
         if hello.flags & ASK or before is None or _content(before) != _content(hello):
             self.due = now
 
+    def is_double(self, now: float) -> bool:
+        """Tell whether another process under this number has been heard lately."""
+        return now < self.twice_heard + self.lease
+
+    def refuse_the_younger(self, hello: Hello, own_boot: int, now: float) -> None:
+        """Keep to the process that was started first, if two are alive under this number.
+
+        An earlier life that has heard what was said since the later one came is none: it goes on. Boots grow
+        from start to start.
+        """
+        echo = hello.echo
+        lives = echo is not None and echo.boot == own_boot and self._restarted < echo.sequence <= self.sent
+        if hello.boot in self._past and lives:
+            older, self.twice = min(hello.boot, self.boot), max(hello.boot, self.boot)
+            self.twice_heard = now
+            if older != self.boot:
+                self._restart(older, now)
+
     def _restart(self, boot: int, now: float) -> None:
         if self.boot >= 0:
             self._past.append(self.boot)
+        if boot in self._past:
+            self._past.remove(boot)
+        if boot == self.twice:
+            self.twice, self.twice_heard = None, -float("inf")
+        self._restarted = self.sent
         self.boot, self.hello, self.loss = boot, None, 0.0
         self.clock = ClockFilter()
         self._go_down(now)
@@ -116,7 +147,8 @@ class Peer:
         """Decide whether to use the link: both ends hear each other, and it has not failed just now."""
         hello = self.hello
         two_way = hello is not None and hello.echo is not None and hello.echo.boot == own_boot
-        up = self.reachable and two_way and now < self.heard + self.lease and now >= self._trusted
+        agrees = hello is not None and hello.terms == self.terms
+        up = self.reachable and two_way and agrees and now < self.heard + self.lease and now >= self._trusted
         if up and not self.up:
             self.up, self._up_since = True, now
             self.tell(now)
@@ -172,7 +204,7 @@ class Peer:
             self._tries = min(self._tries + 1, 8)
         self.due = now + (min(pause, PROBE) if asks else pause)
         heard = self.hello is not None and now < self.heard + self.lease
-        flags = (UP if self.up else 0) | (ASK if asks else 0)
+        flags = (UP if self.up else 0) | (ASK if asks else 0) | (TWICE if self.is_double(now) else 0)
         return self.sent, flags, self._echo(now) if heard else None
 
     def _echo(self, now: float) -> Echo | None:

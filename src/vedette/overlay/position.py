@@ -89,7 +89,7 @@ class TreePosition:
 
     def _is_offer(self, peer: Peer) -> bool:
         """Tell whether a neighbour is on a tree to go over to; one of our own past is no such tree."""
-        if peer.number <= self.number or not peer.usable or peer.stamp.is_alone:
+        if peer.stamp <= self.stamp or not peer.usable or peer.stamp.is_alone:
             return False
         return peer.stamp.root != self._robot and _distance_by(peer) <= MOST_DISTANCE
 
@@ -97,7 +97,7 @@ class TreePosition:
         offers = [peer for peer in self._peers.values() if self._is_offer(peer)]
         if not offers:
             return None
-        highest = max(offers, key=lambda peer: (peer.number, peer.stamp)).stamp
+        highest = max(peer.stamp for peer in offers)
         on_it = (peer for peer in offers if peer.stamp == highest)
         return min(on_it, key=lambda peer: (_distance_by(peer), peer.robot != self.parent, peer.robot))
 
@@ -110,8 +110,8 @@ class TreePosition:
         """Tell whether this robot, alone, has to start a tree: nobody within its reach ranks above it."""
         if not self.stamp.is_alone or now < self.since + GRACE:
             return False
-        numbers = [peer.number for peer in self._peers.values() if peer.usable]
-        return bool(numbers) and max(numbers) < self.number
+        stamps = [peer.stamp for peer in self._peers.values() if peer.usable]
+        return bool(stamps) and max(stamps) < self.stamp
 
     def _is_uneasy(self, now: float) -> bool:
         """Tell whether a much better way to the root has been there for long."""
@@ -132,7 +132,7 @@ class TreePosition:
         self._take(self.stamp.next_tree(self._robot, self._boot), now)
 
     def _take(self, stamp: Stamp, now: float, parent: int | None = None, distance: int = 0) -> None:
-        self.stamp, self.number, self.since = stamp, stamp.number, now
+        self.stamp, self.since = stamp, now
         self.parent, self.distance = parent, distance
         self.children: set[int] = set()
         self._uneasy_since = float("inf")

@@ -12,7 +12,7 @@ class Place:
     Within one epoch the parent stays and neighbours are only added; any loss makes a new epoch.
     """
 
-    epoch: int  # the stamp as one number < 2**53: grows from tree to tree, at every robot
+    epoch: int  # the name of the tree's stamp, < 2**53
     parent: int | None  # None at the root
     neighbours: tuple[int, ...]  # ascending
     size: int  # robots on the tree, as far as the count has come round

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 
 from vedette.agent import Agent, GroundBehaviour
 from vedette.agent.driving import Driver
+from vedette.agent.terms import Terms, flat
+from vedette.domains.mapping.belief import planning_factor
 from vedette.domains.mapping.planners import planner
 from vedette.domains.mapping.sightings import BINS
 from vedette.errors import check_word
@@ -19,6 +21,26 @@ FUSIONS: Mapping[str, type[ReplicatedEvidence] | type[ChannelFilter]] = {
     "replicated": ReplicatedEvidence,
     "channel": ChannelFilter,
 }
+
+
+def terms_of(frame: GridFrame, options: ExploreOptions) -> Terms:
+    """Return what all of a team have to agree on: not the search behind a planner, nor anybody's body."""
+    how = planner(options.planner)
+    objective = {
+        "worth after 5 s": float(how.layers.weights.sum()),
+        "worth in the end": float(how.layers.weights[-1]),
+        "hidden": how.hidden,
+        "return_price": how.return_price,
+        "turn": how.turn,
+    }
+    return {
+        "mission": "explore",
+        **dict(flat("map", frame)),
+        "planning cell": f"{frame.resolution * planning_factor(frame.resolution):g}",
+        **{f"objective.{name}": f"{value:g}" for name, value in objective.items()},
+        "scheme": options.negotiates_by,
+        "fusion": options.fusion,
+    }
 
 
 def assemble(

@@ -7,6 +7,7 @@ from functools import cached_property
 from math import ceil
 
 from vedette.agent import Agent, FlightBehaviour, Pace
+from vedette.agent.terms import Terms, flat
 from vedette.errors import InputError
 from vedette.fusion.steps import ReplicatedSteps, Sparse, SparseIntegers, StepEvidence, StepSums
 from vedette.missions.flying import RoundTimes
@@ -40,6 +41,18 @@ class SearchTeam:
     def size(self) -> int:
         """How many vehicles plan together: without coordination each is a team of one."""
         return 1 if self.options.coordination == "none" else len(self.case.names)
+
+    @property
+    def terms(self) -> Terms:
+        """What all of the team have to agree on."""
+        options = self.options
+        return {
+            "mission": "search",
+            "coordination": options.coordination,
+            "scheme": options.negotiates_by,
+            "fusion": options.fusion,
+            **dict(flat("scenario", self.case.scenario)),
+        }
 
     @property
     def lead(self) -> float:

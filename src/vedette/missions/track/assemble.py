@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from vedette.agent import Agent, FlightBehaviour, Pace
+from vedette.agent.terms import Terms, flat
 from vedette.domains.tracking.belief import Tracks
 from vedette.domains.tracking.objective import TrackingObjective, objective
 from vedette.domains.tracking.platform import TrackingPlatform
@@ -41,6 +42,19 @@ class TrackTeam:
     def size(self) -> int:
         """How many vehicles plan together: without coordination each is a team of one."""
         return 1 if self.options.coordination == "none" else len(self.scenario.vehicles)
+
+    @property
+    def terms(self) -> Terms:
+        """What all of the team have to agree on."""
+        options = self.options
+        return {
+            "mission": "track",
+            "coordination": options.coordination,
+            "scheme": options.negotiates_by,
+            "fusion": options.fusion,
+            "objective": options.objective or self.scenario.objective,
+            **dict(flat("scenario", self.scenario)),
+        }
 
     @property
     def lead(self) -> float:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
 from pathlib import Path
 
+import numpy as np
+
 from vedette.maps.world import World
-from vedette.missions.explore.assemble import assemble
+from vedette.missions.explore.assemble import assemble, terms_of
 from vedette.missions.explore.options import ExploreOptions
 from vedette.net.config import AgentConfig
 from vedette.net.explore.content import ExploreTeller
@@ -23,14 +26,21 @@ def explorer(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robo
     assert config.body.map is not None
     world = World.from_map(folder / config.body.map, config.body.resolution)
     body, best = simulated_robot(config, world), config.best
+    options = config.explore or ExploreOptions()
     agent = assemble(
         world.frame,
         body.hull,
-        config.explore or ExploreOptions(),
+        options,
         config.robot - 1,
         boot,
         robots=config.robots,
         most=Most.of([body.hull]) if best is None else Most(best.range, best.speed),
         waits_for=config.robots,
     )
-    return Robot(agent, body, body, ExploreTeller(agent))
+    terms = {**terms_of(world.frame, options), "map.content": _fingerprint(world)}
+    return Robot(agent, body, body, ExploreTeller(agent), terms)
+
+
+def _fingerprint(world: World) -> str:
+    """Return a number for the world that a body is simulated in: its mates' bodies have to be in the same."""
+    return hashlib.blake2b(np.packbits(world.solid).tobytes(), digest_size=4).hexdigest()

@@ -24,4 +24,4 @@ def searcher(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robo
     check_number(config.robot, len(case.names))
     team = SearchTeam(case, config.search, round_times(config.links, speed))
     agent = team.assemble(config.robot - 1, boot)
-    return Robot(agent, simulated_searcher(config, case), None, SearchTeller(agent, case))
+    return Robot(agent, simulated_searcher(config, case), None, SearchTeller(agent, case), team.terms)

@@ -24,4 +24,4 @@ def tracker(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robot
     check_number(config.robot, len(scenario.vehicles))
     team = TrackTeam(scenario, config.track, round_times(config.links, speed))
     agent = team.assemble(config.robot - 1, boot)
-    return Robot(agent, simulated_tracker(config, team), None, TrackTeller(agent, scenario))
+    return Robot(agent, simulated_tracker(config, team), None, TrackTeller(agent, scenario), team.terms)

@@ -1,0 +1,59 @@
+"""What neighbours have told of their terms and clocks, and what is wrong with that."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from vedette.agent import terms as wire
+from vedette.agent.terms import Terms, Told, difference
+
+CLOCKS_APART = 1.0  # that is worth a warning [s]
+ASK_AGAIN = 1.0  # [s]
+
+
+@dataclass
+class Acquaintance:
+    """Tells every neighbour once what the team has to agree on, and says in which field one differs.
+
+    The hellos carry a fingerprint of the terms, without which no link is used: this only finds the words.
+    """
+
+    terms: Terms
+    time_of_day: Callable[[float], float]  # when the transport's clock shows ``now`` [s]
+    complaints: dict[int, str] = field(default_factory=dict)  # by neighbour
+    warnings: dict[int, str] = field(default_factory=dict)  # by neighbour: clocks
+    _met: dict[int, int] = field(default_factory=dict)  # boots of those that have told
+    _asked: dict[int, float] = field(default_factory=dict)  # when [s]
+
+    def ask(self, robot: int, boot: int, own_boot: int, now: float) -> list[bytes]:
+        """Return what to send to a neighbour that is heard, if its present life has not told yet."""
+        if self._met.get(robot) == boot or now < self._asked.get(robot, -ASK_AGAIN) + ASK_AGAIN:
+            return []
+        self._asked[robot] = now
+        return [self._tell(own_boot, True, now)]
+
+    def hear(self, robot: int, payload: bytes, own_boot: int, now: float) -> list[bytes]:
+        """Take in a neighbour's terms; return the answer, if it asks for one.
+
+        Raises:
+            ValueError: malformed.
+        """
+        told = wire.decode(payload)
+        self._met[robot] = told.boot
+        self._note(robot, told, now)
+        return [self._tell(own_boot, False, now)] if told.asks else []
+
+    def _note(self, robot: int, told: Told, now: float) -> None:
+        self.complaints.pop(robot, None)
+        self.warnings.pop(robot, None)
+        unlike = difference(told.fields, self.terms)
+        if unlike is not None:
+            self.complaints[robot] = f"its link is refused: {unlike}"
+        apart = told.clock / 1000.0 - self.time_of_day(now)
+        if abs(apart) > CLOCKS_APART:
+            self.warnings[robot] = f"its clock is {apart:+.1f} s from this robot's"
+
+    def _tell(self, own_boot: int, asks: bool, now: float) -> bytes:
+        clock = round(1000.0 * self.time_of_day(now))
+        return wire.encode(Told(own_boot, asks, clock, dict(self.terms)))

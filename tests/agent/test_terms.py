@@ -1,0 +1,82 @@
+"""Links open with a handshake: who plans for something else is refused, and both say in what they differ."""
+
+from __future__ import annotations
+
+import msgspec
+import pytest
+
+from tests.support.agent_team import toy_team
+from vedette import Tree
+from vedette.agent import NetworkedAgent
+from vedette.agent.networked import HELLO, Datagram
+from vedette.agent.terms import Terms, difference, fingerprint_of, flat
+from vedette.maps import GridFrame
+
+TERMS = {"mission": "explore", "map.resolution": "0.1", "scheme": "token"}
+
+
+def pair(theirs: Terms, apart: float = 0.0) -> list[NetworkedAgent]:
+    """Two robots that reach each other, after ten seconds; the second has these terms, and such a clock."""
+    team, _, _ = toy_team(Tree.chain(2))
+    nodes = [
+        NetworkedAgent(team.agents[0], 0.0, terms=TERMS),
+        NetworkedAgent(team.agents[1], 0.0, terms=theirs, time_of_day=lambda now: now + apart),
+    ]
+    for i in (0, 1):
+        nodes[i].peers([1 - i], 0.0)
+    for step in range(1000):
+        now = 0.01 * step
+        for i in (0, 1):
+            for output in nodes[i].step((), now):
+                deliver(nodes, i, output, now)
+    return nodes
+
+
+def deliver(nodes: list[NetworkedAgent], sender: int, output: object, now: float) -> None:
+    """Let a datagram arrive at once, and all that it brings about."""
+    if isinstance(output, Datagram):
+        for answer in nodes[output.to].hear(sender, output.payload, now):
+            deliver(nodes, output.to, answer, now)
+
+
+def test_robots_that_agree_use_their_link_and_complain_of_nothing() -> None:
+    for node in pair(dict(reversed(TERMS.items()))):
+        assert node.overlay.place.size == 2
+        assert node.complaints == {}
+
+
+@pytest.mark.parametrize("name", TERMS)
+def test_a_difference_refuses_the_link_and_both_name_field_and_values(name: str) -> None:
+    here, there = pair(TERMS | {name: "other"})
+    assert here.overlay.place.neighbours == there.overlay.place.neighbours == ()
+    assert here.complaints == {1: f"its link is refused: {name}: other there, {TERMS[name]} here"}
+    assert there.complaints == {0: f"its link is refused: {name}: {TERMS[name]} there, other here"}
+
+
+def test_clocks_that_are_apart_are_told_and_do_no_harm() -> None:
+    here, there = pair(TERMS, apart=3.0)
+    assert here.overlay.place.size == 2
+    assert here.complaints == {1: "its clock is +3.0 s from this robot's"}
+    assert there.complaints == {0: "its clock is -3.0 s from this robot's"}
+    assert pair(TERMS, apart=0.9)[0].complaints == {}
+
+
+def test_an_older_version_is_told_in_one_line() -> None:
+    here, there = pair(TERMS)
+    (hello,) = [out for out in there.leave(10.0) if out.payload.startswith(HELLO)]
+    old = [1, *msgspec.msgpack.decode(hello.payload[1:])[1:]]
+    here.hear(1, HELLO + msgspec.msgpack.encode(old), 10.0)
+    assert here.complaints[1] == (
+        "it speaks another version of the protocol (hello: version 1, not 2); update the older"
+    )
+    assert here.malformed == 1
+
+
+def test_terms_are_told_field_by_field() -> None:
+    fields = dict(flat("map", GridFrame(0.1, 40, 30)))
+    assert fields["map.resolution"] == "0.1"
+    assert fields["map.rows"] == "40"
+    assert dict(flat("v", [{"a": None}, 2])) == {"v.1.a": "none", "v.2": "2"}
+    assert difference({"a": "1"}, {"a": "1", "b": "2"}) == "b: nothing there, 2 here"
+    assert difference({"c": "1"}, {}) == "c: 1 there, nothing here"
+    assert fingerprint_of({"a": "1", "b": "2"}) == fingerprint_of({"b": "2", "a": "1"}) < 2**63
