@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from vedette.agent import terms as wire
-from vedette.agent.terms import Terms, Told, difference
+from vedette.agent.terms import Terms, Introduction, difference
 
 CLOCKS_APART = 1.0  # that is worth a warning [s]
 ASK_AGAIN = 1.0  # [s]
@@ -44,7 +44,7 @@ class Acquaintance:
         self._note(robot, told, now)
         return [self._tell(own_boot, False, now)] if told.asks else []
 
-    def _note(self, robot: int, told: Told, now: float) -> None:
+    def _note(self, robot: int, told: Introduction, now: float) -> None:
         self.complaints.pop(robot, None)
         self.warnings.pop(robot, None)
         unlike = difference(told.fields, self.terms)
@@ -56,4 +56,4 @@ class Acquaintance:
 
     def _tell(self, own_boot: int, asks: bool, now: float) -> bytes:
         clock = round(1000.0 * self.time_of_day(now))
-        return wire.encode(Told(own_boot, asks, clock, dict(self.terms)))
+        return wire.encode(Introduction(own_boot, asks, clock, dict(self.terms)))

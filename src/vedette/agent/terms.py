@@ -16,7 +16,7 @@ Fields = Annotated[dict[Word, Word], Meta(max_length=4096)]
 Terms = Mapping[str, str]  # name of a field, and its value
 
 
-class Told(msgspec.Struct, frozen=True, array_like=True, tag=1):
+class Introduction(msgspec.Struct, frozen=True, array_like=True, tag=1):
     """One robot's terms, from neighbour to neighbour; the tag is the format's version."""
 
     boot: Annotated[int, Meta(ge=0, lt=1 << 38)]
@@ -25,11 +25,11 @@ class Told(msgspec.Struct, frozen=True, array_like=True, tag=1):
     fields: Fields
 
 
-_DECODER: msgspec.msgpack.Decoder[Told] = msgspec.msgpack.Decoder(Told)
+_DECODER: msgspec.msgpack.Decoder[Introduction] = msgspec.msgpack.Decoder(Introduction)
 encode = msgspec.msgpack.Encoder().encode
 
 
-def decode(payload: bytes) -> Told:
+def decode(payload: bytes) -> Introduction:
     """Return what a neighbour tells; ValueError if it is malformed."""
     return wire.decode(_DECODER, payload, "terms")
 
