@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from vedette.agent import terms as wire
-from vedette.agent.terms import Terms, Introduction, difference
+from vedette.agent.terms import Introduction, Terms, difference
 
 CLOCKS_APART = 1.0  # that is worth a warning [s]
 ASK_AGAIN = 1.0  # [s]
