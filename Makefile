@@ -10,6 +10,8 @@ BIN := $(VENV)/bin
 PY := $(BIN)/python
 PIP := $(PY) -m pip --disable-pip-version-check --quiet
 CARGO_FLAGS := --manifest-path rust/Cargo.toml --target-dir rust/target
+ROS2_VENV := .venv-ros2
+ROS2 ?= smoke
 KERNELS := src/vedette/_kernels.abi3.so
 RUST := rust/Cargo.toml rust/Cargo.lock $(shell find rust/src -name '*.rs')
 
@@ -20,7 +22,7 @@ INSTALLED := $(VENV)/.installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help explore test test-all check lint types contracts rust-lint bench fuzz missions figures schemas docs dist build ready ready-dev clean
+.PHONY: help explore test test-all test-ros2 check lint types contracts rust-lint bench fuzz missions figures schemas docs dist build ready ready-dev clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -33,6 +35,15 @@ test: ready-dev ## Run the quick tests
 
 test-all: ready-dev ## Run all tests, the slow ones too
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(PY) -m pytest -n auto --maxprocesses 4 --dist loadfile $(ARGS)
+	@$(MAKE) --no-print-directory test-ros2 ROS2=all
+
+test-ros2: ready-dev ## Run the tests with real rclpy in an environment of its own; ROS2=all: the slow ones too
+	@if [ ! -e $(ROS2_VENV)/.ready ] || [ -n "$$(find tools/ros2 -newer $(ROS2_VENV)/.ready)" ]; then \
+		tools/ros2/environment.sh $(ROS2_VENV) $(VENV) build/ros2 || { [ $$? = 3 ] && exit 0; exit 1; }; \
+	fi; \
+	if [ -e $(ROS2_VENV)/.ready ]; then \
+		tools/ros2/test.sh $(ROS2_VENV) $(if $(filter all,$(ROS2)),,-m "not slow") $(ARGS); \
+	fi
 
 check: lint types contracts rust-lint ## Do all that .ci/run does: lint, types, import contracts, quick tests
 	@$(MAKE) --no-print-directory test
@@ -81,7 +92,7 @@ build: ## Compile the kernels and put them in place
 	@cp rust/target/release/lib_kernels.so $(KERNELS).new && mv $(KERNELS).new $(KERNELS)
 
 clean: ## Remove all that make has made; runs/ stays
-	rm -rf $(VENV) build dist rust/target $(KERNELS) .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
+	rm -rf $(VENV) $(ROS2_VENV) build dist rust/target $(KERNELS) .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
 
 # Installing compiles the kernels, so make has to look at their age afresh after it.
 ready: $(INSTALLED)

@@ -34,7 +34,9 @@ class Scan:
     """One sweep of the lidar, taken at the latest pose."""
 
     angles: NDArray[np.float64]  # (B,) [rad], team frame
-    ranges: NDArray[np.float64]  # (B,) [m]; inf where nothing came back
+    ranges: NDArray[np.float64]  # (B,) [m]; inf where nothing is, nan where the beam says nothing
+    offset: tuple[float, float] = (0.0, 0.0)  # of the lidar from the pose [m], team frame
+    age: float = 0.0  # how long ago it was taken [s]
 
 
 @dataclass(frozen=True, eq=False)

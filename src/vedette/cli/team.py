@@ -28,6 +28,7 @@ from vedette.missions.search.options import SearchOptions
 from vedette.missions.track.assemble import TrackTeam
 from vedette.missions.track.options import TrackOptions
 from vedette.net.explore.plan import ExplorePlan
+from vedette.net.explore.ros2_plan import Ros2Plan, environment, strangers
 from vedette.net.explore.watch import ExploreWatcher
 from vedette.net.flights import FlightsPlan
 from vedette.net.launch import TeamPlan, TeamProcesses
@@ -82,6 +83,9 @@ def team() -> None:
 @team.command()
 @exploring_options
 @process_options
+@click.option(
+    "--ros2", is_flag=True, help="Bodies are ROS 2 robots with a navigator like Nav2's, simulated by ir-sim."
+)
 @output_options
 def explore(
     map_path: Path | None,
@@ -98,19 +102,22 @@ def explore(
     speed: float,
     lease: float,
     faults: str | None,
+    ros2: bool,
     output: Output,
 ) -> None:
     """Let a team of agent processes explore MAP: one process a robot, linked by mutual TLS here.
 
     Keys are made for the occasion. MAP and the outputs are as for `vedette explore`. Every robot simulates
-    its own body. Exit status: 0 complete, 1 incomplete, 2 bad input, 130 interrupted.
+    its own body, or with --ros2 drives one over ROS 2. Exit status: 0 complete, 1 incomplete, 2 bad input,
+    130 interrupted.
     """
     agreed = scheme_of(planner, scheme)
     world, specs = world_of(world_named(map_path, resolution), seed), team_named(team, robots, starts)
     tell_unheeded(planner, len(specs), scheme, fusion=fusion, lease=lease)
     places = choose_starts(world, specs, np.random.default_rng([seed, 1]))
     options = ExploreOptions(planner, agreed, fusion, return_home)
-    plan = ExplorePlan(world, specs, places, options, seed, speed, lease)
+    kind = Ros2Plan if ros2 else ExplorePlan
+    plan = kind(world, specs, places, options, seed, speed, lease)
     run = _Processes(plan, max_time, schedule_of(faults, plan.size, clocks=False))
     setting = Setting(seed=seed, faults=faults)
     EXPLORING.run(
@@ -217,7 +224,13 @@ class _Processes:
         text = None if self.schedule is None else faults_text(self.schedule)
         with ExitStack() as stack:
             secrets = stack.enter_context(TemporaryDirectory(prefix="vedette-team-"))
-            processes = stack.enter_context(TeamProcesses(self.plan, Path(secrets), folder / "agents", text))
+            private, logs, around = Path(secrets), folder / "agents", {}
+            if isinstance(self.plan, Ros2Plan):
+                around = environment()
+                self.plan.write(private)
+                stack.enter_context(strangers(private, logs / "robots.log", self.plan.speed, around))
+            team = TeamProcesses(self.plan, private, logs, text, around)
+            processes = stack.enter_context(team)
             operator = stack.enter_context(Operator(processes.operator))
             watch = TeamWatch(self.plan, processes, operator, watcher, self.max_time)
             if self.schedule is not None:

@@ -24,6 +24,7 @@ from vedette.negotiation import SCHEMES
 from vedette.net.access import Access
 from vedette.net.credentials import credentials
 from vedette.net.names import MOST_ROBOTS
+from vedette.ros2.settings import Ros2Settings
 from vedette.scenario import load_scenario
 from vedette.team import PlatformSpec
 
@@ -57,7 +58,9 @@ class LinkSettings(Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class BodySettings(Struct, forbid_unknown_fields=True, frozen=True):
-    """The robot itself; in this version a simulated one."""
+    """The robot itself: a real one that runs ROS 2, or a simulated one."""
+
+    ros2: Ros2Settings | None = None  # how a real one is reached; its lidar is what it tells of it
 
     map: str | None = None  # the world: a map_server .yaml beside this file, or an image
     start: tuple[float, float, float] | None = None  # x, y, heading [m, m, deg], team frame
@@ -162,9 +165,14 @@ def _check_explore(config: AgentConfig) -> None:
     _check_word("explore.fusion", options.fusion, list(FUSIONS))
     planner(options.planner, config.robots)
     _ = options.negotiates_by
-    if config.body.map is None:
-        raise InputError("body.map: missing; name the world that the robot is simulated in")
-    if config.body.start is None:
+    if config.body.ros2 is not None:
+        if config.body.map is not None:
+            raise InputError("body.map: is the world of a simulated robot; leave it, or body.ros2, out")
+    elif config.body.map is None:
+        raise InputError(
+            "body.map: missing; name the world that the robot is simulated in, or give a real one's body.ros2"
+        )
+    elif config.body.start is None:
         raise InputError("body.start: missing; give x, y and heading [m, m, deg]")
     config.body.spec(f"robot-{config.robot}")
     if config.scenario is not None:

@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -64,6 +64,7 @@ class TeamProcesses:
     folder: Path  # for keys, the world and the robots' files; private
     logs: Path  # what the processes say
     faults: str | None = None  # the text of a schedule of what befalls links
+    environment: Mapping[str, str] = field(default_factory=dict)  # of the processes, beside this one's
     processes: list[subprocess.Popen[bytes]] = field(default_factory=list)
     operator: Access = field(init=False)
     begins: datetime = field(init=False)  # when the time of the mission, or of faults, is 0
@@ -169,7 +170,7 @@ class TeamProcesses:
                 stdout=log,
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
-                env=os.environ | threads,
+                env={**os.environ, **threads, **self.environment},
             )
 
     def _command(self, i: int) -> list[str]:

@@ -108,14 +108,17 @@ class Exploring:
 
     def observe(self, scan: Scan, pose: Pose, mates: Sequence[Mate], now: float) -> None:
         """Add a scan to the robot's own evidence; returns from team-mates are not obstacles."""
-        ranges = np.minimum(scan.ranges, self.spec.range)
-        hits = scan.ranges < self.spec.range
+        says = ~np.isnan(scan.ranges)
+        angles, told = scan.angles[says], scan.ranges[says]
+        ranges, hits = np.minimum(told, self.spec.range), told < self.spec.range
+        lidar_x, lidar_y = pose.x + scan.offset[0], pose.y + scan.offset[1]
         for mate in mates:
-            self._leave_out(mate, pose, scan.angles, ranges, hits, now)
-        x, y = pose.x - self.frame.origin_x, pose.y - self.frame.origin_y
+            away = mate.x - lidar_x, mate.y - lidar_y
+            self._leave_out(mate, away, pose.deviation, angles, ranges, hits, now - mate.heard, scan.age)
+        x, y = lidar_x - self.frame.origin_x, lidar_y - self.frame.origin_y
         nudge = self._nudge
-        self._learn(scan.angles, ranges, hits, x, y)
-        beams = self.log_odds, self.frame.resolution, x, y, scan.angles, ranges, hits
+        self._learn(angles, ranges, hits, x, y)
+        beams = self.log_odds, self.frame.resolution, x, y, angles, ranges, hits
         if pose.deviation > 0.0 or pose.heading_deviation > 0.0:
             margins = BLUR * np.hypot(pose.deviation, ranges * pose.heading_deviation)
             changed = lidar.integrate_blurred_scan(*beams, margins, GAIN_HIT, GAIN_MISS, CLAMP, nudge)
@@ -194,22 +197,33 @@ class Exploring:
     def _leave_out(
         self,
         mate: Mate,
-        pose: Pose,
+        away: tuple[float, float],
+        deviation: float,
         angles: NDArray[np.float64],
         ranges: NDArray[np.float64],
         hits: NDArray[np.bool_],
-        now: float,
+        unheard: float,
+        age: float,
     ) -> None:
-        """Turn returns from a mate's body into free space up to just before it."""
-        dx, dy = mate.x - pose.x, mate.y - pose.y
-        moved = mate.speed * min(now - mate.heard, 0.5)
-        reach = mate.radius + MATE_MARGIN + moved + 2.0 * pose.deviation
+        """Turn returns from a mate's body into free space up to just before it.
+
+        Args:
+            mate: the team-mate.
+            away: where it is from the lidar [m], team frame.
+            deviation: of the robot's own place [m].
+            angles, ranges, hits: ``(B,)`` of the beams; the last two are changed in place.
+            unheard: time since the mate was heard [s].
+            age: of the scan [s].
+        """
+        dx, dy = away
+        moved = mate.speed * (min(unheard, 0.5) + age)
+        reach = mate.radius + MATE_MARGIN + moved + 2.0 * deviation
         if np.hypot(dx, dy) > self.spec.range + reach:
             return
         off = np.hypot(ranges * np.cos(angles) - dx, ranges * np.sin(angles) - dy)
         body = hits & (off < reach)
         hits[body] = False
-        before = self.frame.resolution + BLUR * pose.deviation
+        before = self.frame.resolution + BLUR * deviation
         ranges[body] = np.maximum(ranges[body] - before, 0.0)
 
     def publish(self, now: float) -> None:

@@ -4,41 +4,65 @@ from __future__ import annotations
 
 import hashlib
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
+from vedette.agent.body import Body, Shown
+from vedette.maps import GridFrame
 from vedette.maps.world import World
 from vedette.missions.explore.assemble import assemble, terms_of
 from vedette.missions.explore.options import ExploreOptions
 from vedette.net.config import AgentConfig
 from vedette.net.explore.content import ExploreTeller
+from vedette.net.real import real_frame, real_robot
 from vedette.net.robot import Robot
 from vedette.net.simulated import simulated_robot
-from vedette.team import Most
+from vedette.team import Most, PlatformSpec
+
+
+class _Place(NamedTuple):
+    """A body, and where it is."""
+
+    frame: GridFrame  # of the team's map
+    hull: PlatformSpec
+    body: Body
+    shown: Shown | None
+    terms: dict[str, str]  # what its team has to agree on beside how it explores
 
 
 def explorer(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robot:
     """Return the robot; ``folder``: what paths in its file are relative to.
 
     Raises:
-        InputError: the map or the start cannot be used.
+        InputError: the map or the start cannot be used, or the robot does not tell what is needed.
     """
-    assert config.body.map is not None
-    world = World.from_map(folder / config.body.map, config.body.resolution)
-    body, best = simulated_robot(config, world), config.best
-    options = config.explore or ExploreOptions()
+    place = _simulated(config, folder) if config.body.ros2 is None else _real(config)
+    best, options = config.best, config.explore or ExploreOptions()
     agent = assemble(
-        world.frame,
-        body.hull,
+        place.frame,
+        place.hull,
         options,
         config.robot - 1,
         boot,
         robots=config.robots,
-        most=Most.of([body.hull]) if best is None else Most(best.range, best.speed),
+        most=Most.of([place.hull]) if best is None else Most(best.range, best.speed),
         waits_for=config.robots,
     )
-    terms = {**terms_of(world.frame, options), "map.content": _fingerprint(world)}
-    return Robot(agent, body, body, ExploreTeller(agent), terms)
+    terms = {**terms_of(place.frame, options), **place.terms}
+    return Robot(agent, place.body, place.shown, ExploreTeller(agent), terms)
+
+
+def _simulated(config: AgentConfig, folder: Path) -> _Place:
+    assert config.body.map is not None
+    world = World.from_map(folder / config.body.map, config.body.resolution)
+    body = simulated_robot(config, world)
+    return _Place(world.frame, body.hull, body, body, {"map.content": _fingerprint(world)})
+
+
+def _real(config: AgentConfig) -> _Place:
+    body = real_robot(config)
+    return _Place(real_frame(config), body.hull, body, None, {})
 
 
 def _fingerprint(world: World) -> str:

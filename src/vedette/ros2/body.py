@@ -1,0 +1,198 @@
+"""A robot that runs ROS 2, as its agent knows it; ``vedette.agent.body.Body``."""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass, field
+from math import atan2, hypot, inf
+
+import numpy as np
+
+from vedette.agent.body import BodyFigures
+from vedette.agent.effects import Drive, Motion, Route
+from vedette.agent.events import Event, Pose, Scan
+from vedette.ros2.door import Answer, Deviation, Door, GoalStatus, Joint, NavigatorGone, Told
+from vedette.ros2.goals import Ask, Errands, Place
+from vedette.ros2.scans import LaserSweep, beams
+from vedette.ros2.settings import Ros2Settings
+from vedette.ros2.transforms import RESTARTED, Gap, Matrix, Transforms, place, planar
+from vedette.team import PlatformSpec
+
+WAITING = 100  # scans that wait for their transforms at most; then the oldest is left out
+BETWEEN_SCANS = 0.18  # of those that are taken in, at least [s]
+NO_WAY = 0.01  # less between two poses is not counted as way [m]
+
+
+@dataclass(eq=False)
+class Ros2Body:
+    """What a robot tells over ROS 2 as events, and an agent's routes as goals of its navigator.
+
+    Stamps are compared with stamps alone, never with the mission's time or the host's clock.
+    """
+
+    hull: PlatformSpec
+    settings: Ros2Settings
+    door: Door
+    transforms: Transforms = field(default_factory=Transforms)
+    goals: Errands = field(default_factory=Errands)
+    left_out: int = 0  # scans whose transforms never came
+    latest: LaserSweep | None = None
+    _pose: Pose | None = None  # team frame
+    _counted: Pose | None = None  # up to where its way is counted
+    _travelled: float = 0.0
+    _seen: float = -inf  # stamp of the latest scan that was taken in [s]
+    _deviation: Deviation = field(default_factory=Deviation)
+    _waiting: deque[LaserSweep] = field(default_factory=lambda: deque(maxlen=WAITING))
+
+    @property
+    def pose(self) -> Place:
+        """Where it takes itself to be."""
+        at = self._pose
+        return (0.0, 0.0, 0.0) if at is None else (at.x, at.y, at.heading)
+
+    @property
+    def figures(self) -> BodyFigures:
+        """Its way; its own software sees to collisions."""
+        return BodyFigures(self._travelled)
+
+    def sense(self, now: float) -> list[Event]:
+        """Return what the robot has told since the last call; nothing until it has told where it is."""
+        self.hear(now)
+        pose = self._localised()
+        self.goals.tick(None if pose is None else (pose.x, pose.y, pose.heading), now)
+        self._give_orders()
+        if pose is None:
+            return []
+        scans = [event for sweep in self._due() for event in sweep]
+        self._note(pose)
+        outcomes, self.goals.outcomes = self.goals.outcomes, []
+        return [*scans, pose, *outcomes]
+
+    def carry_out(self, motion: Motion, now: float) -> None:
+        """Send the navigator to the end of a route, or let the robot stand."""
+        assert isinstance(motion, Drive), "robots on the ground do not fly"
+        route = motion.route
+        if route is None:
+            self.goals.want(None, now)
+        else:
+            self.goals.want(self._end(route), now, facing=route.facing is not None)
+        self._give_orders()
+
+    def stop(self, now: float) -> None:
+        """Stand, and leave the robot to others."""
+        self.goals.want(None, now)
+        self._give_orders()
+        self.door.close()
+
+    # -- what the robot tells ---------------------------------------------------------------------------
+
+    def hear(self, now: float) -> None:
+        """Take in what the robot has told."""
+        for told in self.door.take():
+            self._hear(told, now)
+
+    def _hear(self, told: Told, now: float) -> None:
+        match told:
+            case Joint(parent, child, stamp, T, fixed):
+                self.transforms.add(parent, child, stamp, T, fixed=fixed)
+            case LaserSweep():
+                self._receive(told)
+            case Deviation():
+                self._deviation = told
+            case Answer(goal, accepted):
+                (self.goals.accepted if accepted else self.goals.rejected)(goal, now)
+            case GoalStatus(goal, status):
+                self.goals.status(goal, status, now)
+            case NavigatorGone():
+                self.goals.gone(now)
+
+    def frame(self, name: str) -> str:
+        """Return a frame as TF knows it: bare, or with the robot's namespace before it."""
+        prefixed = f"{self.settings.namespace.strip('/')}/{name}"
+        return prefixed if name not in self.transforms.frames and prefixed in self.transforms.frames else name
+
+    def _localised(self) -> Pose | None:
+        """Return where the robot is by the newest that each joint has told."""
+        told = self.transforms.lookup(
+            self.frame(self.settings.map_frame), self.frame(self.settings.base_frame)
+        )
+        if isinstance(told, Gap):
+            return self._pose
+        return self._pose_at(told, self.goals.slowed)
+
+    def _pose_at(self, T_map_base: Matrix, slowed: float = 0.0) -> Pose:
+        x, y, heading = place(self.settings.T_team_map @ T_map_base)
+        return Pose(x, y, heading, slowed, self._deviation.place, self._deviation.heading)
+
+    def _note(self, pose: Pose) -> None:
+        """Remember where the robot is, and count its way."""
+        self._pose, last = pose, self._counted or pose
+        way = hypot(pose.x - last.x, pose.y - last.y)
+        if way >= NO_WAY or self._counted is None:
+            self._counted, self._travelled = pose, self._travelled + way
+
+    def _due(self) -> list[tuple[Pose, Scan]]:
+        """Return the scans whose transforms have come by now, each with where the robot was then."""
+        due = []
+        while self._waiting:
+            placed = self._placed(self._waiting[0])
+            if placed in (Gap.NOT_YET, Gap.UNCONNECTED):
+                break
+            self._waiting.popleft()
+            if isinstance(placed, Gap):
+                self.left_out += 1
+            else:
+                due.append(placed)
+        return due
+
+    def _receive(self, sweep: LaserSweep) -> None:
+        """Let a scan wait for its transforms; what comes faster than is needed is left alone."""
+        self.latest = sweep
+        if sweep.stamp < self._seen - RESTARTED:  # the robot's clock has begun anew
+            self._waiting.clear()
+        elif sweep.stamp < self._seen + BETWEEN_SCANS:
+            return
+        self._seen = sweep.stamp
+        self._waiting.append(sweep)
+
+    def _placed(self, sweep: LaserSweep) -> tuple[Pose, Scan] | Gap:
+        """Return a scan in the team's frame, as taken where the robot was in its middle."""
+        map_frame, T_team_map = self.frame(self.settings.map_frame), self.settings.T_team_map
+        middle = 0.5 * (sweep.stamp + sweep.ends)
+        found: list[Matrix] = []
+        for frame, stamp in (
+            (sweep.frame, sweep.stamp),
+            (sweep.frame, sweep.ends),
+            (self.frame(self.settings.base_frame), middle),
+        ):
+            T = self.transforms.lookup(map_frame, frame, stamp)
+            if isinstance(T, Gap):
+                return T
+            found.append(T)
+        seen = beams(sweep, T_team_map @ found[0], T_team_map @ found[1], self.settings.no_return)
+        pose = self._pose_at(found[2])
+        newest = self.transforms.newest(self.frame(self.settings.base_frame))
+        age = 0.0 if newest is None else max(newest - middle, 0.0)
+        return pose, Scan(seen.angles, seen.ranges, (seen.x - pose.x, seen.y - pose.y), age)
+
+    # -- where it is to go ------------------------------------------------------------------------------
+
+    def _end(self, route: Route) -> Place:
+        """Return the end of a route, facing as told or else as the route ends; team frame."""
+        x, y = route.path[-1].tolist()
+        if route.facing is not None:
+            return x, y, route.facing
+        apart = np.flatnonzero(np.hypot(*(route.path - route.path[-1]).T) > NO_WAY)
+        if not len(apart):
+            return x, y, self.pose[2]
+        back = route.path[-1] - route.path[apart[-1]]
+        return x, y, atan2(back[1], back[0])
+
+    def _give_orders(self) -> None:
+        orders, self.goals.orders = self.goals.orders, []
+        for order in orders:
+            if isinstance(order, Ask):
+                T_map_team = np.linalg.inv(self.settings.T_team_map)
+                self.door.ask(order.goal, place(T_map_team @ planar(*order.place)))
+            else:
+                self.door.cancel(order.goal)
