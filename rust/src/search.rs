@@ -30,9 +30,10 @@ fn py_propagate<'py>(
     first: (i64, i64),
     row_taps: PyReadonlyArray1<'py, f64>,
     col_taps: PyReadonlyArray1<'py, f64>,
+    leaves: bool,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let [rows, cols] = [mass.as_array().nrows(), mass.as_array().ncols()];
-    let stencil = Stencil { first, row_taps: row_taps.as_slice()?, col_taps: col_taps.as_slice()? };
+    let stencil = Stencil { first, row_taps: row_taps.as_slice()?, col_taps: col_taps.as_slice()?, leaves };
     let grid = Grid { rows, cols };
     let moved = stencil.spread(grid, &Patch::whole(grid, mass.as_slice()?), grid.bounds());
     moved.mass.into_pyarray(py).reshape([rows, cols])
@@ -65,13 +66,14 @@ fn py_detected_mass<'py>(
     first: (i64, i64),
     row_taps: PyReadonlyArray1<'py, f64>,
     col_taps: PyReadonlyArray1<'py, f64>,
+    leaves: bool,
     steps: usize,
     layers: usize,
     keys: PyReadonlyArray1<'py, u32>,
     misses: PyReadonlyArray1<'py, u8>,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let grid = Grid { rows: mass.as_array().nrows(), cols: mass.as_array().ncols() };
-    let stencil = Stencil { first, row_taps: row_taps.as_slice()?, col_taps: col_taps.as_slice()? };
+    let stencil = Stencil { first, row_taps: row_taps.as_slice()?, col_taps: col_taps.as_slice()?, leaves };
     let impact = (keys.as_slice()?, misses.as_slice()?);
     let mass = mass.as_slice()?;
     Ok(py.detach(|| detected_mass(grid, mass, &stencil, steps, layers, impact)).into_pyarray(py))
@@ -84,6 +86,7 @@ fn py_path_gains<'py>(
     first: (i64, i64),
     row_taps: PyReadonlyArray1<'py, f64>,
     col_taps: PyReadonlyArray1<'py, f64>,
+    leaves: bool,
     steps: usize,
     weights: PyReadonlyArray1<'py, f64>,
     others_keys: PyReadonlyArray1<'py, u32>,
@@ -94,7 +97,7 @@ fn py_path_gains<'py>(
     misses: PyReadonlyArray1<'py, u8>,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let grid = Grid { rows: mass.as_array().nrows(), cols: mass.as_array().ncols() };
-    let stencil = Stencil { first, row_taps: row_taps.as_slice()?, col_taps: col_taps.as_slice()? };
+    let stencil = Stencil { first, row_taps: row_taps.as_slice()?, col_taps: col_taps.as_slice()?, leaves };
     let paths = Paths {
         parents: parents.as_slice()?,
         starts: starts.as_slice()?,

@@ -184,6 +184,7 @@ def propagate(
     first: tuple[int, int],
     row_taps: NDArray[np.float64],
     col_taps: NDArray[np.float64],
+    leaves: bool,
 ) -> NDArray[np.float64]: ...
 def look_footprints(
     shape: tuple[int, int],
@@ -199,6 +200,7 @@ def detected_mass(
     first: tuple[int, int],
     row_taps: NDArray[np.float64],
     col_taps: NDArray[np.float64],
+    leaves: bool,
     steps: int,
     layers: int,
     keys: NDArray[np.uint32],
@@ -209,6 +211,7 @@ def path_gains(
     first: tuple[int, int],
     row_taps: NDArray[np.float64],
     col_taps: NDArray[np.float64],
+    leaves: bool,
     steps: int,
     weights: NDArray[np.float64],
     others_keys: NDArray[np.uint32],

@@ -15,7 +15,7 @@ from PIL import Image
 
 from tests.support.commands import FILES, Command, check_files, refused, start
 from tests.support.places import ROOT
-from tests.support.search_missions import SMALL
+from tests.support.search_missions import EYE, SMALL
 from vedette.domains.search import prediction
 from vedette.record.summary import Traffic
 
@@ -23,8 +23,9 @@ FIELDS = [
     "schema_version", "completed", "outcome", "lost", "seed", "scenario", "coordination", "scheme", "fusion",
     "worth", "radio", "faults", "vehicles", "time_s",
     "found_s", "found_by", "declared_m", "target_m", "error_m",
-    "detection_then",
-    "duration_s", "detection", "t50_s", "t90_s", "mean_time_s", "counted", "bound", "koopman", "path_m",
+    "detection_then", "outside_then",
+    "duration_s", "detection", "t50_s", "t90_s", "mean_time_s", "outside", "counted", "bound", "koopman",
+    "path_m",
     "rounds", "sweeps", "bound_ratio", "messages", "bytes", "comparison",
 ]  # fmt: skip
 ALARMS = {"type": "exponential", "range": 100, "sigma": 60, "noise": 10, "false_alarm": 0.02}
@@ -229,6 +230,37 @@ def test_where_prediction_and_count_disagree_a_line_says_so(
     assert "more than the 95 % band of 0.021: smaller cells predict better" in ran.out
 
 
+# -- a target that drifts to the border -----------------------------------------------------------------
+
+OUT = {"target": {"drift": [40, 0], "diffusion": 1}, "detector": EYE, "duration": 40}
+
+
+def test_a_drift_to_the_border_is_told_with_what_happens_there(vedette: Command) -> None:
+    """Of the two parts of the prior, at x = 350 and 800, the second is at x = 1200 after 10 s."""
+    told = "it takes the mean of prior[1] to the area's border after 10 s"
+    ran = vedette("search", scenario(**OUT), "--out", "held", *QUICK)
+    assert f"{told}: the target is held there" in ran.err
+    assert json.loads((Path("held") / "summary.json").read_text())["outside"] is None
+    leaving = OUT | {"target": OUT["target"] | {"border": "leave"}}  # type: ignore[operator]
+    ran = vedette("search", scenario(**leaving), "--out", "left", *QUICK)
+    assert f"{told}: what leaves is not found again" in ran.err
+    assert "has left the area undetected with a probability of" in ran.out
+    assert "has left" in ran.out.splitlines()[0]
+    summary = json.loads((Path("left") / "summary.json").read_text())
+    assert summary["detection"] + summary["outside"] == pytest.approx(1.0, abs=0.02)
+    assert summary["outside_then"] <= summary["outside"]
+    check_run(Path("left"))
+
+
+def test_a_drift_that_stays_within_the_area_is_not_told(vedette: Command) -> None:
+    slow = scenario(target={"drift": [5, 0]})  # 220 m, and 400 m to go
+    assert vedette("search", slow, "--out", "out", *QUICK).err == ""
+    ran = vedette(
+        "search", scenario(target={"drift": [0, 5], "start": [300, 700]}), "--out", "out", "--force"
+    )
+    assert "takes target.start to the area's border after 20 s" in ran.err
+
+
 # -- bad input ----------------------------------------------------------------------------------------
 
 ONE = SMALL["vehicles"][0]
@@ -286,6 +318,7 @@ GAUSSIAN = SMALL["prior"][0]
         ({"target": {"diffusion": -1}}, ["target.diffusion", "-1"]),
         ({"target": {"drift": [1e6, 0]}}, ["small.yaml", "cells"]),
         ({"target": {"start": [5000, 0]}}, ["target.start", "outside"]),
+        ({"target": {"border": "leaves"}}, ["target.border", "leaves", "'leave'"]),
         ({"worth": "plian"}, ["worth", "plian", "'plain'"]),
         ({"declare": {"probability": 1.5}}, ["declare.probability", "1.5"]),
     ],

@@ -18,7 +18,8 @@ SEEDS = st.integers(0, 2**32 - 1)
 
 def random_stencil(rng: np.random.Generator, most: int = 3) -> Stencil:
     taps = [rng.dirichlet(np.ones(rng.integers(1, most + 1))) for _ in range(2)]
-    return Stencil((int(rng.integers(-2, 2)), int(rng.integers(-2, 2))), taps[0], taps[1])
+    first = (int(rng.integers(-2, 2)), int(rng.integers(-2, 2)))
+    return Stencil(first, taps[0], taps[1], leaves=bool(rng.integers(2)))
 
 
 def random_mass(rng: np.random.Generator) -> NDArray[np.float64]:
@@ -57,12 +58,13 @@ def random_paths(rng: np.random.Generator, shape: tuple[int, int], layers: int) 
 
 @QUICK
 @given(SEEDS)
-def test_propagate_equals_its_twin_and_keeps_the_mass(seed: int) -> None:
+def test_propagate_equals_its_twin_and_keeps_the_mass_that_may_not_leave(seed: int) -> None:
     rng = np.random.default_rng(seed)
     mass, stencil = random_mass(rng), random_stencil(rng, most=9)
     moved = search.propagate(mass, stencil)
     np.testing.assert_allclose(moved, reference_search.propagate(mass, stencil), atol=1e-15)
-    assert moved.sum() == pytest.approx(1.0, abs=1e-14)
+    assert moved.sum() <= 1.0 + 1e-14
+    assert stencil.leaves or moved.sum() == pytest.approx(1.0, abs=1e-14)
 
 
 @QUICK

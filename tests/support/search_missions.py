@@ -70,7 +70,7 @@ def blind(search: SearchCase, **setup: Any) -> SearchSimulation:
 def curve(simulation: SearchSimulation) -> Floats:
     """Return the probability of detection by each step."""
     search = simulation.case
-    return predicted(search.pdf, search.detectors, simulation.vehicles.looks, simulation.steps)
+    return predicted(search.pdf, search.detectors, simulation.vehicles.looks, simulation.steps).detection
 
 
 def central(simulation: SearchSimulation, step: int) -> TargetPdf:

@@ -1,4 +1,4 @@
-//! The transition of a target's density: a separable stencil, reflected at the borders of the grid.
+//! The transition of a target's density: a separable stencil; at the grid's borders mass is reflected or lost.
 
 #[derive(Clone, Copy)]
 pub struct Grid {
@@ -24,6 +24,8 @@ pub struct Stencil<'a> {
     pub first: (i64, i64),
     pub row_taps: &'a [f64],
     pub col_taps: &'a [f64],
+    /// What moves beyond the grid is gone; otherwise it is reflected at the border.
+    pub leaves: bool,
 }
 
 /// `length` neighbours that all move by the same amount with the same probability.
@@ -122,8 +124,8 @@ impl Stencil<'_> {
     /// The smallest bounds that hold all that moves out of these.
     pub fn image(&self, grid: Grid, from: Bounds) -> Bounds {
         Bounds {
-            rows: image(from.rows, self.first.0, self.row_taps.len(), grid.rows),
-            cols: image(from.cols, self.first.1, self.col_taps.len(), grid.cols),
+            rows: self.image_along(from.rows, self.first.0, self.row_taps.len(), grid.rows),
+            cols: self.image_along(from.cols, self.first.1, self.col_taps.len(), grid.cols),
         }
     }
 
@@ -133,8 +135,8 @@ impl Stencil<'_> {
         if self.stays() && into == from {
             return Patch { bounds: from, mass: patch.mass.clone() };
         }
-        let row_runs = runs(from.rows, into.rows, self.first.0, self.row_taps, grid.rows);
-        let col_runs = runs(from.cols, into.cols, self.first.1, self.col_taps, grid.cols);
+        let row_runs = self.runs(from.rows, into.rows, self.first.0, self.row_taps, grid.rows);
+        let col_runs = self.runs(from.cols, into.cols, self.first.1, self.col_taps, grid.cols);
         let middle = along_rows(&patch.mass, from.width(), &row_runs, into.rows.1 - into.rows.0);
         Patch { bounds: into, mass: along_cols(&middle, from.width(), &col_runs, into.width()) }
     }
@@ -149,50 +151,57 @@ impl Stencil<'_> {
             list.iter_mut().for_each(|run| std::mem::swap(&mut run.from, &mut run.to));
             list
         };
-        let row_runs = back(runs(bounds.rows, bounds.rows, self.first.0, self.row_taps, grid.rows));
-        let col_runs = back(runs(bounds.cols, bounds.cols, self.first.1, self.col_taps, grid.cols));
+        let row_runs = back(self.runs(bounds.rows, bounds.rows, self.first.0, self.row_taps, grid.rows));
+        let col_runs = back(self.runs(bounds.cols, bounds.cols, self.first.1, self.col_taps, grid.cols));
         let middle = along_rows(&patch.mass, bounds.width(), &row_runs, bounds.rows.1 - bounds.rows.0);
         Patch { bounds, mass: along_cols(&middle, bounds.width(), &col_runs, bounds.width()) }
     }
-}
 
-/// Reflect an index at the borders of `[0, n)`: a border is a mirror between cells.
-fn fold(index: i64, n: usize) -> usize {
-    if (0..n as i64).contains(&index) {
-        return index as usize;
+    /// Where an index beyond `[0, n)` is: reflected, as by a mirror between cells, or nowhere.
+    fn landed(&self, index: i64, n: usize) -> Option<usize> {
+        if (0..n as i64).contains(&index) {
+            return Some(index as usize);
+        }
+        let n = n as i64;
+        let wrapped = index.rem_euclid(2 * n);
+        (!self.leaves).then(|| wrapped.min(2 * n - 1 - wrapped) as usize)
     }
-    let n = n as i64;
-    let wrapped = index.rem_euclid(2 * n);
-    wrapped.min(2 * n - 1 - wrapped) as usize
-}
 
-/// The smallest range that holds all that moves out of `[from.0, from.1)`.
-fn image(from: (usize, usize), first: i64, taps: usize, n: usize) -> (usize, usize) {
-    let targets = from.0 as i64 + first..from.1 as i64 + first + taps as i64 - 1;
-    let folded = || targets.clone().map(|index| fold(index, n));
-    (folded().min().unwrap_or(0), folded().max().map_or(0, |last| last + 1))
-}
+    /// The smallest range that holds all that moves out of `[from.0, from.1)`; empty if it is all gone.
+    fn image_along(&self, from: (usize, usize), first: i64, taps: usize, n: usize) -> (usize, usize) {
+        let targets = from.0 as i64 + first..from.1 as i64 + first + taps as i64 - 1;
+        let landed = || targets.clone().filter_map(|index| self.landed(index, n));
+        (landed().min().unwrap_or(0), landed().max().map_or(0, |last| last + 1))
+    }
 
-/// All moves from one range into another, indices relative to the ranges, neighbours together.
-fn runs(from: (usize, usize), into: (usize, usize), first: i64, taps: &[f64], n: usize) -> Vec<Run> {
-    let mut list: Vec<Run> = Vec::new();
-    for (t, &tap) in taps.iter().enumerate() {
-        let begin = list.len();
-        for index in from.0..from.1 {
-            let target = fold(index as i64 + first + t as i64, n);
-            if target < into.0 || target >= into.1 {
-                continue;
-            }
-            let (source, target) = (index - from.0, target - into.0);
-            match list[begin..].last_mut() {
-                Some(run) if run.from + run.length == source && run.to + run.length == target => {
-                    run.length += 1;
+    /// All moves from one range into another, indices relative to the ranges, neighbours together.
+    fn runs(
+        &self,
+        from: (usize, usize),
+        into: (usize, usize),
+        first: i64,
+        taps: &[f64],
+        n: usize,
+    ) -> Vec<Run> {
+        let mut list: Vec<Run> = Vec::new();
+        for (t, &tap) in taps.iter().enumerate() {
+            let begin = list.len();
+            for index in from.0..from.1 {
+                let Some(target) = self.landed(index as i64 + first + t as i64, n) else { continue };
+                if target < into.0 || target >= into.1 {
+                    continue;
                 }
-                _ => list.push(Run { from: source, to: target, length: 1, tap }),
+                let (source, target) = (index - from.0, target - into.0);
+                match list[begin..].last_mut() {
+                    Some(run) if run.from + run.length == source && run.to + run.length == target => {
+                        run.length += 1;
+                    }
+                    _ => list.push(Run { from: source, to: target, length: 1, tap }),
+                }
             }
         }
+        list
     }
-    list
 }
 
 fn along_rows(mass: &[f64], width: usize, runs: &[Run], rows: usize) -> Vec<f64> {

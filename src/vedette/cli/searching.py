@@ -64,6 +64,9 @@ def closing(summary: SearchSummary, folder: Path) -> list[str]:
     if summary.comparison:
         means = (f"{name} {quality.mean_time_s:.0f} s" for name, quality in summary.comparison.items())
         lines.insert(1, f"mean time to detection, cut at {summary.duration_s:.0f} s: {', '.join(means)}")
+    if summary.outside is not None:
+        left = f"has left the area undetected with a probability of {100 * summary.outside:.0f} %"
+        lines.insert(1, f"by {summary.duration_s:.0f} s the target {left}, nobody reporting")
     counted = summary.counted
     if counted is not None and counted.off is not None and counted.off > counted.band:
         lines.insert(

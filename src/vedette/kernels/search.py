@@ -20,12 +20,14 @@ from vedette.kernels.misses import Keys, Misses
 class Stencil:
     """One step of a target: from a cell to ``first + t`` rows up with ``row_taps[t]``, columns likewise.
 
-    Rows and columns are independent. Moves beyond the grid are reflected at its border, so that mass is kept.
+    Rows and columns are independent. Moves beyond the grid are reflected at its border, so that mass is kept,
+    or the mass is gone.
     """
 
     first: tuple[int, int]  # smallest move in rows and in columns [cells]
     row_taps: NDArray[np.float64]  # sum 1
     col_taps: NDArray[np.float64]  # sum 1
+    leaves: bool = False  # whether what moves beyond the grid is gone
 
     @property
     def reach(self) -> int:
@@ -37,6 +39,11 @@ class Stencil:
     def taps(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Those of the rows and those of the columns."""
         return self.row_taps, self.col_taps
+
+    @property
+    def parts(self) -> tuple[tuple[int, int], NDArray[np.float64], NDArray[np.float64], bool]:
+        """All of it, as the kernels take it."""
+        return self.first, *self.taps, self.leaves
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +58,7 @@ class Paths:
 
 def propagate(mass: NDArray[np.float64], stencil: Stencil) -> NDArray[np.float64]:
     """``T p``: the density ``(R, C)`` one step later."""
-    return _kernels.propagate(floats(mass), stencil.first, *stencil.taps)
+    return _kernels.propagate(floats(mass), *stencil.parts)
 
 
 def look_footprints(
@@ -94,7 +101,7 @@ def detected_mass(
     Returns:
         ``(layers,)``.
     """
-    return _kernels.detected_mass(floats(mass), stencil.first, *stencil.taps, steps, layers, keys, misses)
+    return _kernels.detected_mass(floats(mass), *stencil.parts, steps, layers, keys, misses)
 
 
 def path_gains(
@@ -118,8 +125,7 @@ def path_gains(
     """
     return _kernels.path_gains(
         floats(mass),
-        stencil.first,
-        *stencil.taps,
+        *stencil.parts,
         steps,
         floats(weights),
         *others,

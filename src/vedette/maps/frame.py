@@ -58,6 +58,12 @@ class GridFrame:
         row, col = self.cell(x, y)
         return 0 <= row < self.rows and 0 <= col < self.cols
 
+    def holds(self, places: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Tell which of the points ``(n, 2)`` [m] lie in the grid, ``(n,)``."""
+        x_min, x_max, y_min, y_max = self.extent
+        inside = (places >= (x_min, y_min)) & (places < (x_max, y_max))
+        return np.asarray(inside.all(axis=1))
+
     def flat(self, x: float, y: float) -> int:
         """Return the flat (row-major) index of the cell that holds a point inside the grid."""
         row, col = self.cell(x, y)
@@ -82,6 +88,11 @@ class GridFrame:
             self.origin_x + cols.start * self.resolution,
             self.origin_y + rows.start * self.resolution,
         )
+
+    def mean(self, mass: NDArray[np.float64]) -> tuple[float, float]:
+        """Return the mean place [m] of a density ``(rows, cols)`` of sum 1."""
+        x, y = (mass.ravel() @ self.centres(np.arange(self.size))).tolist()
+        return x, y
 
     def coarse(self, factor: int) -> GridFrame:
         """Return the frame whose cells are ``factor x factor`` of these, padded at the far edges."""

@@ -59,6 +59,40 @@ def test_the_grid_moves_as_true_targets_do() -> None:
     assert (places <= (1100.0, 1300.0)).all()
 
 
+LEAVING = TargetMotion((14.0, -6.0), 60.0, leaves=True)
+
+
+def test_what_leaves_the_grid_is_outside_as_often_as_true_targets_are() -> None:
+    target = pdf(LEAVING)
+    rng = np.random.default_rng(0)
+    cells = rng.choice(SEA.size, 40000, p=target.mass.ravel())
+    places = SEA.centres(cells) + rng.uniform(-10, 10, (len(cells), 2))
+    for step in range(1, 31):
+        places = LEAVING.move(rng, places, SEA, target.dt)
+        target = target.predict()
+        inside = SEA.holds(places)
+        assert target.outside == pytest.approx(1.0 - inside.mean(), abs=0.01), step
+        assert target.mass.sum() + target.outside == pytest.approx(1.0, abs=1e-12)
+    assert 0.5 < target.outside < 0.95
+    gone = places[~inside]
+    np.testing.assert_array_equal(LEAVING.move(rng, places, SEA, target.dt)[~inside], gone)
+
+
+def test_looks_in_vain_make_it_likelier_that_the_target_has_left() -> None:
+    prior = TargetPdf(UNIT, np.arange(80.0).reshape(8, 10), outside=1000.0)
+    likelihood = np.random.default_rng(1).random(80)
+    posterior = prior.observe(np.arange(80), np.log(likelihood))
+    expected = np.append(np.arange(80.0) * likelihood, 1000.0)
+    expected /= expected.sum()
+    np.testing.assert_allclose(posterior.mass.ravel(), expected[:80], atol=1e-15)
+    assert posterior.outside == pytest.approx(expected[80], abs=1e-14)
+    assert posterior.entropy == pytest.approx(
+        -(expected[expected > 0] * np.log(expected[expected > 0])).sum()
+    )
+    sure = TargetPdf(UNIT, np.zeros((8, 10)), outside=1.0).observe(np.arange(3), np.full(3, -9.0))
+    assert (sure.outside, sure.mass.sum(), sure.entropy) == (1.0, 0.0, 0.0)
+
+
 def test_observing_is_bayes_rule() -> None:
     prior = TargetPdf(UNIT, np.arange(80.0).reshape(8, 10))
     likelihood = np.random.default_rng(1).random(80)

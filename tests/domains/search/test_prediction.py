@@ -45,17 +45,34 @@ def test_predicted_is_counted_though_cells_be_far_larger_than_the_range(detector
     sensors, looks = [DETECTORS[detector]], [circling(0.25, 30.0)]
     first = detected_at(pdf, sensors, looks, STEPS, TRIALS, np.random.default_rng(0))
     share = np.bincount(first, minlength=STEPS + 2)[: STEPS + 1].cumsum() / TRIALS
-    off = np.abs(share - predicted(pdf, sensors, looks, STEPS)).max()
+    off = np.abs(share - predicted(pdf, sensors, looks, STEPS).detection).max()
     assert off <= dkw(TRIALS, 0.999)
     assert share[-1] > 0.01
+
+
+def test_what_is_detected_what_has_left_and_what_is_left_are_all() -> None:
+    prior = gaussians(COARSE, [GaussianPart((500_130.0, 4_000_090.0), 30.0)])
+    pdf = TargetPdf(COARSE, prior, TargetMotion((2.5, 0.5), 3.0, leaves=True), 2.0)
+    sensors, looks = [DETECTORS["two thirds"]], [circling(0.25, 30.0)]
+    found = predicted(pdf, sensors, looks, STEPS)
+    rng = np.random.default_rng(0)
+    first = detected_at(pdf, sensors, looks, STEPS, TRIALS, rng)
+    share = np.bincount(first, minlength=STEPS + 2)[: STEPS + 1].cumsum() / TRIALS
+    assert np.abs(share - found.detection).max() <= dkw(TRIALS, 0.999)
+    assert (np.diff(found.outside) >= 0.0).all()
+    assert (found.detection + found.outside <= 1.0 + 1e-12).all()
+    blind = predicted(pdf, sensors, [{}], STEPS)
+    assert blind.detection == pytest.approx(0.0, abs=1e-12)
+    assert blind.outside[-1] == pytest.approx(pdf.finer(4).predict(STEPS).outside, abs=0.01)
+    assert found.outside[-1] < blind.outside[-1] < 0.95
 
 
 def test_cells_as_they_are_would_predict_twice_what_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     prior = gaussians(COARSE, [GaussianPart((500_130.0, 4_000_090.0), 30.0)])
     pdf, sensors, looks = TargetPdf(COARSE, prior, dt=2.0), [DETECTORS["an 8th"]], [circling(0.25, 30.0)]
-    fine = predicted(pdf, sensors, looks, STEPS)[-1]
+    fine = predicted(pdf, sensors, looks, STEPS).detection[-1]
     monkeypatch.setattr(prediction, "parts_of", lambda pdf, detectors: 1)
-    assert predicted(pdf, sensors, looks, STEPS)[-1] > 2.0 * fine
+    assert predicted(pdf, sensors, looks, STEPS).detection[-1] > 2.0 * fine
 
 
 def test_a_prediction_cuts_cells_as_fine_as_the_sharpest_sensor_asks_and_no_finer_than_lasts() -> None:

@@ -77,7 +77,7 @@ def test_detection_is_what_all_looks_so_far_have_taken_from_the_prior() -> None:
     for _ in range(4):
         looking.look(views())
     curve = [snapshot.detection for snapshot in looking.log.snapshots]
-    np.testing.assert_array_equal(curve, predicted(CASE.pdf, CASE.detectors, LOOKS, 3))
+    np.testing.assert_array_equal(curve, predicted(CASE.pdf, CASE.detectors, LOOKS, 3).detection)
     assert curve[0] == 0.0 < curve[1] < curve[2] == pytest.approx(curve[3], abs=1e-12)
     assert [snapshot.target for snapshot in looking.log.snapshots] == [TARGET] * 4
 

@@ -19,22 +19,26 @@ from vedette.maps import GridFrame
 
 @dataclass(frozen=True, eq=False)
 class TargetPdf:
-    """Probability that the target is in each cell, at a step boundary; the target is somewhere in the area.
+    """Probability that the target is in each cell, and that it has left the area, at a step boundary.
 
     Raises:
         InputError: a wrong shape, a negative or not finite probability, no mass, a step that is not positive.
     """
 
     frame: GridFrame
-    mass: NDArray[np.float64]  # (R, C), sum 1 (made so)
+    mass: NDArray[np.float64]  # (R, C), sum 1 (made so) with what is outside
     motion: TargetMotion = STILL
     dt: float = 1.0  # length of a step [s]
     step: int = 0  # number of steps since the mission began
+    outside: float = 0.0  # probability that it has left, for good
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.dt) and self.dt > 0.0):
             raise InputError(f"step length must be a number > 0 s; got {self.dt}")
-        object.__setattr__(self, "mass", normalised(self.frame, self.mass, "pdf"))
+        mass = normalised(self.frame, self.mass, "pdf", self.outside)
+        object.__setattr__(self, "mass", mass)
+        if self.outside > 0.0:
+            object.__setattr__(self, "outside", max(0.0, 1.0 - float(mass.sum())))
 
     @property
     def stencil(self) -> Stencil:
@@ -42,11 +46,12 @@ class TargetPdf:
         return self.motion.stencil(self.frame.resolution, self.dt)
 
     def predict(self, steps: int = 1) -> TargetPdf:
-        """``P(x_{k+n}) = T^n P(x_k)``: the mass moves, none is lost (paper, eq. (2)); (V41)."""
+        """``P(x_{k+n}) = T^n P(x_k)``: the mass moves, none is lost unseen (paper, eq. (2)); (V41)."""
         mass, stencil = self.mass, self.stencil
         for _ in range(steps):
             mass = search.propagate(mass, stencil)
-        return replace(self, mass=mass, step=self.step + steps)
+        outside = max(0.0, 1.0 - float(mass.sum())) if self.motion.leaves else 0.0
+        return replace(self, mass=mass, step=self.step + steps, outside=outside)
 
     def finer(self, parts: int) -> TargetPdf:
         """Return the same density on cells of which ``parts x parts`` make up one of these."""
@@ -60,17 +65,21 @@ class TargetPdf:
 
         Args:
             cells: ``(M,)`` distinct flat cells.
-            log_likelihood: ``(M,)`` of the reports there [nat], relative to that in all other cells (0).
+            log_likelihood: ``(M,)`` of the reports there [nat], relative to that in all other cells and
+                outside (0).
         """
         log_mass = np.log(self.mass, where=self.mass > 0.0, out=np.full(self.frame.shape, -np.inf))
         log_mass.ravel()[cells] += log_likelihood
-        return replace(self, mass=np.exp(log_mass - log_mass.max()))
+        log_outside = math.log(self.outside) if self.outside > 0.0 else -math.inf
+        most = max(float(log_mass.max()), log_outside)
+        return replace(self, mass=np.exp(log_mass - most), outside=math.exp(log_outside - most))
 
     @property
     def entropy(self) -> float:
-        """``-sum P ln P`` [nat]."""
-        positive = self.mass[self.mass > 0.0]
-        return float(-(positive * np.log(positive)).sum())
+        """``-sum P ln P`` [nat], what is outside as one more cell."""
+        all_mass = np.append(self.mass, self.outside)
+        positive = all_mass[all_mass > 0.0]
+        return max(0.0, float(-(positive * np.log(positive)).sum()))
 
     @property
     def best_cell(self) -> tuple[int, int]:
@@ -99,7 +108,7 @@ class SearchBelief:
     """
 
     frame: GridFrame
-    mass: NDArray[np.float64]  # (R, C) at step `step`, sum 1
+    mass: NDArray[np.float64]  # (R, C) at step `step`, sum 1 less what has left
     stencil: Stencil  # of a step
     dt: float  # [s]
     step: int
@@ -150,15 +159,17 @@ def freeze(pdf: TargetPdf, worth: Worth, committed: int = 0) -> SearchBelief:
     return SearchBelief(pdf.frame, pdf.mass, pdf.stencil, pdf.dt, pdf.step, worth, committed)
 
 
-def normalised(frame: GridFrame, mass: NDArray[np.float64], field: str) -> NDArray[np.float64]:
-    """Return a mass on a grid as probabilities of sum 1; ``InputError`` names the field if it cannot be."""
+def normalised(
+    frame: GridFrame, mass: NDArray[np.float64], field: str, outside: float = 0.0
+) -> NDArray[np.float64]:
+    """Return a mass on a grid, and outside, as probabilities of sum 1; ``InputError`` names the field."""
     mass = np.asarray(mass, np.float64)
     if mass.shape != frame.shape:
         raise InputError(f"{field} has shape {mass.shape}; the grid has {frame.shape}")
     if not np.isfinite(mass).all() or (mass < 0.0).any():
         wrong = mass[~(np.isfinite(mass) & (mass >= 0.0))][0]
         raise InputError(f"{field} must be finite and >= 0 in every cell; got {wrong}")
-    total = float(mass.sum())
+    total = float(mass.sum()) + outside
     if not (math.isfinite(total) and total > 0.0):
         raise InputError(
             f"{field} has no mass in the area (sum {total:g}); some cell must be likelier than 0"

@@ -18,7 +18,7 @@ CUT = 3e-4  # probability of the farthest moves that a stencil leaves out
 
 @dataclass(frozen=True)
 class TargetMotion:
-    """``x' = x + v dt + N(0, 2 D dt I)``, reflected at the borders of the area; docs/search.md (V41).
+    """``x' = x + v dt + N(0, 2 D dt I)``; at the area's borders reflected, or gone; docs/search.md (V41).
 
     Raises:
         InputError: a number that is not finite, or a negative diffusion.
@@ -26,6 +26,7 @@ class TargetMotion:
 
     drift: tuple[float, float] = (0.0, 0.0)  # v [m/s], team frame
     diffusion: float = 0.0  # D [m^2/s]: the variance along each axis grows by 2 D a second
+    leaves: bool = False  # whether a target that crosses the border is gone for good
 
     def __post_init__(self) -> None:
         if len(self.drift) != 2 or not all(map(math.isfinite, self.drift)):
@@ -38,14 +39,19 @@ class TargetMotion:
         variance = 2.0 * self.diffusion * dt / resolution**2
         first_row, row_taps = moves(self.drift[1] * dt / resolution, variance)
         first_col, col_taps = moves(self.drift[0] * dt / resolution, variance)
-        return Stencil((first_row, first_col), row_taps, col_taps)
+        return Stencil((first_row, first_col), row_taps, col_taps, self.leaves)
 
     def move(
         self, rng: np.random.Generator, places: NDArray[np.float64], frame: GridFrame, dt: float
     ) -> NDArray[np.float64]:
-        """Move targets at ``places`` (n, 2) [m], team frame, by one step of ``dt`` [s]."""
+        """Move targets at ``places`` (n, 2) [m], team frame, by one step of ``dt`` [s].
+
+        A target that has left stays where its last step took it.
+        """
         sigma = math.sqrt(2.0 * self.diffusion * dt)
         moved = places + np.multiply(self.drift, dt) + sigma * rng.standard_normal(places.shape)
+        if self.leaves:
+            return np.asarray(np.where(frame.holds(places)[:, None], moved, places))
         corner = np.array([frame.origin_x, frame.origin_y])
         size = np.array([frame.cols, frame.rows]) * frame.resolution
         inside = (moved - corner) % (2.0 * size)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
@@ -63,29 +64,38 @@ class Undetected:
         self._stencil, self._detectors = self._pdf.stencil, detectors
         self._left = self._pdf.mass
         self._step = 0
+        self.outside = pdf.outside  # probability that the target has left undetected
 
     @property
     def detected(self) -> float:
         """``C_k``: the probability that the looks so far have detected the target."""
-        return 1.0 - float(self._left.sum())
+        return 1.0 - self.outside - float(self._left.sum())
 
     def look(self, looks: Looks) -> None:
         """Go on by a step: the target moves, and everybody looks."""
         self._step += 1
-        self._left = propagate(self._left, self._stencil)
+        moved = propagate(self._left, self._stencil)
+        if self._stencil.leaves:
+            self.outside += max(0.0, float(self._left.sum()) - float(moved.sum()))
+        self._left = moved
         for detector, made in zip(self._detectors, looks, strict=True):
             if self._step in made:
                 _, cells, detection = detector.footprints(self._pdf.frame, made[self._step][None], least=1)
                 self._left.ravel()[cells] *= 1.0 - detection
 
 
-def predicted(pdf: TargetPdf, detectors: Sequence[Detector], looks: Looks, steps: int) -> NDArray[np.float64]:
-    """``C_k = 1 - sum_x q_k(x)``, (steps + 1,): the probability that looks by step k detect the target.
+@dataclass(frozen=True, eq=False)
+class Prediction:
+    """What becomes of the target by the end of each step, whatever anybody knows of it; (K + 1,) each."""
 
-    Whatever anybody knew of them; docs/search.md (V43).
-    """
-    undetected, detection = Undetected(pdf, detectors), [0.0]
+    detection: NDArray[np.float64]  # C_k: looks by then have detected it; docs/search.md (V43)
+    outside: NDArray[np.float64]  # it has left undetected
+
+
+def predicted(pdf: TargetPdf, detectors: Sequence[Detector], looks: Looks, steps: int) -> Prediction:
+    """Return what so many steps of looks come to."""
+    undetected, curve = Undetected(pdf, detectors), [(0.0, pdf.outside)]
     for _ in range(steps):
         undetected.look(looks)
-        detection.append(undetected.detected)
-    return np.array(detection)
+        curve.append((undetected.detected, undetected.outside))
+    return Prediction(*np.array(curve).T)

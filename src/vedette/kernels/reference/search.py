@@ -12,18 +12,19 @@ from vedette.kernels.search import Paths, Stencil
 def propagate(mass: NDArray[np.float64], stencil: Stencil) -> NDArray[np.float64]:
     """Twin of ``search.propagate``: one matrix for the rows and one for the columns."""
     rows, cols = mass.shape
-    down = _moves(rows, stencil.first[0], stencil.row_taps)
-    across = _moves(cols, stencil.first[1], stencil.col_taps)
+    down = _moves(rows, stencil.first[0], stencil.row_taps, stencil.leaves)
+    across = _moves(cols, stencil.first[1], stencil.col_taps, stencil.leaves)
     return np.asarray(down @ mass @ across.T)
 
 
-def _moves(n: int, first: int, taps: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the (n, n) probabilities of going from a column's index to a row's, mirrored at both ends."""
+def _moves(n: int, first: int, taps: NDArray[np.float64], leaves: bool) -> NDArray[np.float64]:
+    """Return the (n, n) probabilities of going from a column's index to a row's, by mirrors or open ends."""
     matrix = np.zeros((n, n))
     for start in range(n):
         for t, tap in enumerate(taps):
             end = (start + first + t) % (2 * n)
-            matrix[end if end < n else 2 * n - 1 - end, start] += tap
+            if not leaves or start + first + t == end < n:
+                matrix[end if end < n else 2 * n - 1 - end, start] += tap
     return matrix
 
 

@@ -21,7 +21,7 @@ from vedette.domains.search.priors import GaussianPart, gaussians, heat_map, mix
 from vedette.errors import InputError
 from vedette.maps import GridFrame
 from vedette.missions.search.scenario import Gaussian, Heat, Polygon, Prior, SearchScenario, Uniform
-from vedette.missions.search.suits import MOST_CELLS, check_cells
+from vedette.missions.search.suits import MOST_CELLS, check_cells, check_drift
 from vedette.scenario import as_scenario, load_scenario
 
 DEFAULT = "search.yaml"
@@ -90,7 +90,7 @@ def made(scenario: SearchScenario, path: Path) -> SearchCase:
         InputError: an area without inside or with too many cells, a step that the simulator cannot make, a
             name used twice, a start outside the area, a detector or a prior that is none, cells far too large
             for a sensor; the line names file and field.
-        InputWarning: cells that are large for a sensor.
+        InputWarning: cells that are large for a sensor; a drift that takes the target to the border.
     """
     try:
         _check_area(scenario)
@@ -100,11 +100,13 @@ def made(scenario: SearchScenario, path: Path) -> SearchCase:
         if target.start is not None:
             _check_inside("target.start", target.start, frame)
         parts = [(part.weight, _part(i, part, frame, path.parent)) for i, part in enumerate(scenario.prior)]
-        motion = TargetMotion(target.drift, target.diffusion)
+        motion = TargetMotion(target.drift, target.diffusion, target.border == "leave")
         pdf = TargetPdf(frame, mixture(frame, parts), motion, scenario.step)
         _ = pdf.stencil
         detectors = tuple(_detectors(scenario))
         check_cells(pdf, detectors, scenario.vehicle_names)
+        means = {f"the mean of prior[{i}]": frame.mean(part) for i, (_, part) in enumerate(parts)}
+        check_drift(means | ({} if target.start is None else {"target.start": target.start}), scenario)
         return SearchCase(path.stem, scenario, pdf, detectors)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error

@@ -56,6 +56,7 @@ class Target(Struct, forbid_unknown_fields=True, frozen=True):
     drift: tuple[float, float] = (0.0, 0.0)  # [m/s], team frame
     diffusion: Annotated[float, Meta(ge=0.0, le=1e6)] = 0.0  # [m^2/s]
     start: tuple[Metre, Metre] | None = None  # where it really is [m]; without it, drawn from the prior
+    border: Literal["hold", "leave"] = "hold"  # what becomes of it there: held in the area, or gone for good
 
 
 class SearchVehicle(Struct, forbid_unknown_fields=True, frozen=True):

@@ -49,6 +49,7 @@ class PdfContent(msgspec.Struct, frozen=True, array_like=True, tag=3):
     declared: DeclaredPlace | None
     goal: tuple[Real, Real] | None  # where it will search after its plan [m]
     looks: Annotated[tuple[StepLooks, ...], Meta(max_length=MOST_LOOKS)]
+    outside: Annotated[float, Meta(ge=0.0, le=1.0)] = 0.0  # probability that the target has left
 
 
 _CONTENTS: msgspec.msgpack.Decoder[PdfContent] = msgspec.msgpack.Decoder(PdfContent)
@@ -90,6 +91,7 @@ class SearchTeller:
                     StepLooks(step, tuple((x, y, heading) for x, y, heading in poses.tolist()))
                     for step, poses in mission.looked
                 ),
+                pdf.outside,
             )
         )
 
@@ -104,12 +106,12 @@ def view_of(
     """
     told = wire.decode(_CONTENTS, payload, "report")
     mass = np.frombuffer(inflated(told.mass, 4 * prior.frame.size), "<f4").astype(np.float64)
-    if not (np.isfinite(mass).all() and (mass >= 0.0).all() and mass.sum() > 0.0):
+    if not (np.isfinite(mass).all() and (mass >= 0.0).all() and mass.sum() + told.outside > 0.0):
         raise ValueError("report of a pdf that is none")
     at = condition.x, condition.y, condition.heading
     view = SearchView(
         SearchSample(*at, condition.state, True, path_of(condition), told.goal),
-        replace(prior, mass=mass.reshape(prior.frame.shape), step=told.step),
+        replace(prior, mass=mass.reshape(prior.frame.shape), step=told.step, outside=told.outside),
         None if told.declared is None else Declared(*told.declared),
         figures_of(condition),
     )

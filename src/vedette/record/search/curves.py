@@ -20,6 +20,7 @@ class Curves:
     bound: Floats  # no team can do better, docs/search.md (V52)
     koopman: Floats  # the swept area allocated at best, (V51): no bound for definite-range sensors
     detection: Mapping[str, Floats] = field(default_factory=dict)  # predicted, by coordination
+    outside: Floats | None = None  # predicted to have left undetected; None: the target cannot leave
     counted: Floats | None = None  # share of the trials that had found their target
 
 

@@ -35,6 +35,7 @@ def detection_png(curves: Curves, summary: SearchSummary, path: Path | str) -> N
         figure = Figure(figsize=_SIZE, dpi=DPI)
         axes = figure.add_axes((0.085, 0.105, 0.895, 0.79))
         _ideal(axes, curves)
+        _outside(axes, curves)
         _counted(axes, curves, summary)
         for name in (name for name in _STYLES if name in curves.detection):
             mean = summary.comparison[name].mean_time_s
@@ -69,6 +70,16 @@ def _ideal(axes: Axes, curves: Curves) -> None:
         curves.times, curves.koopman, color=edge, lw=1.1, ls=(0, (5, 1.5, 1, 1.5)), zorder=2,
         label="Koopman: swept area spread ideally, looks at random",
     )  # fmt: skip
+
+
+def _outside(axes: Axes, curves: Curves) -> None:
+    """Hatch what has left the area undetected: nothing that is done later finds it."""
+    if curves.outside is not None:
+        grey = palette.unit((150, 153, 157))
+        axes.fill_between(
+            curves.times, 1.0 - curves.outside, 1.0, facecolor="none", edgecolor=grey, hatch="////", lw=0,
+            zorder=1, label="has left the area undetected",
+        )  # fmt: skip
 
 
 def _counted(axes: Axes, curves: Curves, summary: SearchSummary) -> None:

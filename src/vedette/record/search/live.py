@@ -30,13 +30,16 @@ def line(scene: SearchScene, snapshot: SearchSnapshot) -> str:
     """Return a snapshot in one line."""
     team = states(scene, snapshot.vehicles)
     detection = f"detection {100 * snapshot.detection:5.1f} %"
-    return f"{snapshot.t:7.1f} s  {detection}  entropy {snapshot.entropy:5.2f} nat  {team}"
+    left = "" if snapshot.outside is None else f"  has left {100 * snapshot.outside:5.1f} %"
+    return f"{snapshot.t:7.1f} s  {detection}{left}  entropy {snapshot.entropy:5.2f} nat  {team}"
 
 
 def screen(scene: SearchScene, console: Console, snapshot: SearchSnapshot) -> RenderableType:
     """Return the picture of a snapshot, fitted to the console: the darker, the likelier."""
     figures = figures_line(("time", f"{snapshot.t:6.1f} s"), ("entropy", f"{snapshot.entropy:.2f} nat"))
     head: list[RenderableType] = [figures, share_bar("detection", snapshot.detection)]
+    if snapshot.outside is not None:
+        head.append(share_bar("has left", snapshot.outside))
     goals = [
         "" if vehicle.goal is None else f"{vehicle.goal[0]:.0f}, {vehicle.goal[1]:.0f}"
         for vehicle in snapshot.vehicles

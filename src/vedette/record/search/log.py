@@ -57,6 +57,7 @@ class SearchSnapshot(FlightSnapshot):
     entropy: float  # of that [nat]
     detection: float  # probability that the looks so far have detected the target, 0..1
     target: tuple[float, float]  # where it truly is [m]
+    outside: float | None = None  # probability that it has left, as that vehicle knows it; None: it cannot
 
 
 _NO_MASS = np.empty((0, 0), np.float32)

@@ -34,7 +34,8 @@ class SearchMcapWriter(McapFile[RosMessages]):
             if vehicle.alive and vehicle.goal is not None:
                 self._write(f"/{name}/goal", stamp, self._ros.pose(stamp, *vehicle.goal, 0.0))
         self._write("/target/truth", stamp, self._ros.pose(stamp, *snapshot.target, 0.0))
-        self._write_metrics(stamp, snapshot, ("detection", "entropy"))
+        left = () if snapshot.outside is None else ("outside",)
+        self._write_metrics(stamp, snapshot, ("detection", "entropy", *left))
         self._unwritten = snapshot
         if snapshot.t >= self._due - 1e-9:
             self._due = snapshot.t + _GRID_PERIOD

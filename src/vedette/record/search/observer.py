@@ -87,6 +87,7 @@ class SearchObserver:
                 mass=known.mass.astype(np.float32),
                 entropy=known.entropy,
                 detection=self._undetected.detected,
+                outside=known.outside if case.pdf.motion.leaves else None,
                 target=(x, y),
             )
         )
@@ -122,6 +123,7 @@ class SearchObserver:
             target_m=last.target,
             error_m=None if at is None else float(np.hypot(*np.subtract(at, last.target))),
             detection_then=last.detection,
+            outside_then=self._undetected.outside if self._team.case.pdf.motion.leaves else None,
             duration_s=float(curves.times[-1]),
             bound=IdealSearch.of(curves.times, curves.bound),
             koopman=IdealSearch.of(curves.times, curves.koopman),

@@ -44,6 +44,8 @@ def draw(axes: Axes, log: SearchLog, snapshot: SearchSnapshot, norm: PowerNorm, 
     )  # fmt: skip
     axes.set(xticks=(), yticks=(), xlim=extent[:2], ylim=extent[2:])
     title = f"{snapshot.t:.0f} s    probability of detection {100 * snapshot.detection:.0f} %"
+    if snapshot.outside is not None:
+        title += f", has left {100 * snapshot.outside:.0f} %"
     axes.set_title(title, fontsize=10, loc="left", pad=5)
     trails = log.trails(snapshot.t)
     for i in range(len(snapshot.vehicles)):

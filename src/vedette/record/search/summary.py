@@ -85,11 +85,13 @@ class SearchSummary(MissionSummary):
     target_m: tuple[float, float]
     error_m: float | None
     detection_then: float
+    outside_then: float | None
     duration_s: float
     detection: float | None = None
     t50_s: float | None = None
     t90_s: float | None = None
     mean_time_s: float | None = None
+    outside: float | None = None
     counted: Counted | None = None
     bound: IdealSearch
     koopman: IdealSearch

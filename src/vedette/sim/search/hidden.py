@@ -16,6 +16,8 @@ from vedette.outcome import Outcome
 from vedette.sim.simulation import random_streams
 from vedette.sim.vehicles import Vehicles
 
+_GONE = np.full(2, np.nan)  # where no sensor detects anything
+
 
 def draw_places(pdf: TargetPdf, count: int, rng: np.random.Generator) -> NDArray[np.float64]:
     """Draw places ``(count, 2)`` [m] from a pdf, anywhere in their cells alike."""
@@ -63,6 +65,8 @@ class Hidden:
     def look(self, i: int, poses: NDArray[np.float64], step: int) -> Looks:
         """Return what vehicle i's sensor tells of its looks (L, 3) in the step that ends now."""
         place, rng, detector = self.at(step), self._sensor_rngs[i], self._detectors[i]
+        if self._pdf.motion.leaves and not self._pdf.frame.holds(place[None])[0]:
+            place = _GONE
         return Looks(poses, tuple(detector.glimpse(rng, pose, place) for pose in poses))
 
 

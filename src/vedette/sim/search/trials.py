@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from vedette.domains.search.belief import TargetPdf
 from vedette.domains.search.detectors import Detector
-from vedette.domains.search.prediction import Looks, predicted
+from vedette.domains.search.prediction import Looks, Prediction, predicted
 from vedette.missions.search.case import SearchCase
 from vedette.missions.search.options import COORDINATIONS
 from vedette.outcome import Outcome
@@ -65,7 +65,8 @@ def assessed(
     """
     case, setup = simulation.case, simulation.setup
     names = [setup.coordination, *(n for n in COORDINATIONS if compare and n != setup.coordination)]
-    detection, counted = {}, None
+    predictions: dict[str, Prediction] = {}
+    counted = None
     for name in names:
         own = name == setup.coordination
         running.say("to the end, as if nobody reported" if own else f"to compare: {name}")
@@ -73,10 +74,10 @@ def assessed(
         if not running.run(blind):
             break
         looks = blind.vehicles.looks
-        detection[name] = predicted(case.pdf, case.detectors, looks, blind.steps)
+        predictions[name] = predicted(case.pdf, case.detectors, looks, blind.steps)
         if own:
             counted = _trials(case, setup, looks, blind.steps, trials, running)
-    return _joined(report, detection, counted, running.stopped)
+    return _joined(report, predictions, counted, running.stopped)
 
 
 def _trials(
@@ -124,23 +125,26 @@ def search_once(case: SearchCase, setup: SearchSetup) -> tuple[Outcome, float]:
 
 
 def _joined(
-    report: SearchReport, detection: dict[str, NDArray[np.float64]], trials: Trials | None, interrupted: bool
+    report: SearchReport, predictions: dict[str, Prediction], trials: Trials | None, interrupted: bool
 ) -> SearchReport:
-    times = report.curves.times
-    names = [name for name in COORDINATIONS if name in detection]
-    comparison = {name: SearchQuality.of(times, detection[name]) for name in names}
+    times, coordination = report.curves.times, report.summary.coordination
+    detection = {name: predictions[name].detection for name in COORDINATIONS if name in predictions}
+    comparison = {name: SearchQuality.of(times, curve) for name, curve in detection.items()}
     outcome = Outcome.INTERRUPTED if interrupted else report.summary.outcome
-    own = comparison.get(report.summary.coordination)
+    own, outside = comparison.get(coordination), None
+    if coordination in predictions and report.summary.outside_then is not None:
+        outside = predictions[coordination].outside
     summary = replace(
         report.summary,
         outcome=outcome,
         completed=outcome.completed,
         **({} if own is None else vars(own)),
-        counted=None if trials is None else trials.figures(times, detection[report.summary.coordination]),
+        outside=None if outside is None else float(outside[-1]),
+        counted=None if trials is None else trials.figures(times, detection[coordination]),
         comparison=comparison,
     )
     curve = None if trials is None else trials.curve(len(times) - 1)
-    curves = replace(report.curves, detection=detection, counted=curve)
+    curves = replace(report.curves, detection=detection, outside=outside, counted=curve)
     return replace(report, summary=summary, curves=curves)
 
 
@@ -161,8 +165,9 @@ def detected_at(
     first = np.full(trials, steps + 1)
     for step in range(1, steps + 1):
         places = pdf.motion.move(rng, places, pdf.frame, pdf.dt)
+        here = pdf.frame.holds(places) | (not pdf.motion.leaves)
         for detector, made in zip(detectors, looks, strict=True):
             for pose in made.get(step, ()):
-                found = rng.random(trials) < detector.chance(pose, places)
+                found = here & (rng.random(trials) < detector.chance(pose, places))
                 first[found] = np.minimum(first[found], step)
     return first
