@@ -8,9 +8,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from vedette.agent.rightofway import Intent, block_discs, give_way
+from vedette.agent.intents import Intent
+from vedette.agent.refuges import block_discs
+from vedette.agent.rightofway import give_way, queues
 from vedette.kernels.distance import distance_field, path_to, shortcut
+from vedette.maps.world import World
 from vedette.sim.body import Bodies
+from vedette.sim.starts import choose_starts
+from vedette.sim.worlds import office
 from vedette.team import PlatformSpec
 
 RESOLUTION = 0.1
@@ -129,11 +134,14 @@ class Traffic:
         if self.goals[i] is not None:
             path = self.route(i, self.maps[i], self.fields[i])
         others = [self.beacons[j] for j in range(self.n) if j != i and self.bodies.alive[j]]
-        refuge = give_way(self.open, RESOLUTION, self.intent(i, path), others)
-        self.making_room[i] = refuge is not None
+        me = self.intent(i, path)
+        refuge = give_way(self.open, RESOLUTION, me, others)
+        waits = refuge is None and queues(self.open, RESOLUTION, me, others)
+        self.making_room[i] = refuge is not None or waits
         self.yields[i] += refuge is not None
-        self.paths[i] = path if refuge is None else refuge
-        self.beacons[i] = self.intent(i, self.paths[i])  # up to half a second old when it is used
+        self.paths[i] = np.array([(me.x, me.y)]) if waits else path if refuge is None else refuge
+        # Up to half a second old when it is used; who waits tells where it will go.
+        self.beacons[i] = self.intent(i, path if waits else self.paths[i])
         if len(self.paths[i]) == 0:
             self.bodies.command(i, None)
         else:
@@ -292,6 +300,79 @@ def test_robots_with_random_goals_never_touch_and_hold_nobody_up_for_long(
     assert traffic.bodies.min_clearance.min() > 0.02
     assert ratio <= 1.3
     assert worst <= 30.0
+
+
+def packed(n: int, apart: float) -> list[Point]:
+    """Places in the left one of two rooms, so far apart."""
+    return [(1.0 + apart * (k % 5), 1.6 + apart * (k // 5)) for k in range(n)]
+
+
+def gap(width: int) -> NDArray[np.bool_]:
+    """Two rooms with a gap of so many cells in the wall between them."""
+    solid = two_rooms()
+    solid[:, 44:46] = True
+    solid[30 - width // 2 : 30 - width // 2 + width, 44:46] = False
+    return solid
+
+
+@pytest.mark.parametrize(
+    ("solid", "starts", "seconds"),
+    [
+        pytest.param(two_rooms(), packed(16, 0.7), 40, id="sixteen at ease"),
+        pytest.param(two_rooms(), packed(24, 0.5), 60, id="twenty-four in a heap"),
+        pytest.param(gap(5), packed(12, 0.7), 40, id="twelve before a gap of half a metre"),
+    ],
+)
+def test_a_crowd_leaves_by_a_door_at_three_seconds_a_robot(
+    solid: NDArray[np.bool_], starts: list[Point], seconds: float
+) -> None:
+    beyond = [(5.5 + 0.6 * (k % 5), 1.2 + 0.8 * (k // 5)) for k in range(len(starts))]
+    traffic = Traffic(solid, starts)
+    times, _ = traffic.drive(dict(enumerate(beyond)), limit=seconds)
+    assert len(times) == len(starts)
+    assert traffic.bodies.collisions.sum() == 0
+
+
+def spaced(world: World, traffic: Traffic, n: int, apart: float, rng: np.random.Generator) -> list[Point]:
+    """Random places, so far apart, 8 to 15 m of way from the first robot's start."""
+    ways = distance_field(traffic.open, traffic.cell(*traffic.starts[0]), RESOLUTION)
+    places: list[Point] = []
+    for cell in rng.permutation(np.flatnonzero((ways > 8.0) & (ways < 15.0) & inflated(world.solid, 0.3))):
+        x, y = world.frame.centres(np.array([cell]))[0].tolist()
+        if all(np.hypot(x - u, y - v) > apart for u, v in places):
+            places.append((x, y))
+    return places[:n]
+
+
+@pytest.mark.parametrize("seed", [0, 1])
+def test_twenty_robots_all_leave_the_furnished_room_that_they_start_in(seed: int) -> None:
+    world = office(np.random.default_rng(seed))
+    team = [PlatformSpec(name=str(k)) for k in range(20)]
+    starts = choose_starts(world, team, np.random.default_rng([seed, 1]))
+    traffic = Traffic(world.solid, [(x, y) for x, y, _ in starts.tolist()])
+    goals = spaced(world, traffic, 20, 0.6, np.random.default_rng(seed))
+    times, _ = traffic.drive(dict(enumerate(goals)), limit=75.0)
+    assert len(times) == 20
+    assert traffic.bodies.collisions.sum() == 0
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_of_a_crowd_before_a_door_somebody_waits_for_nobody_and_no_two_wait_for_each_other(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    traffic = Traffic(two_rooms(), [(x, y) for x, y in rng.uniform((2.5, 1.5), (4.0, 4.5), (9, 2))])
+    crowd = []
+    for i in range(traffic.n):
+        traffic.send(i, (7.0, 3.0))
+        crowd.append(traffic.intent(i, traffic.route(i, traffic.open, traffic.fields[i])))
+    waits = np.array(
+        [[a is not b and queues(traffic.open, RESOLUTION, a, [b]) for b in crowd] for a in crowd]
+    )
+    assert waits.any()
+    assert not (waits & waits.T).any()
+    first = crowd[int(np.argmin([abs(a.x - 4.4) + abs(a.y - 3.05) for a in crowd]))]
+    order = np.linalg.matrix_power(waits.astype(int), traffic.n)
+    assert not order.any()  # nobody waits, by way of others, for itself
+    assert first in [a for a, row in zip(crowd, waits, strict=True) if not row.any()]
 
 
 @pytest.mark.parametrize("moving", [0, 1])

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from vedette.agent.effects import Drive, Route
 from vedette.agent.events import Pose
+from vedette.agent.intents import HORIZON, Intent
 from vedette.agent.mates import Mate
-from vedette.agent.rightofway import HORIZON, Intent, give_way
+from vedette.agent.rightofway import give_way, queues
 from vedette.maps import GridFrame
 from vedette.team import PlatformSpec
 
@@ -29,6 +30,8 @@ class Driver:
     refuge: NDArray[np.float64] | None = None  # (L, 2) [m], team frame, while making room
     yielding_since: float = 0.0  # less what it did so before at the same place
     yielded: tuple[NDArray[np.float64], float] | None = None  # (2,) where it last made room [m], how long [s]
+    queueing: bool = False  # it waits for those before it at a narrow place
+    queue: tuple[NDArray[np.float64], float] | None = None  # (2,) where it came to one last [m], when [s]
 
     @property
     def yielding(self) -> bool:
@@ -42,7 +45,7 @@ class Driver:
 
     def go(self, route: Route | None) -> Drive:
         """Want this route from now on; None: stand."""
-        self.wanted, self.refuge = route, None
+        self.wanted, self.refuge, self.queueing = route, None, False
         return Drive(route)
 
     def look_out(self, pose: Pose, mates: list[Mate], standing: Route, now: float) -> Drive | None:
@@ -57,6 +60,9 @@ class Driver:
         me = Intent(self.robot, here[0], here[1], ahead, self.spec.radius, self.spec.speed, pose.slowed)
         others = [_intent(mate, corner) for mate in mates if not mate.silent(now)]
         refuge = give_way(route.passable, self.frame.resolution, me, others)
+        self.queueing = refuge is None and self._queues(route, me, others, now)
+        if self.queueing:
+            refuge, self.yielding_since = here[None], now
         if refuge is None:
             if not self.yielding:
                 return None
@@ -67,6 +73,15 @@ class Driver:
             self.yielding_since = now - self._yielded_before(here)
         self.refuge = refuge + corner
         return Drive(Route(self.refuge, route.passable, route.room))
+
+    def _queues(self, route: Route, me: Intent, others: list[Intent], now: float) -> bool:
+        """Tell whether to wait for those before it; not for ever, lest all wait for each other."""
+        if not queues(route.passable, self.frame.resolution, me, others):
+            return False
+        here = np.array((me.x, me.y))
+        if self.queue is None or np.hypot(*(here - self.queue[0])) >= ON_ITS_WAY:
+            self.queue = here, now
+        return now - self.queue[1] <= YIELD_LIMIT
 
     def _yielded_before(self, here: NDArray[np.float64]) -> float:
         """Return how long it has made room here already [s], lest two let each other pass for ever."""
@@ -82,7 +97,7 @@ class Driver:
 
     def beaconed(self, pose: Pose) -> NDArray[np.float64]:
         """Return the next few metres that the robot will really drive, ``(L, 2)`` [m], team frame."""
-        if self.refuge is not None:
+        if self.refuge is not None and not self.queueing:
             return remaining(self.refuge, pose.x, pose.y, HORIZON)
         return self.ahead(pose)
 
