@@ -1,8 +1,8 @@
-"""Wall-clock figures, apart from all that is simulated: what planning costs."""
+"""What a mission costs, apart from all that is simulated: wall time, and CPU time of planning."""
 
 from __future__ import annotations
 
-import time as wall
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TypeVar
@@ -16,20 +16,23 @@ T = TypeVar("T")
 
 @dataclass
 class Clock:
-    """Wall time of a run, and what its robots spend on planning; on an idle core also its CPU time."""
+    """Wall time of a run, and the CPU time that its robots spend on planning.
 
-    timer: Callable[[], float] = wall.perf_counter  # for planning [s]
+    CPU time is the thread's own: what others do at the same time, in this process or another, does not
+    count.
+    """
+
     started: float = 0.0
     planning: dict[tuple[int, int, int], float] = field(default_factory=dict)  # robot, epoch, round: [s]
     answers: list[float] = field(default_factory=list)  # a negotiation message, each [s]
 
     def start(self) -> None:
         """Begin counting."""
-        self.started = wall.perf_counter()
+        self.started = time.perf_counter()
 
     def elapsed(self) -> float:
         """Return the wall time since the start [s]."""
-        return wall.perf_counter() - self.started
+        return time.perf_counter() - self.started
 
     def timing(self, now: float) -> Timing:
         """Return the wall-clock figures of a mission that has come to ``now`` [s], its rounds simulated."""
@@ -45,9 +48,9 @@ class Clock:
     def measured(self, robot: int, rounds: Rounds, act: Callable[[], T]) -> T:
         """Let a robot's agent do something, and count it if it is part of a round."""
         decisions, answers = rounds.decisions, rounds.answers
-        began = self.timer()
+        began = time.thread_time()
         result = act()
-        took = self.timer() - began
+        took = time.thread_time() - began
         if rounds.busy or rounds.decisions != decisions:
             self._plans(robot, rounds.stamp, took)
             if rounds.decisions == decisions and rounds.answers != answers:
@@ -56,9 +59,9 @@ class Clock:
 
     def run(self, robot: int, job: Job) -> None:
         """Run a robot's job."""
-        began = self.timer()
+        began = time.thread_time()
         job.run()
-        self._plans(robot, job.key, self.timer() - began)
+        self._plans(robot, job.key, time.thread_time() - began)
 
     @property
     def planning_ms(self) -> Spread | None:

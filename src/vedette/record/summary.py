@@ -80,7 +80,7 @@ class Spread:
 
 @dataclass(frozen=True, kw_only=True)
 class Timing(Figures):
-    """Wall-clock figures of one mission: they differ from run to run, so they have a file of their own."""
+    """What one mission took, in wall and CPU time: it differs from run to run, so it has its own file."""
 
     planning_ms: Spread | None  # all CPU time that one robot spends on one replan, all sweeps
     answer_ms: Spread | None  # CPU time to answer the token, a visit
