@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from vedette.kernels.distance import distance_field
 from vedette.kernels.lidar import cast_rays, integrate_scan
+from vedette.kernels.tiles import TiledGrid, Tiling
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.maps.world import World, standable
 from vedette.missions.explore.exploring import CLAMP, GAIN_HIT, GAIN_MISS, NUDGE
@@ -24,7 +25,7 @@ def half_known(world: World, spec: PlatformSpec, rng: np.random.Generator) -> ND
         (R, C) classes, as a mission holds them.
     """
     resolution = world.frame.resolution
-    log_odds = np.zeros(world.frame.shape, np.int8)
+    log_odds = TiledGrid(Tiling(*world.frame.shape), np.int8)
     angles = np.linspace(0.0, 2 * np.pi, spec.beams, endpoint=False)
     free = ~world.solid
     for count, (x, y) in enumerate(_poses(world, spec, rng)):
@@ -35,9 +36,9 @@ def half_known(world: World, spec: PlatformSpec, rng: np.random.Generator) -> ND
         integrate_scan(
             log_odds, resolution, x, y, angles, ranges, hits, GAIN_HIT, GAIN_MISS, CLAMP, NUDGE * resolution
         )
-        if count % 8 == 0 and np.count_nonzero(log_odds[free]) >= 0.5 * np.count_nonzero(free):
+        if count % 8 == 0 and np.count_nonzero(log_odds.window()[free]) >= 0.5 * np.count_nonzero(free):
             break
-    return np.choose(np.sign(log_odds) + 1, (FREE, UNKNOWN, OCCUPIED)).astype(np.uint8)
+    return np.choose(np.sign(log_odds.window()) + 1, (FREE, UNKNOWN, OCCUPIED)).astype(np.uint8)
 
 
 def _poses(world: World, spec: PlatformSpec, rng: np.random.Generator) -> NDArray[np.float64]:

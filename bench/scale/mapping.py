@@ -17,6 +17,7 @@ from vedette.domains.mapping.sightings import empty_counts
 from vedette.kernels.coverage import LAYERS
 from vedette.kernels.frontier import find_frontiers
 from vedette.kernels.lidar import cast_rays, integrate_scan
+from vedette.kernels.tiles import TiledGrid, Tiling
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
 from vedette.missions.explore.exploring import CLAMP, GAIN_HIT, GAIN_MISS, NUDGE
 from vedette.problem import Reach
@@ -86,14 +87,14 @@ def _team(solid: NDArray[np.bool_], seen: NDArray[np.float64], places: NDArray[n
 
 def _scanned(solid: NDArray[np.bool_], places: NDArray[np.float64]) -> NDArray[np.uint8]:
     """Return (R, C) classes as one scan from each place shows them."""
-    log_odds = np.zeros(solid.shape, np.int8)
+    log_odds = TiledGrid(Tiling(*solid.shape), np.int8)
     angles = np.linspace(0.0, 2.0 * np.pi, SPEC.beams, endpoint=False)
     for x, y in places.tolist():
         ranges = cast_rays(solid, RESOLUTION, x, y, angles, SPEC.range, np.empty((0, 3)))
         hits, ranges = np.isfinite(ranges), np.minimum(ranges, SPEC.range)
         nudge = NUDGE * RESOLUTION
         integrate_scan(log_odds, RESOLUTION, x, y, angles, ranges, hits, GAIN_HIT, GAIN_MISS, CLAMP, nudge)
-    return np.choose(np.sign(log_odds) + 1, (FREE, UNKNOWN, OCCUPIED)).astype(np.uint8)
+    return np.choose(np.sign(log_odds.window()) + 1, (FREE, UNKNOWN, OCCUPIED)).astype(np.uint8)
 
 
 def _tours(belief: MapBelief, x: float, y: float) -> list[Impact]:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from vedette.domains.mapping.sightings import BIN, BINS, empty_counts
 from vedette.kernels.lidar import cast_rays, count_sightings, integrate_scan
+from vedette.kernels.tiles import TiledGrid, Tiling
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.maps.world import World
 from vedette.missions.explore.exploring import CLAMP, GAIN_HIT, GAIN_MISS, NUDGE
@@ -47,7 +48,8 @@ def scan(
     """
     resolution = world.frame.resolution
     nudge = NUDGE * resolution
-    log_odds, counts = np.zeros(world.frame.shape, np.int8), empty_counts()
+    tiling, counts = Tiling(*world.frame.shape), empty_counts()
+    log_odds = TiledGrid(tiling, np.int8)
     half = np.radians(spec.view) / 2.0
     fan = np.linspace(-half, half, spec.beams, endpoint=spec.view < 360.0)
     for x, y, heading in (poses - (world.frame.origin_x, world.frame.origin_y, 0.0)).tolist():
@@ -57,13 +59,13 @@ def scan(
         noise = spec.range_noise * rng.standard_normal(len(true))
         ranges = np.clip(np.where(hits, true + noise, spec.range), 0.0, spec.range)
         if forget:
-            log_odds = np.zeros_like(log_odds)
+            log_odds = TiledGrid(tiling, np.int8)
         seen = count_sightings(
             log_odds, resolution, x, y, angles, ranges, hits, spec.range, BIN, EVERY_BEAM, nudge
         )
         counts[:, : seen.shape[1]] += seen[:, :BINS]
         integrate_scan(log_odds, resolution, x, y, angles, ranges, hits, GAIN_HIT, GAIN_MISS, CLAMP, nudge)
-    return Scanned(log_odds, counts)
+    return Scanned(log_odds.window(), counts)
 
 
 def spaced(poses: NDArray[np.float64], metres: float) -> NDArray[np.float64]:

@@ -7,14 +7,17 @@ pub mod footprint;
 pub mod impact;
 pub mod tours;
 pub mod viewpoints;
+pub mod worth;
 
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use footprint::{footprints, Sensor};
 use impact::{combine, marginal, miss_table};
 use tours::{best_tour, most_any_tour_adds, Stops};
 use viewpoints::{viewpoints, Ground};
+use worth::Worth;
 
 use crate::visibility::checked_cell;
 
@@ -94,10 +97,26 @@ fn py_combine<'py>(
     Ok((keys.into_pyarray(py), misses.into_pyarray(py)))
 }
 
+type PyWorth<'py> = (PyReadonlyArray2<'py, f32>, (usize, usize), (usize, usize), [f32; 4]);
+
+fn worth_of<'a>((weights, first, shape, beyond): &'a PyWorth<'_>) -> PyResult<Worth<'a>> {
+    let (rows, cols) = weights.as_array().dim();
+    if shape.1 == 0 {
+        return Err(PyValueError::new_err("a grid has columns"));
+    }
+    Ok(Worth {
+        window: weights.as_slice()?,
+        window_shape: (rows, cols),
+        first: *first,
+        shape: *shape,
+        beyond: *beyond,
+    })
+}
+
 #[pyfunction(name = "marginals")]
 fn py_marginals<'py>(
     py: Python<'py>,
-    weights: PyReadonlyArray1<'py, f32>,
+    worth: PyWorth<'py>,
     layer_weights: PyReadonlyArray1<'py, f64>,
     others_keys: PyReadonlyArray1<'py, u32>,
     others_misses: PyReadonlyArray1<'py, u8>,
@@ -107,13 +126,13 @@ fn py_marginals<'py>(
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let others = (others_keys.as_slice()?, others_misses.as_slice()?);
     let (keys, misses) = (keys.as_slice()?, misses.as_slice()?);
-    let (weights, layer_weights, miss) = (weights.as_slice()?, layer_weights.as_slice()?, miss_table());
+    let (worth, layer_weights, miss) = (worth_of(&worth)?, layer_weights.as_slice()?, miss_table());
     let gains: Vec<f64> = starts
         .as_slice()?
         .windows(2)
         .map(|bounds| {
             let own = bounds[0] as usize..bounds[1] as usize;
-            marginal(weights, layer_weights, others, (&keys[own.clone()], &misses[own]), &miss)
+            marginal(&worth, layer_weights, others, (&keys[own.clone()], &misses[own]), &miss)
         })
         .collect();
     Ok(gains.into_pyarray(py))
@@ -124,7 +143,7 @@ type PyReply<'py> = (Bound<'py, PyArray1<i64>>, f64, f64);
 #[pyfunction(name = "best_tour")]
 fn py_best_tour<'py>(
     py: Python<'py>,
-    weights: PyReadonlyArray1<'py, f32>,
+    worth: PyWorth<'py>,
     layer_weights: PyReadonlyArray1<'py, f64>,
     edges: PyReadonlyArray1<'py, f64>,
     others_keys: PyReadonlyArray1<'py, u32>,
@@ -146,17 +165,16 @@ fn py_best_tour<'py>(
         legs: legs.as_slice()?,
         edges: edges.as_slice()?,
     };
-    let (weights, layer_weights) = (weights.as_slice()?, layer_weights.as_slice()?);
+    let (worth, layer_weights) = (worth_of(&worth)?, layer_weights.as_slice()?);
     let (others, current) = ((others_keys.as_slice()?, others_misses.as_slice()?), current.as_slice()?);
-    let reply =
-        py.detach(|| best_tour(stops, weights, layer_weights, others, current, max_stops, stickiness));
+    let reply = py.detach(|| best_tour(stops, &worth, layer_weights, others, current, max_stops, stickiness));
     Ok((reply.tour.into_pyarray(py), reply.gain, reply.current_gain))
 }
 
 #[pyfunction(name = "most_any_tour_adds")]
 fn py_most_any_tour_adds(
     py: Python<'_>,
-    weights: PyReadonlyArray1<'_, f32>,
+    worth: PyWorth<'_>,
     layer_weights: PyReadonlyArray1<'_, f64>,
     edges: PyReadonlyArray1<'_, f64>,
     team_keys: PyReadonlyArray1<'_, u32>,
@@ -176,9 +194,9 @@ fn py_most_any_tour_adds(
         legs: legs.as_slice()?,
         edges: edges.as_slice()?,
     };
-    let (weights, layer_weights) = (weights.as_slice()?, layer_weights.as_slice()?);
+    let (worth, layer_weights) = (worth_of(&worth)?, layer_weights.as_slice()?);
     let team = (team_keys.as_slice()?, team_misses.as_slice()?);
-    Ok(py.detach(|| most_any_tour_adds(stops, weights, layer_weights, team, max_stops)))
+    Ok(py.detach(|| most_any_tour_adds(stops, &worth, layer_weights, team, max_stops)))
 }
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {

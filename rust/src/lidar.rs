@@ -1,5 +1,7 @@
 //! Lidar on a grid: simulate a scan, fuse it into log-odds, and count what it saw of the unknown.
 
+use std::ops::Deref;
+
 use numpy::{
     IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2,
     PyUntypedArrayMethods,
@@ -9,10 +11,12 @@ use pyo3::prelude::*;
 
 mod blur;
 mod fuse;
+mod tiled;
 mod walk;
 
 pub use blur::{integrate_blurred_scan, Blur};
 pub use fuse::{integrate_scan, Gains};
+use tiled::{Tiled, SIDE};
 pub use walk::Lattice;
 use walk::Walk;
 
@@ -109,7 +113,7 @@ impl Bins {
 ///
 /// Returns the rows tried by distance, seen by distance, tried by unknown length, seen by unknown length.
 pub fn count_sightings(
-    log_odds: &[i8],
+    log_odds: &Tiled<&[i8]>,
     lattice: Lattice,
     scan: Scan,
     bins: Bins,
@@ -123,13 +127,14 @@ pub fn count_sightings(
         let mut walk = Walk::new(lattice.resolution, scan.x, scan.y, scan.angles[b]);
         let mut unknown = 0.0; // metres of unknown cells crossed so far
         while walk.entry < bins.max_range {
-            let Some(cell) = lattice.flat(walk.row, walk.col) else {
-                break;
-            };
-            if log_odds[cell] > 0 {
+            if lattice.flat(walk.row, walk.col).is_none() {
                 break;
             }
-            if log_odds[cell] == 0 {
+            let known = log_odds.get(walk.row as usize, walk.col as usize);
+            if known > 0 {
+                break;
+            }
+            if known == 0 {
                 let exit = walk.exit().min(bins.max_range);
                 let by_distance = bins.index(0.5 * (walk.entry + exit));
                 let by_unknown = bins.index(unknown);
@@ -147,13 +152,30 @@ pub fn count_sightings(
 }
 
 fn lattice_of<T: numpy::Element>(grid: &Bound<'_, PyArray2<T>>, resolution: f64) -> PyResult<Lattice> {
-    if !(resolution > 0.0 && resolution.is_finite()) {
-        return Err(PyValueError::new_err(format!("resolution must be > 0 m; got {resolution}")));
-    }
     if !grid.is_c_contiguous() {
         return Err(PyValueError::new_err("the grid must be C-contiguous, [row, col]"));
     }
-    Ok(Lattice { rows: grid.shape()[0], cols: grid.shape()[1], resolution })
+    checked_lattice((grid.shape()[0], grid.shape()[1]), resolution)
+}
+
+fn checked_lattice((rows, cols): (usize, usize), resolution: f64) -> PyResult<Lattice> {
+    if !(resolution > 0.0 && resolution.is_finite()) {
+        return Err(PyValueError::new_err(format!("resolution must be > 0 m; got {resolution}")));
+    }
+    Ok(Lattice { rows, cols, resolution })
+}
+
+/// The grid of these cells; checked, so that no access to a tile of it can fail.
+fn tiled_of<'a, B: Deref<Target = [i8]>>(
+    slots: &'a [i32],
+    blocks: B,
+    lattice: Lattice,
+) -> PyResult<Tiled<'a, B>> {
+    let (tiles, held) = (lattice.rows.div_ceil(SIDE) * lattice.across(), blocks.len() / (SIDE * SIDE));
+    if slots.len() != tiles || slots.iter().any(|&slot| slot < 0 || slot as usize >= held) {
+        return Err(PyValueError::new_err("the slots are not those of the grid's tiles"));
+    }
+    Ok(Tiled { slots, across: lattice.across(), blocks })
 }
 
 fn check_finite(name: &str, values: &[f64]) -> PyResult<()> {
@@ -209,10 +231,20 @@ fn py_cast_rays<'py>(
     Ok(cast_rays(solid.as_slice()?, lattice, x, y, angles, max_range, &discs).into_pyarray(py))
 }
 
+/// Whether the scan was fused, and the cells whose class changed; or if it was not, the missing tiles.
+type PyFused<'py> = (bool, Bound<'py, PyArray1<i64>>);
+
+fn fused(py: Python<'_>, outcome: Result<Vec<i64>, Vec<i64>>) -> PyResult<PyFused<'_>> {
+    Ok(match outcome {
+        Ok(changed) => (true, changed.into_pyarray(py)),
+        Err(missing) => (false, missing.into_pyarray(py)),
+    })
+}
+
 #[pyfunction(name = "integrate_scan")]
 fn py_integrate_scan<'py>(
     py: Python<'py>,
-    mut log_odds: PyReadwriteArray2<'py, i8>,
+    grid: (PyReadonlyArray1<'py, i32>, PyReadwriteArray2<'py, i8>, (usize, usize)),
     resolution: f64,
     x: f64,
     y: f64,
@@ -223,17 +255,19 @@ fn py_integrate_scan<'py>(
     gain_miss: i32,
     clamp: i32,
     nudge: f64,
-) -> PyResult<Bound<'py, PyArray1<i64>>> {
-    let lattice = lattice_of(&log_odds, resolution)?;
+) -> PyResult<PyFused<'py>> {
+    let (slots, mut blocks, shape) = grid;
+    let lattice = checked_lattice(shape, resolution)?;
+    let mut log_odds = tiled_of(slots.as_slice()?, blocks.as_slice_mut()?, lattice)?;
     let scan = scan_of(x, y, angles.as_slice()?, ranges.as_slice()?, hits.as_slice()?)?;
     let gains = gains_of(gain_hit, gain_miss, clamp)?;
-    Ok(integrate_scan(log_odds.as_slice_mut()?, lattice, scan, gains, nudge).into_pyarray(py))
+    fused(py, integrate_scan(&mut log_odds, lattice, scan, gains, nudge))
 }
 
 #[pyfunction(name = "integrate_blurred_scan")]
 fn py_integrate_blurred_scan<'py>(
     py: Python<'py>,
-    mut log_odds: PyReadwriteArray2<'py, i8>,
+    grid: (PyReadonlyArray1<'py, i32>, PyReadwriteArray2<'py, i8>, (usize, usize)),
     resolution: f64,
     x: f64,
     y: f64,
@@ -245,8 +279,10 @@ fn py_integrate_blurred_scan<'py>(
     gain_miss: i32,
     clamp: i32,
     nudge: f64,
-) -> PyResult<Bound<'py, PyArray1<i64>>> {
-    let lattice = lattice_of(&log_odds, resolution)?;
+) -> PyResult<PyFused<'py>> {
+    let (slots, mut blocks, shape) = grid;
+    let lattice = checked_lattice(shape, resolution)?;
+    let mut log_odds = tiled_of(slots.as_slice()?, blocks.as_slice_mut()?, lattice)?;
     let scan = scan_of(x, y, angles.as_slice()?, ranges.as_slice()?, hits.as_slice()?)?;
     let gains = gains_of(gain_hit, gain_miss, clamp)?;
     let margins = margins.as_slice()?;
@@ -258,13 +294,13 @@ fn py_integrate_blurred_scan<'py>(
         )));
     }
     let blur = Blur { margins };
-    Ok(integrate_blurred_scan(log_odds.as_slice_mut()?, lattice, scan, blur, gains, nudge).into_pyarray(py))
+    fused(py, integrate_blurred_scan(&mut log_odds, lattice, scan, blur, gains, nudge))
 }
 
 #[pyfunction(name = "count_sightings")]
 fn py_count_sightings<'py>(
     py: Python<'py>,
-    log_odds: PyReadonlyArray2<'py, i8>,
+    grid: (PyReadonlyArray1<'py, i32>, PyReadonlyArray2<'py, i8>, (usize, usize)),
     resolution: f64,
     x: f64,
     y: f64,
@@ -276,7 +312,9 @@ fn py_count_sightings<'py>(
     stride: usize,
     nudge: f64,
 ) -> PyResult<Bound<'py, PyArray2<i64>>> {
-    let lattice = lattice_of(&log_odds, resolution)?;
+    let (slots, blocks, shape) = grid;
+    let lattice = checked_lattice(shape, resolution)?;
+    let log_odds = tiled_of(slots.as_slice()?, blocks.as_slice()?, lattice)?;
     let scan = scan_of(x, y, angles.as_slice()?, ranges.as_slice()?, hits.as_slice()?)?;
     if !(max_range > 0.0 && max_range.is_finite() && bin_m > 0.0 && stride > 0) {
         return Err(PyValueError::new_err(format!(
@@ -284,7 +322,7 @@ fn py_count_sightings<'py>(
         )));
     }
     let bins = Bins { max_range, width: bin_m };
-    let counts = count_sightings(log_odds.as_slice()?, lattice, scan, bins, stride, nudge);
+    let counts = count_sightings(&log_odds, lattice, scan, bins, stride, nudge);
     counts.into_pyarray(py).reshape([4, bins.count()])
 }
 

@@ -1,6 +1,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+_Tiles = tuple[NDArray[np.int32], NDArray[np.int8], tuple[int, int]]
+_Worth = tuple[NDArray[np.float32], tuple[int, int], tuple[int, int], tuple[float, float, float, float]]
+
 # lidar
 def cast_rays(
     solid: NDArray[np.uint8],
@@ -12,7 +15,7 @@ def cast_rays(
     discs: NDArray[np.float64],
 ) -> NDArray[np.float64]: ...
 def integrate_scan(
-    log_odds: NDArray[np.int8],
+    grid: _Tiles,
     resolution: float,
     x: float,
     y: float,
@@ -23,9 +26,9 @@ def integrate_scan(
     gain_miss: int,
     clamp: int,
     nudge: float,
-) -> NDArray[np.int64]: ...
+) -> tuple[bool, NDArray[np.int64]]: ...
 def integrate_blurred_scan(
-    log_odds: NDArray[np.int8],
+    grid: _Tiles,
     resolution: float,
     x: float,
     y: float,
@@ -37,9 +40,9 @@ def integrate_blurred_scan(
     gain_miss: int,
     clamp: int,
     nudge: float,
-) -> NDArray[np.int64]: ...
+) -> tuple[bool, NDArray[np.int64]]: ...
 def count_sightings(
-    log_odds: NDArray[np.int8],
+    grid: _Tiles,
     resolution: float,
     x: float,
     y: float,
@@ -127,7 +130,7 @@ def combine(
     misses_b: NDArray[np.uint8],
 ) -> tuple[NDArray[np.uint32], NDArray[np.uint8]]: ...
 def marginals(
-    weights: NDArray[np.float32],
+    worth: _Worth,
     layer_weights: NDArray[np.float64],
     others_keys: NDArray[np.uint32],
     others_misses: NDArray[np.uint8],
@@ -136,7 +139,7 @@ def marginals(
     misses: NDArray[np.uint8],
 ) -> NDArray[np.float64]: ...
 def best_tour(
-    weights: NDArray[np.float32],
+    worth: _Worth,
     layer_weights: NDArray[np.float64],
     edges: NDArray[np.float64],
     others_keys: NDArray[np.uint32],
@@ -151,7 +154,7 @@ def best_tour(
     stickiness: float,
 ) -> tuple[NDArray[np.int64], float, float]: ...
 def most_any_tour_adds(
-    weights: NDArray[np.float32],
+    worth: _Worth,
     layer_weights: NDArray[np.float64],
     edges: NDArray[np.float64],
     team_keys: NDArray[np.uint32],

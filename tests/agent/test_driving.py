@@ -158,8 +158,8 @@ def mate(robot: int, x: float, y: float, to_x: float, heard: float) -> Mate:
 
 def test_the_higher_index_makes_room_in_a_corridor_and_goes_on_when_the_mate_has_passed() -> None:
     passable = corridor(5)
-    driver = Driver(1, PlatformSpec(), FRAME)
-    wanted = Route(np.array([(2.0, 1.25), (0.3, 1.25)]), passable)
+    driver = Driver(1, PlatformSpec())
+    wanted = Route(np.array([(2.0, 1.25), (0.3, 1.25)]), passable, FRAME)
     driver.go(wanted)
     drive = driver.look_out(Pose(2.0, 1.25, np.pi), [mate(0, 0.8, 1.25, 3.7, 0.0)], wanted, 0.0)
     assert drive is not None
@@ -172,8 +172,8 @@ def test_the_higher_index_makes_room_in_a_corridor_and_goes_on_when_the_mate_has
 
 
 def test_a_robot_that_makes_room_again_at_the_same_place_has_done_so_all_along() -> None:
-    driver = Driver(1, PlatformSpec(), FRAME)
-    wanted = Route(np.array([(2.0, 1.25), (0.3, 1.25)]), corridor(5))
+    driver = Driver(1, PlatformSpec())
+    wanted = Route(np.array([(2.0, 1.25), (0.3, 1.25)]), corridor(5), FRAME)
 
     def meet(x: float, now: float) -> None:
         driver.look_out(Pose(x, 1.25, np.pi), [mate(0, x - 1.2, 1.25, x + 1.7, now)], wanted, now)
@@ -193,8 +193,8 @@ def test_a_robot_that_makes_room_again_at_the_same_place_has_done_so_all_along()
 
 
 def test_no_room_is_made_for_a_mate_that_has_been_silent() -> None:
-    driver = Driver(1, PlatformSpec(), FRAME)
-    wanted = Route(np.array([(2.0, 1.25), (0.3, 1.25)]), corridor(5))
+    driver = Driver(1, PlatformSpec())
+    wanted = Route(np.array([(2.0, 1.25), (0.3, 1.25)]), corridor(5), FRAME)
     driver.go(wanted)
     late = 10.0
     assert driver.look_out(Pose(2.0, 1.25, np.pi), [mate(0, 0.8, 1.25, 3.7, 0.0)], wanted, late) is None

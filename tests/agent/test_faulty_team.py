@@ -72,7 +72,7 @@ def test_what_a_crashed_robot_has_told_is_kept_and_what_only_it_could_reach_is_l
     team.check_end()
     alone = two(crash, before=[-1, 0, 1, 2, 3], allowed=[[False] * 5, [True] * 5])
     assert alone.run(lambda: None) is Outcome.COMPLETE
-    seen = alone.sites.seen(mission_of(alone.agents[0]).fusion.classes)
+    seen = alone.sites.seen(mission_of(alone.agents[0]).fusion.classes.window())
     assert 0 < seen.sum() < 5
 
 
@@ -102,13 +102,14 @@ def test_evidence_that_is_forgotten_or_counted_twice_is_noticed() -> None:
     fusion = ReplicatedEvidence(0, 1, FRAME.shape, 2)
     mission = SiteMission((0, 1), sites, fusion, law.published)
     mission._dirty.append(10)
-    mission.own.ravel()[10], mission.counts[0] = -10, 1
+    mission.own.put(np.array([10]), np.array([-10], np.int8))
+    mission.counts[0] = 1
     mission.publish(0.0)
     assert law.check(mission)
     assert not law.check(mission)
     fusion.counts += 1
     fusion._contributors.own.version += 1
-    law.published((0, 1), 2, mission.own, mission.counts)
+    law.published((0, 1), 2, mission.own.window(), mission.counts)
     with pytest.raises(LawBroken, match="counted twice"):
         law.check(mission)
     fusion._contributors.own.version -= 2

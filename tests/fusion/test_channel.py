@@ -25,17 +25,16 @@ from vedette.fusion.link import Payload
 from vedette.fusion.packing import WordPacking, join_word, split_word
 from vedette.fusion.snapshots import Delta
 from vedette.fusion.tiles import (
-    CELLS,
     LEVELS,
     MOST_ROBOTS,
     WORDS,
-    Tiling,
     classes_of,
     code_of_sums,
     contributors_of,
     saturated,
     sums_of,
 )
+from vedette.kernels.tiles import CELLS, Tiling
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 
 TILING = Tiling(*SHAPE)
@@ -51,7 +50,7 @@ def assert_exact(net: Network, robots: int) -> None:
     live = expected_classes(net.own[i] for i in net.robots)
     counts = sum(net.counts[i] for i in net.robots)
     for fusion in net.robots.values():
-        np.testing.assert_array_equal(fusion.classes[live != UNKNOWN], live[live != UNKNOWN])
+        np.testing.assert_array_equal(fusion.classes.window()[live != UNKNOWN], live[live != UNKNOWN])
         np.testing.assert_array_equal(fusion.counts, counts)
         assert fusion.contributors() == robots
     assert len({fusion.digest for fusion in net.robots.values()}) == 1
@@ -74,7 +73,7 @@ def test_on_random_trees_with_bad_links_everybody_gets_the_brute_force_sum(seed:
     explore(net, rng, 4)
     net.run(80)
     assert_exact(net, n)
-    np.testing.assert_array_equal(net.robots[0].classes, expected_classes(net.own.values()))
+    np.testing.assert_array_equal(net.robots[0].classes.window(), expected_classes(net.own.values()))
     assert net.is_quiet()
 
 
@@ -144,7 +143,7 @@ def test_a_dead_robots_evidence_survives_where_nobody_else_has_any() -> None:
     net.run(10)
     expected = expected_classes([np.where(contradicted != 0, contradicted, dead)])
     for fusion in net.robots.values():
-        np.testing.assert_array_equal(fusion.classes, expected)
+        np.testing.assert_array_equal(fusion.classes.window(), expected)
         assert fusion.contributors() == 1
     assert net.is_quiet()
 
@@ -154,7 +153,7 @@ def test_a_robot_that_starts_again_counts_once_and_gets_its_old_map_back() -> No
     net = Network(robot, 3, [(0, 1), (1, 2)], rng)
     explore(net, rng, 3)
     net.run(6)
-    known = net.robots[0].classes != UNKNOWN
+    known = net.robots[0].classes.window() != UNKNOWN
     net.robots[2] = robot(2, boot=50)
     net.own[2] = np.zeros(SHAPE, dtype=np.int8)
     net.counts[2] = np.zeros(COUNTS, dtype=np.int64)
@@ -163,8 +162,8 @@ def test_a_robot_that_starts_again_counts_once_and_gets_its_old_map_back() -> No
     net.run(15)
     live = expected_classes(net.own.values())
     for fusion in net.robots.values():
-        np.testing.assert_array_equal(fusion.classes[live != UNKNOWN], live[live != UNKNOWN])
-        assert (fusion.classes[known] != UNKNOWN).all()
+        np.testing.assert_array_equal(fusion.classes.window()[live != UNKNOWN], live[live != UNKNOWN])
+        assert (fusion.classes.window()[known] != UNKNOWN).all()
     assert len({fusion.digest for fusion in net.robots.values()}) == 1
 
 

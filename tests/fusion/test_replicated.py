@@ -24,7 +24,8 @@ from vedette.fusion.codec import EvidenceCodec
 from vedette.fusion.link import EvidenceLink, Greeting, Payload
 from vedette.fusion.packing import CodePacking
 from vedette.fusion.snapshots import Delta, Snapshot
-from vedette.fusion.tiles import CELLS, LEVELS, Tiling, codes_of
+from vedette.fusion.tiles import LEVELS, codes_of
+from vedette.kernels.tiles import CELLS, SIDE, TiledGrid, Tiling
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 
 TILING = Tiling(*SHAPE)
@@ -50,7 +51,7 @@ def assert_all_agree(net: Network) -> None:
     expected = expected_classes(net.own.values())
     counts = sum(net.counts.values())
     for fusion in net.robots.values():
-        np.testing.assert_array_equal(fusion.classes, expected)
+        np.testing.assert_array_equal(fusion.classes.window(), expected)
         np.testing.assert_array_equal(fusion.counts, counts)
         outside = expected.copy()
         outside[fusion.known] = UNKNOWN
@@ -123,13 +124,13 @@ def test_a_dead_robots_evidence_lives_on_in_any_tree_and_its_next_start_gets_it_
 @given(data=st.data())
 def test_any_order_with_repeats_of_the_same_payloads_gives_the_same_map(data: st.DataObject) -> None:
     rng = np.random.default_rng(data.draw(st.integers(0, 10**6)))
-    writers = [Snapshot(TILING.count, COUNTS, np.uint8) for _ in range(3)]
+    writers = [Snapshot(TILING, COUNTS, np.uint8) for _ in range(3)]
     payloads, latest = [], {}
     everywhere = np.arange(TILING.count)
     for step in range(8):
         who = step % 3
         latest[who] = sparse_evidence(rng)
-        writers[who].write(everywhere, codes_of(TILING.gather(latest[who], everywhere)))
+        writers[who].write(everywhere, codes_of(TiledGrid.of(latest[who]).read(everywhere)))
         base = int(rng.integers(0, writers[who].version))
         payloads.append(Payload(who, sections=[((who, who), writers[who].since(base))]))
     stream = [CODEC.encode(payload) for payload in payloads]
@@ -138,20 +139,20 @@ def test_any_order_with_repeats_of_the_same_payloads_gives_the_same_map(data: st
     reader = robot(9)
     for index in order:
         reader.receive(0, stream[index], 0.0)
-    np.testing.assert_array_equal(reader.classes, expected_classes(latest.values()))
+    np.testing.assert_array_equal(reader.classes.window(), expected_classes(latest.values()))
 
 
 def test_a_neighbour_that_has_joined_again_is_sent_only_what_it_lacks() -> None:
     rng = np.random.default_rng(4)
     a, b = robot(0), robot(1)
     own = sparse_evidence(rng)
-    a.publish(own, None, None)
+    a.publish(TiledGrid.of(own), None, None)
     full_exchange(a, b, (0, 1), 0.0)
     a.set_neighbours([])
     b.set_neighbours([])
     own = own.copy()
     own[0, 0] = 9 if own[0, 0] <= 0 else -9
-    a.publish(own, np.array([0]), None)
+    a.publish(TiledGrid.of(own), np.array([0]), None)
     a.set_neighbours([1])
     b.set_neighbours([0])
     a.receive(1, b.outgoing(0, 100.0) or b"", 100.0)
@@ -162,7 +163,7 @@ def test_a_neighbour_that_has_joined_again_is_sent_only_what_it_lacks() -> None:
 def test_what_a_neighbour_told_is_not_told_back() -> None:
     a, b = robot(0), robot(1)
     full_exchange(a, b, (0, 1), 0.0)
-    a.publish(sparse_evidence(np.random.default_rng(5)), None, None)
+    a.publish(TiledGrid.of(sparse_evidence(np.random.default_rng(5))), None, None)
     b.receive(0, a.outgoing(1, 10.0) or b"", 10.0)
     answer = b.outgoing(0, 10.0)
     assert answer is not None
@@ -187,7 +188,7 @@ def test_what_a_neighbour_relayed_is_not_sent_back_to_it() -> None:
 
 def test_a_payload_of_a_neighbours_earlier_start_come_late_does_not_hide_what_the_new_start_lacks() -> None:
     a, old, new = robot(0), robot(1), robot(1, boot=50)
-    a.publish(sparse_evidence(np.random.default_rng(7)), None, None)
+    a.publish(TiledGrid.of(sparse_evidence(np.random.default_rng(7))), None, None)
     full_exchange(a, old, (0, 1), 0.0)
     a.set_neighbours([])
     a.set_neighbours([1])
@@ -213,7 +214,7 @@ def test_a_greeting_is_repeated_until_it_is_answered() -> None:
 
 
 def test_differences_stay_right_after_65535_versions() -> None:
-    writer, reader = (Snapshot(1, 0, np.uint8) for _ in range(2))
+    writer, reader = (Snapshot(Tiling(SIDE, SIDE), 0, np.uint8) for _ in range(2))
     tile = np.array([0])
     block = np.zeros((1, CELLS), dtype=np.uint8)
     block[0, 0] = 1
@@ -226,7 +227,7 @@ def test_differences_stay_right_after_65535_versions() -> None:
         block[0, cell] = 2
         writer.write(tile, block)
         reader.apply(writer.since(reader.version))
-        np.testing.assert_array_equal(reader.values, block)
+        np.testing.assert_array_equal(reader.values.read(tile), block)
     assert writer.since(0).mask.sum() == 3
     assert writer.since(70_001).mask.sum() <= 2
 
@@ -235,8 +236,8 @@ def test_more_than_a_payload_takes_goes_in_several() -> None:
     shape = (1600, 1600)
     a, b = robot(0, shape=shape), robot(1, shape=shape)
     free = np.full(shape, -9, dtype=np.int8)
-    a.publish(free, None, None)
-    b.publish(free, None, None)
+    a.publish(TiledGrid.of(free), None, None)
+    b.publish(TiledGrid.of(free), None, None)
     full_exchange(a, b, (0, 1), 0.0)
     c = robot(2, shape=shape)
     full_exchange(a, c, (0, 2), 10.0)
@@ -261,12 +262,13 @@ def test_only_tiles_with_a_changed_class_are_shared_and_levels_are_firm_from_six
     own = np.zeros(SHAPE, dtype=np.int8)
     own[0, 0], own[40, 40] = FIRM, -1
     a = robot(0)
-    assert a.publish(own, np.array([0, 40 * SHAPE[1] + 40]), None).tolist() == [0, 4]
+    assert a.publish(TiledGrid.of(own), np.array([0, 40 * SHAPE[1] + 40]), None).tolist() == [0, 4]
     own[40, 41] = -1
-    assert a.publish(own, np.array([], dtype=np.int64), None).tolist() == []
-    assert a.classes[40, 41] == UNKNOWN
-    assert a.publish(own, None, None).tolist() == [4]
-    assert (a.classes[0, 0], a.classes[40, 40], a.classes[40, 41]) == (OCCUPIED, FREE, FREE)
+    assert a.publish(TiledGrid.of(own), np.array([], dtype=np.int64), None).tolist() == []
+    assert a.classes.window()[40, 41] == UNKNOWN
+    assert a.publish(TiledGrid.of(own), None, None).tolist() == [4]
+    classes = a.classes.window()
+    assert (classes[0, 0], classes[40, 40], classes[40, 41]) == (OCCUPIED, FREE, FREE)
     np.testing.assert_array_equal(
         LEVELS[codes_of(np.array([-128, -6, -5, -1, 0, 1, 5, 6, 127], dtype=np.int8))],
         [-2, -2, -1, -1, 0, 1, 1, 2, 2],
@@ -277,10 +279,10 @@ def test_a_tie_between_robots_is_occupied() -> None:
     a, b = robot(0), robot(1)
     own = np.zeros(SHAPE, dtype=np.int8)
     own[3, 3] = 8
-    a.publish(own, None, None)
-    b.publish(-own, None, None)
+    a.publish(TiledGrid.of(own), None, None)
+    b.publish(TiledGrid.of(-own), None, None)
     full_exchange(a, b, (0, 1), 0.0)
-    assert a.classes[3, 3] == b.classes[3, 3] == OCCUPIED
+    assert a.classes.window()[3, 3] == b.classes.window()[3, 3] == OCCUPIED
 
 
 def test_digests_are_equal_iff_maps_and_counts_are() -> None:
@@ -288,20 +290,20 @@ def test_digests_are_equal_iff_maps_and_counts_are() -> None:
     a, b = robot(0), robot(1)
     assert a.digest == b.digest
     own[3, 3] = 1
-    a.publish(own, None, None)
+    a.publish(TiledGrid.of(own), None, None)
     assert a.digest != b.digest
     own[3, 3] = 9  # firm where a's is weak: the same class
-    b.publish(own, None, None)
+    b.publish(TiledGrid.of(own), None, None)
     assert a.digest == b.digest
-    a.publish(own, None, np.array([0, 0, 5]))
+    a.publish(TiledGrid.of(own), None, np.array([0, 0, 5]))
     assert a.digest != b.digest
-    b.publish(own, None, np.array([0, 5, 0]))
+    b.publish(TiledGrid.of(own), None, np.array([0, 5, 0]))
     assert a.digest != b.digest
-    b.publish(own, None, np.array([0, 0, 5]))
+    b.publish(TiledGrid.of(own), None, np.array([0, 0, 5]))
     assert a.digest == b.digest
     moved = np.roll(own, 32, axis=1)
     c = robot(2)
-    c.publish(moved, None, np.array([0, 0, 5]))
+    c.publish(TiledGrid.of(moved), None, np.array([0, 0, 5]))
     assert c.digest != a.digest
 
 
@@ -404,21 +406,21 @@ def test_a_second_of_exploring_costs_under_a_kilobyte_and_few_milliseconds_on_a_
     shape = (4000, 4000)
     a, b = robot(0, shape=shape), robot(1, shape=shape)
     own = moving_disc(np.zeros(shape, dtype=np.int8), 0)
-    a.publish(own, np.flatnonzero(own), None)
+    a.publish(TiledGrid.of(own), np.flatnonzero(own), None)
     full_exchange(a, b, (0, 1), 0.0)
     sizes, times = [], []
     for step in range(1, 6):
         after = moving_disc(own, step)
         changed = np.flatnonzero(np.sign(after) != np.sign(own))
-        own = after
+        own, tiles = after, TiledGrid.of(after)
         start = time.perf_counter()
-        a.publish(own, changed, None)
+        a.publish(tiles, changed, None)
         payload = a.outgoing(1, 100.0 + step)
         assert payload is not None
         b.receive(0, payload, 100.0 + step)
         times.append(time.perf_counter() - start)
         sizes.append(len(payload))
         a.receive(1, b.outgoing(0, 100.0 + step) or b"", 100.0 + step)
-    assert np.array_equal(a.classes, b.classes)
+    assert np.array_equal(a.classes.window(), b.classes.window())
     assert max(sizes) < 1000
     assert min(times) < 0.02  # far above what it takes, far below anything O(map)

@@ -27,7 +27,7 @@ from vedette.fusion.packing import CodePacking, WordPacking
 from vedette.fusion.snapshots import Delta
 from vedette.fusion.steps import SparseIntegers
 from vedette.fusion.steps import wire as step_wire
-from vedette.fusion.tiles import CELLS, Tiling
+from vedette.kernels.tiles import CELLS, Tiling
 from vedette.maps import GridFrame
 from vedette.negotiation import messages as negotiation_messages
 from vedette.negotiation.messages import Down, Gather, RoundOutcome, Stop, Tally, Token, Up
@@ -201,7 +201,7 @@ def _reports() -> list[bytes]:
     impact = MappingCodec(FRAME.size).encode(Misses(np.arange(3, dtype=np.uint32), np.ones(3, np.uint8)))
     (condition,) = conditions()
     return [
-        report.encode(report.Report(condition, map_content.content(classes, classes > 0, told)))
+        report.encode(report.Report(condition, map_content.content((0, 0), classes, classes > 0, told)))
         for told in (impact, None)
     ]
 
@@ -211,7 +211,7 @@ def _read_report(data: bytes) -> None:
     with contextlib.suppress(ValueError):
         told = report.read_report(data)
         status_of(told.condition)
-        map_content.view_of(told.condition, told.content, FRAME.shape, MappingCodec(FRAME.size))
+        map_content.view_of(told.condition, told.content, FRAME, MappingCodec(FRAME.size))
     with contextlib.suppress(ValueError):
         map_content.seen_of(map_content.read_content(report.read_report(data).content))
 

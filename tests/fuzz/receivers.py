@@ -15,6 +15,7 @@ from tests.support.step_network import Exchange
 from vedette.fusion import ChannelFilter, ReplicatedEvidence
 from vedette.fusion.gaussian import WAYS, Information, TrackFusion, TrackMotion, track_fusion
 from vedette.fusion.steps import ReplicatedSteps, Sparse, SparseIntegers, StepSums
+from vedette.kernels.tiles import TiledGrid
 from vedette.overlay import Overlay, ReliableLink
 
 NOW = 20.0  # [s]
@@ -48,12 +49,12 @@ class MapRobot:
         """A patch."""
         row, col = int(rng.integers(30)), int(rng.integers(50))
         self._own[row : row + 12, col : col + 12] = rng.integers(-20, 21)
-        self.share.publish(self._own, None, np.arange(COUNTS) + step)
+        self.share.publish(TiledGrid.of(self._own), None, np.arange(COUNTS) + step)
 
     def use(self) -> None:
         """Look at the map."""
         self.see(50, np.random.default_rng(9))
-        assert self.share.classes.max() <= 2
+        assert self.share.classes.blocks.max() <= 2
         assert self.share.contributors() >= 0
         assert self.share.digest >= 0
 

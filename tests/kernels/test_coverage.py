@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from vedette.domains.mapping import layers
 from vedette.kernels import coverage
-from vedette.kernels.coverage import LAYERS, Footprints, TourProblem
+from vedette.kernels.coverage import LAYERS, CellWeights, Footprints, TourProblem
 from vedette.kernels.distance import distance_field
 from vedette.kernels.frontier import find_frontiers
 from vedette.kernels.reference import coverage as reference
@@ -57,6 +57,17 @@ def random_impact(rng: np.random.Generator) -> Sparse:
     return keys.astype(np.uint32), misses.astype(np.uint8)
 
 
+def random_worth(rng: np.random.Generator) -> CellWeights:
+    """Draw the worth of cells in a window of the grid, of which a fifth are worth nothing."""
+    rows = int(rng.choice([d for d in range(1, CELLS + 1) if CELLS % d == 0]))
+    shape = rows, CELLS // rows
+    low = [int(rng.integers(0, size)) for size in shape]
+    size = [int(rng.integers(1, most - first + 1)) for most, first in zip(shape, low, strict=True)]
+    window = np.where(rng.random(size) < 0.2, 0.0, rng.uniform(0, 3, size)).astype(np.float32)
+    inside, last_col, last_row, corner = rng.uniform(0, 3, 4).tolist()
+    return CellWeights(window, (low[0], low[1]), shape, (inside, last_col, last_row, corner))
+
+
 def random_problem(rng: np.random.Generator, most_stops: int) -> TourProblem:
     """Draw stops in a plane with overlapping footprints, and legs up to a fifth shorter than first legs."""
     stops = int(rng.integers(1, most_stops + 1))
@@ -71,7 +82,9 @@ def random_problem(rng: np.random.Generator, most_stops: int) -> TourProblem:
     legs[:, unreachable] = np.inf
     worth = [layers.rate(start=rng.uniform(1, 200)), layers.rate(), layers.plain()][rng.integers(3)]
     return TourProblem(
-        np.where(rng.random(CELLS) < 0.2, 0.0, rng.uniform(0, 3, CELLS)).astype(np.float32),
+        CellWeights.whole(
+            np.where(rng.random(CELLS) < 0.2, 0.0, rng.uniform(0, 3, CELLS)).astype(np.float32)
+        ),
         worth.weights,
         worth.edges,
         random_impact(rng),
@@ -211,7 +224,7 @@ def test_marginals_equal_differences_of_dense_values(seed: int) -> None:
     own = [random_impact(rng) for _ in range(4)]
     starts = np.cumsum([0, *(len(keys) for keys, _ in own)])
     keys, misses = (np.concatenate(part) for part in zip(*own, strict=True))
-    worth = (problem.weights, problem.layer_weights)
+    worth = (random_worth(rng), problem.layer_weights)
     gains = coverage.marginals(*worth, problem.others, starts, keys, misses)
     twins = reference.marginals(*worth, problem.others, starts, keys, misses)
     np.testing.assert_allclose(gains, twins, rtol=1e-9, atol=1e-9)
@@ -277,7 +290,7 @@ def test_inside_a_time_layer_the_shorter_tour_wins() -> None:
     first_leg, legs = np.array([1, 3], np.float32), np.array([[0, 2], [2, 0]], np.float32)
     footprints = Footprints(np.array([0, 1, 2]), np.array([0, 1], np.uint32), np.array([64, 64], np.uint8))
     nothing = np.empty(0, np.uint32), np.empty(0, np.uint8)
-    worth = np.array([1.0, 1.0], np.float32)
+    worth = CellWeights.whole(np.array([1.0, 1.0], np.float32))
     problem = TourProblem(worth, weights, edges, nothing, footprints, first_leg, legs)
     assert reply(problem, [1, 0], 2)[0] == [0, 1]
 
@@ -299,7 +312,7 @@ def test_the_bound_holds_where_going_by_another_stop_is_the_shorter_way() -> Non
     footprints = Footprints(np.array([0, 1, 2]), np.array([0, 1], np.uint32), np.array([1, 255], np.uint8))
     problem = dataclasses.replace(
         problem,
-        weights=np.ones(CELLS, np.float32),
+        weights=CellWeights.whole(np.ones(CELLS, np.float32)),
         layer_weights=layers.rate().weights,
         others=(np.empty(0, np.uint32), np.empty(0, np.uint8)),
         footprints=footprints,

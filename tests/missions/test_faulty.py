@@ -103,7 +103,7 @@ def check_mission(simulation: ExploreSimulation, report: ExploreReport) -> None:
     assert all(agent.dropped == 0 for agent in simulation.agents)
     check_map(simulation.world, report.classes, report.log.poses)
     for part in parts(simulation.field.alive.tolist(), simulation.network.links()):
-        maps = [simulation.missions[i].fusion.classes for i in part]
+        maps = [simulation.missions[i].fusion.classes.window() for i in part]
         unlike = max(int((one != maps[0]).sum()) for one in maps)
         assert unlike <= TRICKLE, f"maps of {part} differ in {unlike} cells"
 

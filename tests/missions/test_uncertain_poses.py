@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from tests.support.explorers import HERE, explorer, mate_at, scan_from
+from tests.support.grids import on_dense
 from tests.support.mapping_scenes import BEAMS, FRAME, building, explored, frozen
 from tests.support.small_missions import robots, run, small_maze
 from vedette.agent.events import Pose, Scan
@@ -23,6 +24,7 @@ from vedette.domains.mapping.views import look
 from vedette.kernels import lidar
 from vedette.kernels.frontier import traversable
 from vedette.kernels.reference import lidar as reference_lidar
+from vedette.kernels.reference.coverage import dense
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.sim.localisation import CORRELATION_TIME, Localisation, displaced
 from vedette.team import PlatformSpec
@@ -98,7 +100,7 @@ def test_a_blurred_scan_equals_its_twin(seed: int) -> None:
     log_odds = scan["rng"].integers(-9, 10, scan["shape"]).astype(np.int8)
     twin = log_odds.copy()
     arguments: tuple[Any, ...] = (*scan["place"], *scan["beams"], scan["margins"], 5, 3, 9, 0.04)
-    changed = lidar.integrate_blurred_scan(log_odds, *arguments)
+    changed = on_dense(lidar.integrate_blurred_scan, log_odds, *arguments)
     np.testing.assert_array_equal(changed, reference_lidar.integrate_blurred_scan(twin, *arguments))
     np.testing.assert_array_equal(log_odds, twin)
 
@@ -112,8 +114,8 @@ def test_without_margins_a_blurred_scan_is_a_sharp_one(seed: int) -> None:
     arguments: tuple[Any, ...] = (*beams, *gains)
     blurred_arguments: tuple[Any, ...] = (*beams, np.zeros(len(scan["margins"])), *gains)
     for _ in range(3):
-        lidar.integrate_blurred_scan(blurry, *blurred_arguments)
-        lidar.integrate_scan(sharp, *arguments)
+        on_dense(lidar.integrate_blurred_scan, blurry, *blurred_arguments)
+        on_dense(lidar.integrate_scan, sharp, *arguments)
     np.testing.assert_array_equal(blurry, sharp)
 
 
@@ -125,7 +127,7 @@ def test_nothing_within_the_margin_of_a_return_becomes_free(seed: int, margin: f
     (_, x, y), (angles, ranges, hits) = scan["place"], scan["beams"]
     margins, gains = np.full(len(angles), margin), (4, 2, 20, 0.0)
     arguments: tuple[Any, ...] = (*scan["place"], *scan["beams"], margins, *gains)
-    lidar.integrate_blurred_scan(log_odds, *arguments)
+    on_dense(lidar.integrate_blurred_scan, log_odds, *arguments)
     rows, cols = (np.indices(scan["shape"]) + 0.5) * RESOLUTION
     sensor = (np.abs(cols - x) <= RESOLUTION / 2) & (np.abs(rows - y) <= RESOLUTION / 2)
     for angle, reach in zip(angles[hits], ranges[hits], strict=True):
@@ -140,7 +142,7 @@ def test_a_wall_gets_the_same_evidence_in_all_however_it_is_spread(margin: float
     for wall in np.arange(4.0, 4.1, 0.01) + 0.003:
         log_odds = np.zeros((41, 61), np.int8)
         scan = (RESOLUTION, 1.0, 2.05, angles, (wall - 1.0) / np.cos(angles), np.ones(len(angles), bool))
-        lidar.integrate_blurred_scan(log_odds, *scan, np.full(len(angles), margin), 12, 2, 100, 0.0)
+        on_dense(lidar.integrate_blurred_scan, log_odds, *scan, np.full(len(angles), margin), 12, 2, 100, 0.0)
         across = np.maximum(log_odds[20], 0)
         total.append(across.sum())
         middle.append(np.average(np.arange(61) + 0.5, weights=across) * RESOLUTION - wall)
@@ -151,7 +153,7 @@ def test_a_wall_gets_the_same_evidence_in_all_however_it_is_spread(margin: float
 def test_what_was_seen_is_never_unknown_again() -> None:
     log_odds = np.array([[-1, 2, 1]], np.int8)
     scan = (1.0, 0.5, 0.5, np.zeros(1), np.array([2.0]), np.array([True]), np.array([1e-9]))
-    lidar.integrate_blurred_scan(log_odds, *scan, 4, 2, 20, 0.0)
+    on_dense(lidar.integrate_blurred_scan, log_odds, *scan, 4, 2, 20, 0.0)
     assert log_odds.tolist() == [[-3, -1, 5]]
 
 
@@ -159,7 +161,7 @@ def test_margins_that_do_not_fit_are_refused() -> None:
     scan = (1.0, 0.5, 0.5, np.zeros(1), np.zeros(1), np.zeros(1, bool))
     for margins in (np.zeros(2), np.array([-0.1]), np.array([np.nan])):
         with pytest.raises(ValueError, match="margins must be as many as beams"):
-            lidar.integrate_blurred_scan(np.zeros((2, 2), np.int8), *scan, margins, 1, 1, 9, 0.0)
+            on_dense(lidar.integrate_blurred_scan, np.zeros((2, 2), np.int8), *scan, margins, 1, 1, 9, 0.0)
 
 
 def drive_both_sides(std: float, blur: bool, seed: int) -> NDArray[np.int8]:
@@ -176,9 +178,9 @@ def drive_both_sides(std: float, blur: bool, seed: int) -> NDArray[np.int8]:
         told = x + localiser.error[0], y + localiser.error[1]
         beams = (log_odds, RESOLUTION, *told, BEAMS, np.minimum(ranges, 4.0), hits)
         if blur:
-            lidar.integrate_blurred_scan(*beams, np.full(len(BEAMS), std), 4, 2, 20, 0.025)
+            on_dense(lidar.integrate_blurred_scan, *beams, np.full(len(BEAMS), std), 4, 2, 20, 0.025)
         else:
-            lidar.integrate_scan(*beams, 4, 2, 20, 0.025)
+            on_dense(lidar.integrate_scan, *beams, 4, 2, 20, 0.025)
     return log_odds
 
 
@@ -289,7 +291,7 @@ def test_stops_reveal_less_at_their_edges_and_as_much_in_all_when_poses_are_unce
     _, blurry = footprints(PlatformSpec(range=4.0, pose_std=0.15))
     np.testing.assert_array_equal(sharp.targets, blurry.targets)
     worth = [
-        np.sum(belief.weights[stops.footprints.cells] * (1 - np.exp(stops.footprints.misses / -16.0)))
+        np.sum(dense(belief.weights)[stops.footprints.cells] * (1 - np.exp(stops.footprints.misses / -16.0)))
         for stops in (sharp, blurry)
     ]
     assert worth[1] == pytest.approx(worth[0], rel=0.1)
@@ -317,7 +319,7 @@ def test_a_mate_whose_place_is_uncertain_does_not_get_into_the_map() -> None:
     mission.observe(scan_from(HERE, np.random.default_rng(0), mates=(there,)), pose, [told], 0.1)
     mission.publish(0.0)
     around = np.hypot(*(FRAME.centres(np.arange(FRAME.size)) - (there.x, there.y)).T) < 0.3
-    assert not np.equal(mission.fusion.classes.flat[np.flatnonzero(around)], OCCUPIED).any()
+    assert not np.equal(mission.fusion.classes.window().flat[np.flatnonzero(around)], OCCUPIED).any()
 
 
 def test_a_certain_pose_gives_the_sharp_map() -> None:
@@ -328,8 +330,8 @@ def test_a_certain_pose_gives_the_sharp_map() -> None:
     x, y = HERE.x - FRAME.origin_x, HERE.y - FRAME.origin_y
     reach = mission.spec.range
     beams = (BEAMS, np.minimum(scan.ranges, reach), scan.ranges < reach)
-    lidar.integrate_scan(sharp, RESOLUTION, x, y, *beams, 4, 2, 20, 0.25 * RESOLUTION)
-    np.testing.assert_array_equal(mission.log_odds, sharp)
+    on_dense(lidar.integrate_scan, sharp, RESOLUTION, x, y, *beams, 4, 2, 20, 0.25 * RESOLUTION)
+    np.testing.assert_array_equal(mission.log_odds.window(), sharp)
     assert explored([]).max() == UNKNOWN
 
 

@@ -168,7 +168,7 @@ def test_bodies_that_met_unseen_pass_through_each_other_until_they_are_apart() -
     spec = robots(1)[0]
     body = OwnBody.put(world, spec, (1.0, 2.0, 0.0), 0, 2, np.random.default_rng(0))
     other = ShownBody(1.1, 2.0, 0.0, 0.0, 0.0, spec.radius)
-    body.carry_out(Drive(Route(np.array([[1.0, 2.0], [3.0, 2.0]]), ~world.solid)), 0.0)
+    body.carry_out(Drive(Route(np.array([[1.0, 2.0], [3.0, 2.0]]), ~world.solid, world.frame)), 0.0)
     for tick in range(1, 50):
         body.see(1, encode(other), TICK * tick)
         body.sense(TICK * tick)

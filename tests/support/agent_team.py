@@ -150,7 +150,7 @@ class ToyMission:
         """Straight there, on a map without walls."""
         if self.no_way:
             return None
-        return Route(np.array([(pose.x, pose.y), goal]), np.ones(FRAME.shape, np.bool_))
+        return Route(np.array([(pose.x, pose.y), goal]), np.ones(FRAME.shape, np.bool_), FRAME)
 
 
 def toy_agent(robot: int, candidates: list[Float], belief: Float, scheme: str = "token") -> Agent:
@@ -158,7 +158,7 @@ def toy_agent(robot: int, candidates: list[Float], belief: Float, scheme: str = 
     fusion = ReplicatedEvidence(robot, 1, FRAME.shape, 4)
     spec = PlatformSpec(name=f"robot-{robot + 1}")
     mission = ToyMission(fusion, candidates, belief)
-    return Agent(robot, 1, spec, GroundBehaviour(mission, Driver(robot, spec, FRAME)), scheme)
+    return Agent(robot, 1, spec, GroundBehaviour(mission, Driver(robot, spec)), scheme)
 
 
 def toy(agent: Agent) -> ToyMission:

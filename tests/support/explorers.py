@@ -11,6 +11,7 @@ from vedette.domains.mapping.planners import planner
 from vedette.domains.mapping.sightings import BINS
 from vedette.fusion import ReplicatedEvidence
 from vedette.kernels.lidar import cast_rays
+from vedette.maps.lattice import Lattice
 from vedette.missions.explore.exploring import Exploring
 
 HERE = Pose(-0.53, 7.12, 0.0)
@@ -19,7 +20,7 @@ HERE = Pose(-0.53, 7.12, 0.0)
 def explorer(robot: int = 0) -> Exploring:
     """A robot's mission of which nothing is seen yet."""
     fusion = ReplicatedEvidence(robot, 1 + robot, FRAME.shape, 4 * BINS)
-    return Exploring(FRAME, SPEC, planner("tours"), fusion)
+    return Exploring(Lattice(FRAME), SPEC, planner("tours"), fusion)
 
 
 def mate_at(x: float, y: float, radius: float = 0.2, heard: float = 0.0) -> Mate:

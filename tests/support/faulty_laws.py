@@ -58,7 +58,7 @@ class EvidenceLaw:
         self._held[mission.life] = now
         words = sum(self._ledger[each][0] for each in now.items())
         counts = sum(self._ledger[each][1] for each in now.items())
-        right = np.array_equal(mission.fusion.classes, classes_of(np.asarray(words)))
+        right = np.array_equal(mission.fusion.classes.window(), classes_of(np.asarray(words)))
         check(right, "a map is not the sum of its contributors", mission.life, now)
         right = np.array_equal(mission.fusion.counts, counts)
         check(right, "evidence is counted twice or not at all", mission.life, now)
@@ -145,5 +145,5 @@ def check_strategy(agent: Agent, sites: Sites) -> None:
         return
     check(bool(sites.allowed[agent.robot, site]), "a strategy is void", agent.robot, site)
     before = int(sites.before[site])
-    known = before < 0 or mission.counts[before] > 0 or sites.is_seen(before, mission.fusion.classes)
+    known = before < 0 or mission.counts[before] > 0 or sites.is_seen(before, mission.fusion.classes.window())
     check(known, "a robot knows of a site that nobody has told it of", agent.robot, site)

@@ -214,7 +214,7 @@ class FaultyTeam(SiteTeam):
 
     def _worthwhile(self, i: int, part: Sequence[int]) -> bool:
         sites, mission = self.sites, self._mission(i)
-        seen = sites.seen(mission.fusion.classes)
+        seen = sites.seen(mission.fusion.classes.window())
         ahead = sites.open_to(i, seen).tolist()
         if not ahead:
             return False
@@ -232,7 +232,7 @@ class FaultyTeam(SiteTeam):
         for part in self.parts():
             for i in part:
                 mission = self._mission(i)
-                seen, now = self.sites.seen(mission.fusion.classes), versions_of(mission)
+                seen, now = self.sites.seen(mission.fusion.classes.window()), versions_of(mission)
                 left = self.sites.open_to(i, seen)
                 check(len(left) == 0, "the mission ends and leaves sites out", i, left)
                 for k in part:

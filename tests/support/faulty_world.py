@@ -20,6 +20,7 @@ from vedette.agent.mates import Mate
 from vedette.agent.messages import Note
 from vedette.agent.round import MOST_NOTES
 from vedette.fusion import ReplicatedEvidence
+from vedette.kernels.tiles import TiledGrid, Tiling
 from vedette.maps import FREE, GridFrame
 from vedette.problem import Coverage
 
@@ -166,7 +167,7 @@ class SiteMission:
     _version: int = 0
 
     def __post_init__(self) -> None:
-        self.own = np.zeros(FRAME.shape, np.int8)
+        self.own = TiledGrid(Tiling(*FRAME.shape), np.int8)
         self.counts = np.zeros(len(self.sites.cells), np.int64)
 
     # -- evidence ------------------------------------------------------------------------------------
@@ -184,10 +185,10 @@ class SiteMission:
     def observe(self, seen: Sensed, pose: Pose, mates: Sequence[Mate], now: float) -> None:
         """See sites; what is beside them looks otherwise to robots of odd number."""
         assert isinstance(seen.data, list)
-        flat = self.own.ravel()
         for site in seen.data:
             cell = int(self.sites.cells[site])
-            flat[cell], flat[cell + 1] = -10, 10 if self.life[0] % 2 else -1
+            pair = -10, 10 if self.life[0] % 2 else -1
+            self.own.put(np.array((cell, cell + 1)), np.array(pair, np.int8))
             self.counts[site] += 1
             self._dirty.append(cell)
 
@@ -199,7 +200,7 @@ class SiteMission:
         self._dirty.clear()
         self.fusion.publish(self.own, cells, self.counts)
         self._version += 1
-        self.published(self.life, self._version, self.own.copy(), self.counts.copy())
+        self.published(self.life, self._version, self.own.window(), self.counts.copy())
 
     # -- rounds --------------------------------------------------------------------------------------
 
@@ -218,7 +219,7 @@ class SiteMission:
 
     def freeze(self, t0: float) -> Belief:
         """Remember which round it is, and which sites are seen."""
-        seen = self.sites.seen(self.fusion.classes)
+        seen = self.sites.seen(self.fusion.classes.window())
         self.last = Belief(self.stamp(), self.fusion.digest, seen)
         return self.last
 
@@ -286,7 +287,9 @@ class SiteMission:
 
     def served(self) -> bool:
         """Tell whether somebody has been there."""
-        return self.strategy is not None and bool(self.sites.seen(self.fusion.classes)[self.strategy])
+        return self.strategy is not None and bool(
+            self.sites.seen(self.fusion.classes.window())[self.strategy]
+        )
 
     def reached(self, pose: Pose, mates: Sequence[Mate], now: float) -> bool:
         """On to nothing."""
@@ -301,4 +304,4 @@ class SiteMission:
         self, pose: Pose, goal: tuple[float, float], mates: Sequence[Mate], blocked: bool, now: float
     ) -> Route | None:
         """Straight there."""
-        return Route(np.array([(pose.x, pose.y), goal]), PASSABLE)
+        return Route(np.array([(pose.x, pose.y), goal]), PASSABLE, FRAME)

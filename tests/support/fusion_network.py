@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.fusion import FIRM, Fusion
+from vedette.kernels.tiles import TiledGrid
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 
 Edges = list[tuple[int, int]]
@@ -77,7 +78,7 @@ class Network:
         self.own[i] = own
         if counts is not None:
             self.counts[i] = counts
-        self.robots[i].publish(own, changed, counts)
+        self.robots[i].publish(TiledGrid.of(own), changed, counts)
 
     def run(self, rounds: int) -> None:
         """One second a round: everybody sends to its neighbours, due payloads arrive in random order."""

@@ -13,6 +13,7 @@ from vedette.domains.mapping.layers import TimeLayers
 from vedette.domains.mapping.platform import MappingPlatform
 from vedette.domains.mapping.sightings import empty_counts
 from vedette.kernels import lidar
+from vedette.kernels.tiles import TiledGrid, Tiling
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
 from vedette.team import PlatformSpec
 
@@ -35,13 +36,14 @@ def building() -> NDArray[np.bool_]:
 
 def explored(places: Sequence[tuple[float, float]], reach: float = 4.0) -> NDArray[np.uint8]:
     """Return the map after one scan from each place, (x, y) [m] in the team frame."""
-    log_odds = np.zeros(FRAME.shape, np.int8)
+    grid = TiledGrid(Tiling(*FRAME.shape), np.int8)
     for x, y in places:
         x, y = x - FRAME.origin_x, y - FRAME.origin_y
         ranges = lidar.cast_rays(building(), RESOLUTION, x, y, BEAMS, reach, np.empty((0, 3)))
         hits = np.isfinite(ranges)
         ranges = np.minimum(ranges, reach)
-        lidar.integrate_scan(log_odds, RESOLUTION, x, y, BEAMS, ranges, hits, 4, 2, 20, 0.025)
+        lidar.integrate_scan(grid, RESOLUTION, x, y, BEAMS, ranges, hits, 4, 2, 20, 0.025)
+    log_odds = grid.window()
     return np.where(log_odds > 0, OCCUPIED, np.where(log_odds < 0, FREE, UNKNOWN)).astype(np.uint8)
 
 

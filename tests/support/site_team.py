@@ -116,7 +116,7 @@ class SiteTeam(Simulation):
         fusion = ReplicatedEvidence(robot, boot, FRAME.shape, len(self.sites.cells))
         mission = SiteMission((robot, boot), self.sites, fusion, self._published)
         spec = PlatformSpec(name=f"robot-{robot + 1}", speed=SPEED)
-        behaviour = GroundBehaviour(mission, Driver(robot, spec, FRAME))
+        behaviour = GroundBehaviour(mission, Driver(robot, spec))
         agent = Agent(robot, boot, spec, behaviour, self.setup.scheme, PACE)
         mission.stamp = lambda: agent.rounds.stamp
         agent.due |= {"beacon": math.inf, "look out": math.inf, "listen": -math.inf}  # nobody is in the way

@@ -1,5 +1,6 @@
 //! Sparse impacts: combining them, and what one adds to another.
 
+use super::worth::Worth;
 use super::{Sparse, LAYERS, STEPS_PER_NAT};
 
 /// The miss probability of every log-miss, `miss[q] = exp(-q / 16)` and 0 when saturated.
@@ -50,7 +51,7 @@ fn worths(layer_weights: &[f64]) -> [f64; LAYERS] {
 /// A cell's value is `sum_b w_b (1 - m(b))`, summed by parts: each entry adds the fall of the miss
 /// probability at its layer times what a sighting there is worth.
 pub fn marginal(
-    weights: &[f32],
+    worth: &Worth,
     layer_weights: &[f64],
     others: (&[u32], &[u8]),
     own: (&[u32], &[u8]),
@@ -63,7 +64,7 @@ pub fn marginal(
     while j < own.0.len() {
         let cell = cell_of(own.0[j]);
         i += others.0[i..].partition_point(|&key| cell_of(key) < cell);
-        let weight = f64::from(weights[cell as usize]);
+        let weight = f64::from(worth.of(cell));
         let (mut alone, mut together) = (0_u8, 0_u8);
         let mut value = 0.0;
         loop {

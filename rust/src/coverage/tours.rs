@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 
 use super::impact::miss_table;
+use super::worth::Worth;
 use super::LAYERS;
 
 /// What one platform knows of its stops, fixed for a round.
@@ -71,7 +72,7 @@ const BUDGET: usize = 75_000;
 impl<'a> Tours<'a> {
     fn new(
         stops: Stops<'a>,
-        weights: &[f32],
+        worth: &Worth,
         layer_weights: &[f64],
         others: (&[u32], &[u8]),
         max_stops: usize,
@@ -85,7 +86,7 @@ impl<'a> Tours<'a> {
         for &cell in stops.cells {
             let number = &mut numbers[(cell - first) as usize];
             if *number == 0 {
-                weight.push(weights[cell as usize]);
+                weight.push(worth.of(cell));
                 *number = weight.len() as u32;
             }
             local.push(*number - 1);
@@ -486,14 +487,14 @@ pub struct Reply {
 /// robot is on its way there, so to turn away must pay by the share `stickiness`.
 pub fn best_tour(
     stops: Stops,
-    weights: &[f32],
+    worth: &Worth,
     layer_weights: &[f64],
     others: (&[u32], &[u8]),
     current: &[i64],
     max_stops: usize,
     stickiness: f64,
 ) -> Reply {
-    let mut tours = Tours::new(stops, weights, layer_weights, others, max_stops);
+    let mut tours = Tours::new(stops, worth, layer_weights, others, max_stops);
     let current: Vec<usize> = current.iter().map(|&stop| stop as usize).collect();
     let current_gain = tours.value(&current).0;
     let ceilings = tours.ceilings();
@@ -511,10 +512,10 @@ pub fn best_tour(
 /// No tour adds more than this to the team's impact.  docs/mapping.md (V26)
 pub fn most_any_tour_adds(
     stops: Stops,
-    weights: &[f32],
+    worth: &Worth,
     layer_weights: &[f64],
     team: (&[u32], &[u8]),
     max_stops: usize,
 ) -> f64 {
-    Tours::new(stops, weights, layer_weights, team, max_stops).relaxed()
+    Tours::new(stops, worth, layer_weights, team, max_stops).relaxed()
 }

@@ -3,6 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::fuse::{Gains, Marks, MISS};
+use super::tiled::Tiled;
 use super::walk::{Lattice, Walk};
 use super::Scan;
 
@@ -97,17 +98,17 @@ fn stamp(marks: &mut Marks, scan: Scan, b: usize, resolution: f64, reach: f64, m
     marks.put(y.floor() as i64, x.floor() as i64, mark);
 }
 
-/// Fuse one scan from an uncertain pose; return the sorted cells whose class changed.
+/// Fuse one scan from an uncertain pose; return the sorted cells whose class changed, or missing tiles.
 ///
 /// A cell that was known stays known: evidence that cancels leaves it at the last step's side of 0.
 pub fn integrate_blurred_scan(
-    log_odds: &mut [i8],
+    log_odds: &mut Tiled<&mut [i8]>,
     lattice: Lattice,
     scan: Scan,
     blur: Blur,
     gains: Gains,
     nudge: f64,
-) -> Vec<i64> {
+) -> Result<Vec<i64>, Vec<i64>> {
     let widest = blur.margins.iter().copied().fold(0.0, f64::max);
     let mut marks = Marks::around(scan, lattice, nudge, widest);
     let (returns, mut found) = (returns(scan, blur, nudge), Vec::new());

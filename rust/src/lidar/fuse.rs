@@ -1,5 +1,6 @@
 //! Fuse one scan into integer log-odds.
 
+use super::tiled::Tiled;
 use super::walk::{Lattice, Walk};
 use super::Scan;
 
@@ -89,21 +90,53 @@ impl Marks {
         }
     }
 
+    /// The tiles that hold touched cells and have no cells yet, increasing.
+    pub fn missing(&self, lattice: Lattice, log_odds: &Tiled<&mut [i8]>) -> Vec<i64> {
+        let mut tiles: Vec<i64> = self
+            .touched
+            .iter()
+            .map(|&local| self.cell(local))
+            .filter(|&(row, col)| log_odds.at(row, col).is_none())
+            .map(|(row, col)| lattice.tile(row, col) as i64)
+            .collect();
+        tiles.sort_unstable();
+        tiles.dedup();
+        tiles
+    }
+
+    /// Row and column in the whole grid.
+    fn cell(&self, local: u32) -> (usize, usize) {
+        let (row, col) = (local as usize / self.cols, local as usize % self.cols);
+        (row + self.first_row as usize, col + self.first_col as usize)
+    }
+
     /// Turn each touched cell's old log-odds into new ones; return the sorted cells whose class changed.
+    ///
+    /// Or, with nothing changed, the tiles that are missing.
     #[inline]
-    pub fn apply(&self, log_odds: &mut [i8], lattice: Lattice, new: impl Fn(u16, i32) -> i32) -> Vec<i64> {
+    pub fn apply(
+        &self,
+        log_odds: &mut Tiled<&mut [i8]>,
+        lattice: Lattice,
+        new: impl Fn(u16, i32) -> i32,
+    ) -> Result<Vec<i64>, Vec<i64>> {
+        let missing = self.missing(lattice, log_odds);
+        if !missing.is_empty() {
+            return Err(missing);
+        }
         let mut changed = Vec::new();
         for &local in &self.touched {
-            let (row, col) = (local as usize / self.cols, local as usize % self.cols);
-            let cell = (row + self.first_row as usize) * lattice.cols + col + self.first_col as usize;
-            let old = log_odds[cell];
-            log_odds[cell] = new(self.marks[local as usize], i32::from(old)) as i8;
-            if log_odds[cell].signum() != old.signum() {
-                changed.push(cell as i64);
+            let (row, col) = self.cell(local);
+            let Some(at) = log_odds.at(row, col) else { continue };
+            let cell = &mut log_odds.blocks[at];
+            let old = *cell;
+            *cell = new(self.marks[local as usize], i32::from(old)) as i8;
+            if cell.signum() != old.signum() {
+                changed.push((row * lattice.cols + col) as i64);
             }
         }
         changed.sort_unstable();
-        changed
+        Ok(changed)
     }
 }
 
@@ -115,14 +148,14 @@ pub struct Gains {
     pub clamp: i32,
 }
 
-/// Fuse one scan into integer log-odds; return the sorted cells whose class (sign) changed.
+/// Fuse one scan into integer log-odds; return the sorted cells whose class (sign) changed, or missing tiles.
 pub fn integrate_scan(
-    log_odds: &mut [i8],
+    log_odds: &mut Tiled<&mut [i8]>,
     lattice: Lattice,
     scan: Scan,
     gains: Gains,
     nudge: f64,
-) -> Vec<i64> {
+) -> Result<Vec<i64>, Vec<i64>> {
     let mut marks = Marks::around(scan, lattice, nudge, 0.0);
     for b in 0..scan.angles.len() {
         marks.trace(scan, b, lattice.resolution, nudge);

@@ -1,5 +1,7 @@
 //! The cells that a ray crosses, and where along it.
 
+use super::tiled::SIDE;
+
 /// Shape and cell side [m] of a row-major grid whose lower-left corner is the origin.
 #[derive(Clone, Copy)]
 pub struct Lattice {
@@ -15,6 +17,16 @@ impl Lattice {
         // A negative index wraps to a huge one, so two comparisons are enough.
         let inside = (row as u64) < self.rows as u64 && (col as u64) < self.cols as u64;
         inside.then(|| row as usize * self.cols + col as usize)
+    }
+
+    /// Number of the tile that holds a cell.
+    pub fn tile(&self, row: usize, col: usize) -> usize {
+        row / SIDE * self.across() + col / SIDE
+    }
+
+    /// Tiles in a row of tiles.
+    pub fn across(&self) -> usize {
+        self.cols.div_ceil(SIDE)
     }
 }
 

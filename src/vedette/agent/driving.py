@@ -12,7 +12,6 @@ from vedette.agent.events import Pose
 from vedette.agent.intents import HORIZON, Intent
 from vedette.agent.mates import Mate
 from vedette.agent.rightofway import give_way, queues
-from vedette.maps import GridFrame
 from vedette.team import PlatformSpec
 
 YIELD_LIMIT = 12.0  # a robot that had to make room for so long looks for other work [s]
@@ -25,7 +24,6 @@ class Driver:
 
     robot: int
     spec: PlatformSpec
-    frame: GridFrame  # of the map
     wanted: Route | None = None
     refuge: NDArray[np.float64] | None = None  # (L, 2) [m], team frame, while making room
     yielding_since: float = 0.0  # less what it did so before at the same place
@@ -54,38 +52,40 @@ class Driver:
         ``standing``: the map to move aside on while no route is wanted.
         """
         route = self.wanted or standing
-        corner = np.array((self.frame.origin_x, self.frame.origin_y))
-        here = np.array((pose.x, pose.y)) - corner
+        corner = np.array((route.frame.origin_x, route.frame.origin_y))
+        place = np.array((pose.x, pose.y))
+        here = place - corner
         ahead = self.ahead(pose) - corner
         me = Intent(self.robot, here[0], here[1], ahead, self.spec.radius, self.spec.speed, pose.slowed)
         others = [_intent(mate, corner) for mate in mates if not mate.silent(now)]
-        refuge = give_way(route.passable, self.frame.resolution, me, others)
-        self.queueing = refuge is None and self._queues(route, me, others, now)
+        refuge = give_way(route.passable, route.frame.resolution, me, others)
+        self.queueing = refuge is None and self._queues(route, me, others, place, now)
         if self.queueing:
             refuge, self.yielding_since = here[None], now
         if refuge is None:
             if not self.yielding:
                 return None
             self.refuge = None
-            self.yielded = here, now - self.yielding_since
+            self.yielded = place, now - self.yielding_since
             return Drive(self.wanted)
         if not self.yielding:
-            self.yielding_since = now - self._yielded_before(here)
+            self.yielding_since = now - self._yielded_before(place)
         self.refuge = refuge + corner
-        return Drive(Route(self.refuge, route.passable, route.room))
+        return Drive(Route(self.refuge, route.passable, route.frame, route.room))
 
-    def _queues(self, route: Route, me: Intent, others: list[Intent], now: float) -> bool:
+    def _queues(
+        self, route: Route, me: Intent, others: list[Intent], place: NDArray[np.float64], now: float
+    ) -> bool:
         """Tell whether to wait for those before it; not for ever, lest all wait for each other."""
-        if not queues(route.passable, self.frame.resolution, me, others):
+        if not queues(route.passable, route.frame.resolution, me, others):
             return False
-        here = np.array((me.x, me.y))
-        if self.queue is None or np.hypot(*(here - self.queue[0])) >= ON_ITS_WAY:
-            self.queue = here, now
+        if self.queue is None or np.hypot(*(place - self.queue[0])) >= ON_ITS_WAY:
+            self.queue = place, now
         return now - self.queue[1] <= YIELD_LIMIT
 
-    def _yielded_before(self, here: NDArray[np.float64]) -> float:
-        """Return how long it has made room here already [s], lest two let each other pass for ever."""
-        if self.yielded is None or np.hypot(*(here - self.yielded[0])) >= ON_ITS_WAY:
+    def _yielded_before(self, place: NDArray[np.float64]) -> float:
+        """Return how long it has made room there already [s], lest two let each other pass for ever."""
+        if self.yielded is None or np.hypot(*(place - self.yielded[0])) >= ON_ITS_WAY:
             return 0.0
         return self.yielded[1]
 

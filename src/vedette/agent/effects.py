@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.agent.flight import FlightPlan
+from vedette.maps import GridFrame
 
 
 class TrafficKind(Enum):
@@ -44,7 +45,8 @@ class Route:
     """A way to drive, and the map it was found on."""
 
     path: NDArray[np.float64]  # (L, 2) [m], team frame
-    passable: NDArray[np.bool_]  # (R, C) where the robot's centre may be, over the whole map
+    passable: NDArray[np.bool_]  # (R, C) where the robot's centre may be; nowhere else
+    frame: GridFrame  # of these cells
     room: float = inf  # that it keeps to what is not known free, at least [m]
     facing: float | None = None  # heading to turn to at its end [rad], team frame
 

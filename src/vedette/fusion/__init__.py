@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from vedette.fusion.channel import ChannelFilter
 from vedette.fusion.replicated import ReplicatedEvidence
-from vedette.fusion.tiles import FIRM, SIDE
+from vedette.fusion.tiles import FIRM
+from vedette.kernels.tiles import SIDE, TiledGrid
 from vedette.maps.bounds import Extent
 
 __all__ = ["FIRM", "SIDE", "ChannelFilter", "Fusion", "ReplicatedEvidence"]
@@ -25,8 +26,8 @@ class Fusion(Protocol):
     """
 
     @property
-    def classes(self) -> NDArray[np.uint8]:
-        """``(rows, cols)`` team map as this robot knows it: UNKNOWN, FREE or OCCUPIED."""
+    def classes(self) -> TiledGrid[np.uint8]:
+        """Team map as this robot knows it: UNKNOWN, FREE or OCCUPIED."""
         ...
 
     @property
@@ -49,7 +50,7 @@ class Fusion(Protocol):
         ...
 
     def publish(
-        self, own: NDArray[np.int8], changed: NDArray[np.int64] | None, counts: NDArray[np.int64] | None
+        self, own: TiledGrid[np.int8], changed: NDArray[np.int64] | None, counts: NDArray[np.int64] | None
     ) -> NDArray[np.int64]:
         """Share the robot's own log-odds and counts; return the tiles whose team map changed."""
         ...

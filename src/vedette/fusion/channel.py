@@ -14,16 +14,15 @@ from vedette.fusion.link import RESEND_AFTER, EvidenceLink
 from vedette.fusion.packing import WordPacking, join_word, split_word
 from vedette.fusion.snapshots import NONE, Delta, Snapshot, tiles_to_publish
 from vedette.fusion.tiles import (
-    CELLS,
     CLASSES,
     WORDS,
     TeamMap,
-    Tiling,
     classes_of,
     code_of_sums,
     codes_of,
     saturated,
 )
+from vedette.kernels.tiles import TiledGrid, Tiling
 
 
 @dataclass(eq=False)
@@ -65,15 +64,15 @@ class ChannelFilter(TeamMap):
         shape: tuple[int, int],
         counts_size: int,
         *,
+        mark: int = 0,
         resend_after: float = RESEND_AFTER,
     ) -> None:
         """Start with nothing known; ``boot < 2**38`` must differ from those of the robot's earlier starts."""
-        super().__init__(Tiling(*shape), counts_size)
+        super().__init__(Tiling(*shape), counts_size, mark)
         self._size = counts_size + 1  # the last count is 1 for every robot that has published
         self._codec = EvidenceCodec(self._tiling, self._size, WordPacking())
-        self._own = Snapshot(self._tiling.count, self._size, np.uint8)
-        self._inherited: NDArray[np.uint8] = np.zeros((self._tiling.count, CELLS), dtype=np.uint8)
-        self._touched: NDArray[np.bool_] = np.zeros(self._tiling.count, dtype=np.bool_)
+        self._own = Snapshot(self._tiling, self._size, np.uint8)
+        self._inherited: TiledGrid[np.uint8] = TiledGrid(self._tiling, np.uint8)
         self._robots = 0
         self._edges: Edges[MapEdge, Delta[np.int32]] = Edges(robot, boot, resend_after)
 
@@ -82,15 +81,15 @@ class ChannelFilter(TeamMap):
         return self._robots
 
     def publish(
-        self, own: NDArray[np.int8], changed: NDArray[np.int64] | None, counts: NDArray[np.int64] | None
+        self, own: TiledGrid[np.int8], changed: NDArray[np.int64] | None, counts: NDArray[np.int64] | None
     ) -> NDArray[np.int64]:
         """Share the tiles of ``own`` that hold ``changed`` flat cells (None: find those whose class changed).
 
         Returns the tiles in which the team map changed.
         """
-        tiles = tiles_to_publish(self._tiling, own, changed, self._own)
+        tiles = tiles_to_publish(own, changed, self._own)
         counts = self._own.counts[:-1] if counts is None else counts
-        change = self._own.write(tiles, codes_of(self._tiling.gather(own, tiles)), np.append(counts, 1))
+        change = self._own.write(tiles, codes_of(own.read(tiles)), np.append(counts, 1))
         return NONE if change is None else self._update(change.tiles)
 
     def set_neighbours(self, neighbours: Sequence[int]) -> None:
@@ -98,7 +97,7 @@ class ChannelFilter(TeamMap):
         self._edges.set_neighbours(
             neighbours, self._inherit, lambda link: MapEdge(link, self._box(), self._box())
         )
-        self._update(np.flatnonzero(self._touched))
+        self._update(np.sort(self._inherited.held))
 
     def outgoing(self, neighbour: int, now: float) -> bytes | None:
         """Return what the neighbour lacks, and what it waits to see acknowledged; None if nothing."""
@@ -124,7 +123,7 @@ class ChannelFilter(TeamMap):
         return np.unique(np.concatenate(changed))
 
     def _box(self) -> Snapshot[np.int32]:
-        return Snapshot(self._tiling.count, self._size, np.int32)
+        return Snapshot(self._tiling, self._size, np.int32)
 
     def _blank(self, edge: MapEdge) -> NDArray[np.int64]:
         """The neighbour has started anew: inherit what came from it, and expect its sums from the start."""
@@ -135,23 +134,26 @@ class ChannelFilter(TeamMap):
 
     def _inherit(self, edge: MapEdge) -> None:
         tiles = edge.inbox.known_tiles
-        code, live = split_word(edge.inbox.values[tiles])
-        self._inherited[tiles] = np.maximum(self._inherited[tiles], np.maximum(code, code_of_sums(live)))
+        code, live = split_word(edge.inbox.values.read(tiles))
+        theirs = np.maximum(code, code_of_sums(live))
+        self._inherited.write(tiles, np.maximum(self._inherited.read(tiles), theirs))
 
     def _update(self, tiles: NDArray[np.int64]) -> NDArray[np.int64]:
         """Recompute the sums of some tiles, what each edge carries of them, and what the map shows."""
-        self._touched[tiles] = True
-        total = WORDS[self._own.values[tiles]]
+        total = WORDS[self._own.values.read(tiles)]
         counts = self._own.counts.copy()
+        inherited = self._inherited.read(tiles)
         live, code = {}, {}
         for neighbour, edge in self._edges.items():
-            code[neighbour], live[neighbour] = split_word(edge.inbox.values[tiles])
-            self._inherited[tiles] = np.maximum(self._inherited[tiles], code[neighbour])
+            code[neighbour], live[neighbour] = split_word(edge.inbox.values.read(tiles))
+            inherited = np.maximum(inherited, code[neighbour])
             total = saturated(total + live[neighbour])
             counts += edge.inbox.counts
-        inherited = self._inherited[tiles]
+        self._inherited.write(tiles, inherited)  # so it holds every tile that anybody has told of
         for neighbour, edge in self._edges.items():
-            told, _ = split_word(edge.outbox.values[tiles])  # never taken back, or two echoes would alternate
+            told, _ = split_word(
+                edge.outbox.values.read(tiles)
+            )  # never taken back, or two echoes would alternate
             news = np.where(inherited > code[neighbour], inherited, told)
             sums = join_word(news, saturated(total - live[neighbour]))
             edge.outbox.write(tiles, sums, counts - edge.inbox.counts)

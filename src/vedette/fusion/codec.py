@@ -15,7 +15,7 @@ from vedette.fusion.link import MOST_SECTIONS, Greeting, Key, Payload
 from vedette.fusion.packing import MapPacking, PackedBody
 from vedette.fusion.planes import from_planes, planes
 from vedette.fusion.snapshots import Delta, ValueT
-from vedette.fusion.tiles import Tiling
+from vedette.kernels.tiles import Tiling
 
 MOST_TILES = 2048  # in a payload; one section may exceed it, up to the whole map
 NUMBER_BITS = 63

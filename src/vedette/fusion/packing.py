@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from vedette.fusion.planes import from_planes, planes
 from vedette.fusion.snapshots import Delta, ValueT
-from vedette.fusion.tiles import CELLS, LEVELS, MOST_ROBOTS, contributors_of, sums_of
+from vedette.fusion.tiles import LEVELS, MOST_ROBOTS, contributors_of, sums_of
+from vedette.kernels.tiles import CELLS
 
 
 class PackedBody:

@@ -12,15 +12,15 @@ from vedette.fusion.contributors import Contributors
 from vedette.fusion.link import RESEND_AFTER
 from vedette.fusion.packing import CodePacking
 from vedette.fusion.snapshots import NONE, Change, Delta, Snapshot, tiles_to_publish
-from vedette.fusion.tiles import CELLS, WORDS, TeamMap, Tiling, classes_of, codes_of
+from vedette.fusion.tiles import WORDS, TeamMap, classes_of, codes_of
+from vedette.kernels.tiles import TiledGrid, Tiling
 
 
 class ReplicatedEvidence(TeamMap):
     """Team evidence = sum over contributors of the latest known snapshot of each one's own evidence.
 
-    Memory is O(contributors x the area each has seen), 3 bytes a cell, beside 6 bytes a cell for the team. A
-    contributor that shows nothing costs addresses, not memory: the system hands out pages as tiles fill.
-    ``own`` grids are int8 log-odds ``(rows, cols)``; times are seconds of any one clock of this robot.
+    Memory is O(contributors x the area each has seen), 3 bytes a cell, beside 5 bytes a cell for the team.
+    ``own`` grids are int8 log-odds; times are seconds of any one clock of this robot.
     """
 
     def __init__(
@@ -30,15 +30,16 @@ class ReplicatedEvidence(TeamMap):
         shape: tuple[int, int],
         counts_size: int,
         *,
+        mark: int = 0,
         resend_after: float = RESEND_AFTER,
     ) -> None:
         """Start with nothing known; ``boot < 2**38`` must differ from those of the robot's earlier starts."""
         tiling = Tiling(*shape)
-        super().__init__(tiling, counts_size)
+        super().__init__(tiling, counts_size, mark)
         self._codec = EvidenceCodec(tiling, counts_size, CodePacking())
-        self._words: NDArray[np.int32] = np.zeros((tiling.count, CELLS), dtype=np.int32)
+        self._words: TiledGrid[np.int32] = TiledGrid(tiling, np.int32)
         self._contributors: Contributors[Snapshot[np.uint8], Delta[np.uint8]] = Contributors(
-            robot, boot, lambda: Snapshot(tiling.count, counts_size, np.uint8), resend_after
+            robot, boot, lambda: Snapshot(tiling, counts_size, np.uint8), resend_after
         )
 
     def contributors(self) -> int:
@@ -46,15 +47,15 @@ class ReplicatedEvidence(TeamMap):
         return len(self._contributors.known())
 
     def publish(
-        self, own: NDArray[np.int8], changed: NDArray[np.int64] | None, counts: NDArray[np.int64] | None
+        self, own: TiledGrid[np.int8], changed: NDArray[np.int64] | None, counts: NDArray[np.int64] | None
     ) -> NDArray[np.int64]:
         """Share the tiles of ``own`` that hold ``changed`` flat cells (None: find those whose class changed).
 
         Returns the tiles in which the team map changed.
         """
         published = self._contributors.own
-        tiles = tiles_to_publish(self._tiling, own, changed, published)
-        return self._merge([published.write(tiles, codes_of(self._tiling.gather(own, tiles)), counts)])
+        tiles = tiles_to_publish(own, changed, published)
+        return self._merge([published.write(tiles, codes_of(own.read(tiles)), counts)])
 
     def set_neighbours(self, neighbours: Sequence[int]) -> None:
         """Exchange with exactly these robots from now on; the graph may have cycles."""
@@ -78,8 +79,9 @@ class ReplicatedEvidence(TeamMap):
         changed = [NONE]
         for change in changes:
             if change is not None:
-                self._words[change.tiles] += WORDS[change.after] - WORDS[change.before]
+                more = WORDS[change.after] - WORDS[change.before]
+                self._words.write(change.tiles, self._words.read(change.tiles) + more)
                 self.counts += change.more_counts
                 changed.append(change.tiles)
         tiles = np.unique(np.concatenate(changed))
-        return self.show(tiles, classes_of(self._words[tiles]))
+        return self.show(tiles, classes_of(self._words.read(tiles)))

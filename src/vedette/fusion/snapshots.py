@@ -8,7 +8,8 @@ from typing import Generic, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.fusion.tiles import CELLS, CLASSES, Tiling, codes_of
+from vedette.fusion.tiles import CLASSES, codes_of
+from vedette.kernels.tiles import CELLS, TiledGrid, Tiling
 
 ValueT = TypeVar("ValueT", np.uint8, np.int32)  # of a cell
 
@@ -49,27 +50,27 @@ class Snapshot(Generic[ValueT]):
     Every holder's copy equals the writer's own at that version: a difference is applied whole or not at
     all, so "the later version wins" merges copies, and merging is idempotent and commutative. Each cell
     remembers the version that last changed it (from 65535 versions on, that it changed late: differences
-    then repeat some cells). Memory: 3 or 6 bytes a cell, allocated by the system as tiles fill.
+    then repeat some cells). Memory: 3 or 6 bytes a cell of the tiles ever written.
     """
 
-    def __init__(self, tile_count: int, counts_size: int, dtype: type[ValueT]) -> None:
+    def __init__(self, tiling: Tiling, counts_size: int, dtype: type[ValueT]) -> None:
         self.version = 0
-        self.values: NDArray[ValueT] = np.zeros((tile_count, CELLS), dtype=dtype)
+        self.values: TiledGrid[ValueT] = TiledGrid(tiling, dtype)
         self.counts: NDArray[np.int64] = np.zeros(counts_size, dtype=np.int64)
-        self._stamps: NDArray[np.uint16] = np.zeros((tile_count, CELLS), dtype=np.uint16)
-        self._versions: NDArray[np.int64] = np.zeros(tile_count, dtype=np.int64)
+        self._stamps: TiledGrid[np.uint16] = TiledGrid(tiling, np.uint16)
+        self._versions: NDArray[np.int64] = np.zeros(1, dtype=np.int64)  # of the tile in each slot
         self._counts_version = 0
 
     @property
     def known_tiles(self) -> NDArray[np.int64]:
         """Tiles ever written, increasing."""
-        return np.flatnonzero(self._versions)
+        return np.sort(self.values.held)
 
     def write(
         self, tiles: NDArray[np.int64], blocks: NDArray[ValueT], counts: NDArray[np.int64] | None = None
     ) -> Change[ValueT] | None:
         """As the writer: set ``(len(tiles), 1024)`` values; a new version if anything differs, else None."""
-        mask = blocks != self.values[tiles]
+        mask = blocks != self.values.read(tiles)
         rows = np.flatnonzero(mask.any(axis=1))
         fresh = counts if counts is not None and not np.array_equal(counts, self.counts) else None
         if len(rows) == 0 and fresh is None:
@@ -80,23 +81,26 @@ class Snapshot(Generic[ValueT]):
 
     def since(self, base: int) -> Delta[ValueT]:
         """Return the difference from version ``base`` to this one."""
-        tiles = np.flatnonzero(self._versions > base)
-        mask = self._stamps[tiles] > min(base, _LAST_STAMP - 1)
+        held = self.values.held
+        tiles = np.sort(held[self._versions[1 : 1 + len(held)] > base])
+        mask = self._stamps.read(tiles) > min(base, _LAST_STAMP - 1)
         counts = self.counts.copy() if self._counts_version > base else None
-        return Delta(base, self.version, tiles, mask, self.values[tiles][mask], counts)
+        return Delta(base, self.version, tiles, mask, self.values.read(tiles)[mask], counts)
 
     def apply(self, delta: Delta[ValueT]) -> Change[ValueT] | None:
         """Advance to ``delta.version``; None if it is old news or does not connect to this version."""
         if not delta.base <= self.version < delta.version:
             return None
-        before = self.values[delta.tiles]
+        before = self.values.read(delta.tiles)
         after = before.copy()
         after[delta.mask] = delta.values
-        stamps = self._stamps[delta.tiles]
+        stamps = self._stamps.read(delta.tiles)
         stamps[delta.mask] = min(delta.version, _LAST_STAMP)
-        self.values[delta.tiles] = after
-        self._stamps[delta.tiles] = stamps
-        self._versions[delta.tiles] = delta.version
+        self.values.write(delta.tiles, after)
+        self._stamps.write(delta.tiles, stamps)
+        more = len(self.values.blocks) - len(self._versions)
+        self._versions = np.pad(self._versions, (0, more)) if more else self._versions
+        self._versions[self.values.slots[delta.tiles]] = delta.version
         self.version = delta.version
         return Change(delta.tiles, before, after, self._replace_counts(delta))
 
@@ -110,13 +114,14 @@ class Snapshot(Generic[ValueT]):
 
 
 def tiles_to_publish(
-    tiling: Tiling, own: NDArray[np.int8], changed: NDArray[np.int64] | None, published: Snapshot[np.uint8]
+    own: TiledGrid[np.int8], changed: NDArray[np.int64] | None, published: Snapshot[np.uint8]
 ) -> NDArray[np.int64]:
     """Return the tiles that hold ``changed`` cells, or (None) all whose class differs from the published."""
-    if own.shape != (tiling.rows, tiling.cols):
-        raise ValueError(f"own evidence has shape {own.shape}; the team map has {(tiling.rows, tiling.cols)}")
+    if own.tiling != published.values.tiling:
+        raise ValueError(f"own evidence lies on {own.tiling}; the team map on {published.values.tiling}")
     if changed is not None:
-        return tiling.holding(changed)
-    everywhere = np.arange(tiling.count)
-    classes = CLASSES[codes_of(tiling.gather(own, everywhere))]
-    return np.flatnonzero((classes != CLASSES[published.values]).any(axis=1))
+        return own.tiling.holding(changed)
+    held = np.union1d(own.held, published.values.held)
+    classes = CLASSES[codes_of(own.read(held))]
+    differs: NDArray[np.int64] = held[(classes != CLASSES[published.values.read(held)]).any(axis=1)]
+    return differs

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from vedette.fusion.digest import Digest, fingerprint
+from vedette.kernels.tiles import SIDE, TiledGrid, Tiling
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.maps.bounds import Bounds, Extent
 
-SIDE = 32  # cells along a tile's side
-CELLS = SIDE * SIDE
 FIRM = 6  # |log-odds| from which evidence is firm [units of the robot's own int8 grid]
 MOST_ROBOTS = 2047  # per cell, that a packed sum can hold
 
@@ -68,62 +65,17 @@ def code_of_sums(words: NDArray[np.int32]) -> NDArray[np.uint8]:
     return np.where(words == 0, 0, codes).astype(np.uint8)
 
 
-@dataclass(frozen=True)
-class Tiling:
-    """A ``(rows, cols)`` grid cut into tiles of 32 x 32 cells, numbered row by row; edge tiles are padded."""
-
-    rows: int
-    cols: int
-
-    @property
-    def across(self) -> int:
-        """Tiles in a row of tiles."""
-        return -(-self.cols // SIDE)
-
-    @property
-    def count(self) -> int:
-        """Number of tiles."""
-        return self.across * -(-self.rows // SIDE)
-
-    def holding(self, flat: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Return the increasing ids of the tiles that hold these flat (row-major) cells."""
-        row, col = np.divmod(flat, self.cols)
-        return np.unique(row // SIDE * self.across + col // SIDE)
-
-    def gather(self, grid: NDArray[np.int8], tiles: NDArray[np.int64]) -> NDArray[np.int8]:
-        """Return ``(len(tiles), 1024)``: the grid's tiles, zero outside the grid."""
-        blocks = np.zeros((len(tiles), SIDE, SIDE), dtype=grid.dtype)
-        for block, tile in zip(blocks, tiles.tolist(), strict=True):
-            part = grid[self._window(tile)]
-            block[: part.shape[0], : part.shape[1]] = part
-        return blocks.reshape(-1, CELLS)
-
-    def paint(self, grid: NDArray[np.uint8], tile: int, block: NDArray[np.uint8]) -> None:
-        """Write one tile's ``(1024,)`` cells into the grid, leaving out what lies outside."""
-        part = grid[self._window(tile)]
-        part[:] = block.reshape(SIDE, SIDE)[: part.shape[0], : part.shape[1]]
-
-    def inside(self, tiles: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Return ``(len(tiles), 1024)``: which cells of the padded tiles lie in the grid."""
-        top, left = np.divmod(tiles, self.across)
-        offsets = np.arange(SIDE)
-        rows = top[:, None] * SIDE + offsets < self.rows
-        cols = left[:, None] * SIDE + offsets < self.cols
-        return (rows[:, :, None] & cols[:, None, :]).reshape(-1, CELLS)
-
-    def _window(self, tile: int) -> tuple[slice, slice]:
-        row, col = divmod(tile, self.across)
-        return slice(row * SIDE, (row + 1) * SIDE), slice(col * SIDE, (col + 1) * SIDE)
-
-
 class TeamMap:
-    """The team's classes and counts as one robot knows them, with a digest kept up tile by tile."""
+    """The team's classes and counts as one robot knows them, with a digest kept up tile by tile.
 
-    def __init__(self, tiling: Tiling, counts_size: int) -> None:
-        self.classes: NDArray[np.uint8] = np.zeros((tiling.rows, tiling.cols), dtype=np.uint8)
+    ``mark`` stands in the digest for what else two robots must agree on, such as where the cells lie.
+    """
+
+    def __init__(self, tiling: Tiling, counts_size: int, mark: int) -> None:
+        self.classes: TiledGrid[np.uint8] = TiledGrid(tiling, np.uint8)
         self.counts: NDArray[np.int64] = np.zeros(counts_size, dtype=np.int64)
         self._tiling = tiling
-        self._shown: NDArray[np.uint8] = np.zeros((tiling.count, CELLS), dtype=np.uint8)
+        self._mark = mark
         self._digest = Digest()  # of the tiles
         self._bounds = Bounds()  # of the tiles shown
 
@@ -134,23 +86,23 @@ class TeamMap:
 
     def show(self, tiles: NDArray[np.int64], classes: NDArray[np.uint8]) -> NDArray[np.int64]:
         """Put ``(len(tiles), 1024)`` classes on the map; return the tiles that changed."""
-        changed = np.flatnonzero((self._shown[tiles] != classes).any(axis=1))
-        for index in changed.tolist():
-            tile, block = int(tiles[index]), classes[index]
-            self._shown[tile] = block
-            self._tiling.paint(self.classes, tile, block)
+        differs = (self.classes.read(tiles) != classes).any(axis=1)
+        changed: NDArray[np.int64] = tiles[differs]
+        fresh = classes[differs]
+        self.classes.write(changed, fresh)
+        for tile, block in zip(changed.tolist(), fresh, strict=True):
             self._digest.put(tile, block.tobytes() if block.any() else b"")
-        rows, cols = np.divmod(tiles[changed], self._tiling.across)
-        self._bounds.widen(rows * SIDE, cols * SIDE)
+        rows, cols = self._tiling.corners(changed)
+        self._bounds.widen(rows, cols)
         self._bounds.widen(
-            np.minimum(rows * SIDE + SIDE, self._tiling.rows) - 1,
-            np.minimum(cols * SIDE + SIDE, self._tiling.cols) - 1,
+            np.minimum(rows + SIDE, self._tiling.rows) - 1, np.minimum(cols + SIDE, self._tiling.cols) - 1
         )
-        return tiles[changed]
+        return changed
 
     @property
     def digest(self) -> int:
-        """64 bits, equal (up to 2^-64) for two robots iff their classes and counts are equal."""
+        """64 bits, equal (up to 2^-64) for two robots iff their classes, counts and marks are equal."""
+        digest = self._digest.value ^ self._mark
         if not self.counts.any():
-            return self._digest.value
-        return self._digest.value ^ fingerprint(self.counts.astype("<i8").tobytes(), self._tiling.count)
+            return digest
+        return digest ^ fingerprint(self.counts.astype("<i8").tobytes(), self._tiling.count)

@@ -19,9 +19,41 @@ LAYERS: int = _kernels.LAYERS
 
 _Singles = NDArray[np.float32]
 _Doubles = NDArray[np.float64]
+_Beyond = tuple[float, float, float, float]
+_CellWeights = tuple[_Singles, tuple[int, int], tuple[int, int], _Beyond]
 _Arrays = tuple[
-    _Singles, _Doubles, _Doubles, Keys, Misses, NDArray[np.int64], Keys, Misses, _Singles, _Singles
+    _CellWeights, _Doubles, _Doubles, Keys, Misses, NDArray[np.int64], Keys, Misses, _Singles, _Singles
 ]
+
+
+@dataclass(frozen=True, eq=False)
+class CellWeights:
+    """What the planning cells of a grid are worth: those of a window one by one, those beyond it alike."""
+
+    window: NDArray[np.float32]  # (r, c) [nats]
+    first: tuple[int, int]  # row and column of the window's first cell
+    shape: tuple[int, int]  # of the grid
+    beyond: _Beyond  # of a cell beyond the window: inside the grid, in its last column, last row, both [nats]
+
+    @classmethod
+    def whole(cls, weights: NDArray[np.float32]) -> CellWeights:
+        """Return what is given for each cell of a grid, (N,) [nats]."""
+        return cls(weights[None], (0, 0), (1, len(weights)), (0.0, 0.0, 0.0, 0.0))
+
+    @property
+    def arrays(self) -> _CellWeights:
+        """All of it, as the kernels take it."""
+        return self.window, self.first, self.shape, self.beyond
+
+    def of(self, cells: Keys) -> NDArray[np.float32]:
+        """Return what some flat cells of the grid are worth [nats]."""
+        row, col = np.divmod(cells.astype(np.int64), self.shape[1])
+        last = 2 * (row + 1 == self.shape[0]) + (col + 1 == self.shape[1])
+        worth: _Singles = np.array(self.beyond, np.float32)[last]
+        row, col = row - self.first[0], col - self.first[1]
+        inside = (row >= 0) & (row < self.window.shape[0]) & (col >= 0) & (col < self.window.shape[1])
+        worth[inside] = self.window[row[inside], col[inside]]
+        return worth
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +88,7 @@ class Viewpoints:
 class TourProblem:
     """One platform's choice of a tour against the others' impact."""
 
-    weights: NDArray[np.float32]  # (N,) worth of each planning cell [nats]
+    weights: CellWeights  # of each planning cell
     layer_weights: NDArray[np.float64]  # (LAYERS,) weight of each time layer
     edges: NDArray[np.float64]  # (LAYERS,) upper edge of each layer [s]; an arrival is in the first it fits
     others: tuple[Keys, Misses]  # sparse impact
@@ -69,7 +101,7 @@ class TourProblem:
         """All of it, as the kernels take it."""
         marks = self.footprints
         return (
-            self.weights, self.layer_weights, self.edges, *self.others,
+            self.weights.arrays, self.layer_weights, self.edges, *self.others,
             marks.starts, marks.cells, marks.misses, self.first_leg, self.legs,
         )  # fmt: skip
 
@@ -143,7 +175,7 @@ def combine(keys_a: Keys, misses_a: Misses, keys_b: Keys, misses_b: Misses) -> t
 
 
 def marginals(
-    weights: NDArray[np.float32],
+    weights: CellWeights,
     layer_weights: NDArray[np.float64],
     others: tuple[Keys, Misses],
     starts: NDArray[np.int64],
@@ -153,12 +185,12 @@ def marginals(
     """``value(others * own_k) - value(others)`` for K sparse impacts given as rows.
 
     Args:
-        weights: (N,) worth of each planning cell [nats].
+        weights: of each planning cell.
         layer_weights: (LAYERS,) weight of each time layer.
         others: the rest of the team's sparse impact.
         starts, keys, misses: (K + 1,), (M,), (M,) the candidates.
     """
-    return _kernels.marginals(weights, layer_weights, *others, starts, keys, misses)
+    return _kernels.marginals(weights.arrays, layer_weights, *others, starts, keys, misses)
 
 
 def best_tour(

@@ -6,11 +6,14 @@ counter-clockwise. Arrays that do not fit raise ``ValueError``.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
 from vedette import _kernels
 from vedette.kernels._arrays import Mask, flags, floats, mask_bytes
+from vedette.kernels.tiles import TiledGrid
 
 
 def cast_rays(
@@ -45,7 +48,7 @@ def cast_rays(
 
 
 def integrate_scan(
-    log_odds: NDArray[np.int8],
+    log_odds: TiledGrid[np.int8],
     resolution: float,
     x: float,
     y: float,
@@ -65,7 +68,7 @@ def integrate_scan(
     ignored.
 
     Args:
-        log_odds: ``(R, C)``, C-contiguous; changed in place.
+        log_odds: changed in place.
         resolution: cell side [m].
         x: sensor [m].
         y: sensor [m].
@@ -80,23 +83,26 @@ def integrate_scan(
     Returns:
         Sorted flat indices of the cells whose class changed.
     """
-    return _kernels.integrate_scan(
+    return _fused(
         log_odds,
-        resolution,
-        x,
-        y,
-        floats(angles),
-        floats(ranges),
-        flags(hits),
-        gain_hit,
-        gain_miss,
-        clamp,
-        nudge,
+        lambda: _kernels.integrate_scan(
+            _tiles(log_odds),
+            resolution,
+            x,
+            y,
+            floats(angles),
+            floats(ranges),
+            flags(hits),
+            gain_hit,
+            gain_miss,
+            clamp,
+            nudge,
+        ),
     )
 
 
 def integrate_blurred_scan(
-    log_odds: NDArray[np.int8],
+    log_odds: TiledGrid[np.int8],
     resolution: float,
     x: float,
     y: float,
@@ -125,24 +131,27 @@ def integrate_blurred_scan(
     Returns:
         Sorted flat indices of the cells whose class changed.
     """
-    return _kernels.integrate_blurred_scan(
+    return _fused(
         log_odds,
-        resolution,
-        x,
-        y,
-        floats(angles),
-        floats(ranges),
-        flags(hits),
-        floats(margins),
-        gain_hit,
-        gain_miss,
-        clamp,
-        nudge,
+        lambda: _kernels.integrate_blurred_scan(
+            _tiles(log_odds),
+            resolution,
+            x,
+            y,
+            floats(angles),
+            floats(ranges),
+            flags(hits),
+            floats(margins),
+            gain_hit,
+            gain_miss,
+            clamp,
+            nudge,
+        ),
     )
 
 
 def count_sightings(
-    log_odds: NDArray[np.int8],
+    log_odds: TiledGrid[np.int8],
     resolution: float,
     x: float,
     y: float,
@@ -161,7 +170,7 @@ def count_sightings(
     it.
 
     Args:
-        log_odds: ``(R, C)`` before the scan is fused; 0 is unknown.
+        log_odds: before the scan is fused; 0 is unknown.
         resolution, x, y, angles, ranges, hits, nudge: as for ``integrate_scan``.
         max_range: [m].
         bin_m: bin width [m].
@@ -172,7 +181,7 @@ def count_sightings(
         seen by the length of unknown cells crossed before on the beam.
     """
     return _kernels.count_sightings(
-        np.ascontiguousarray(log_odds, dtype=np.int8),
+        _tiles(log_odds),
         resolution,
         x,
         y,
@@ -184,3 +193,19 @@ def count_sightings(
         stride,
         nudge,
     )
+
+
+def _tiles(
+    grid: TiledGrid[np.int8],
+) -> tuple[NDArray[np.int32], NDArray[np.int8], tuple[int, int]]:
+    """Return slots, blocks and shape of a grid, as the kernels take it."""
+    return grid.slots, grid.blocks, (grid.tiling.rows, grid.tiling.cols)
+
+
+def _fused(grid: TiledGrid[np.int8], fuse: Callable[[], tuple[bool, NDArray[np.int64]]]) -> NDArray[np.int64]:
+    """Return the cells that changed, once the grid holds all tiles that the scan touches."""
+    done, cells = fuse()
+    if not done:
+        grid.claim(cells)
+        _, cells = fuse()
+    return cells

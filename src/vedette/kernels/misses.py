@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from vedette import wire
 
 STEPS_PER_NAT = 16.0
+MOST_ENTRIES = 1 << 24  # of an impact, whatever the grid; more are refused
 CERTAIN = 255  # log-misses saturate here
 
 Keys = NDArray[np.uint32]
@@ -63,7 +64,8 @@ class MissesCodec:
         self._cells, self._layers, self._runs, self._level = cells, layers, runs, level
         self._places = cells * layers // runs  # of a run
         # two bytes an entry, four more a wide gap: a run's gaps sum to less than its places
-        self._largest = runs * (4 + 2 * self._places + 4 * (self._places // 255))
+        entries = min(runs * self._places, MOST_ENTRIES)
+        self._largest = 4 * runs + 2 * entries + 4 * min(runs * (self._places // 255), entries)
 
     @property
     def bound(self) -> int:

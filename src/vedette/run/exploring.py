@@ -125,7 +125,7 @@ class Explore(_Mission):
     @property
     def map(self) -> NDArray[np.uint8]:
         """``(R, C)`` what the living robots know together now: UNKNOWN, FREE or OCCUPIED."""
-        return union_map(views(self.simulation))
+        return union_map(views(self.simulation), self.world.frame)
 
     def run(self, progress: Callable[[ExploreSnapshot], object] | None = None) -> ExploreResult:
         """Explore to the end; ``progress`` is called with a snapshot every second."""

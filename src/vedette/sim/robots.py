@@ -7,9 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.agent.effects import Drive, Motion
+from vedette.agent.effects import Drive, Motion, Route
 from vedette.agent.events import Arrived, Event, Pose, Scan, Stuck
 from vedette.kernels.lidar import cast_rays
+from vedette.maps.laid import laid
 from vedette.maps.world import World
 from vedette.outcome import NO_PROGRESS, Outcome
 from vedette.sim.body import Bodies
@@ -44,6 +45,7 @@ class Robots:
         self._stuck_told = [0.0] * n
         self._told_arrival = [True] * n
         self._last_change = 0.0
+        self._laid: dict[int, tuple[NDArray[np.bool_], NDArray[np.bool_]]] = {}  # by robot, of its last route
 
     @property
     def alive(self) -> NDArray[np.bool_]:
@@ -108,7 +110,7 @@ class Robots:
         if route is None:
             self.bodies.command(i, None)
             return
-        path, passable, facing = route.path - self.corner, route.passable, route.facing
+        path, passable, facing = route.path - self.corner, self._on_the_ground(i, route), route.facing
         localiser = self._localisers[i]
         if localiser is not None:
             east, north, turn = localiser.error.tolist()
@@ -118,6 +120,13 @@ class Robots:
             facing = None if facing is None else facing - turn
         self.bodies.command(i, path, passable, route.room, facing)
         self._last_change = now
+
+    def _on_the_ground(self, i: int, route: Route) -> NDArray[np.bool_]:
+        """Return where a robot's map allows its centre, on the world's own grid."""
+        known = self._laid.get(i)
+        if known is None or known[0] is not route.passable:
+            self._laid[i] = known = route.passable, laid(route.passable, route.frame, self._world.frame)
+        return known[1]
 
     def advance(self, now: float, dt: float) -> None:
         """Move everybody for a tick."""

@@ -32,6 +32,7 @@ from vedette.errors import InputError
 from vedette.kernels.coverage import LAYERS
 from vedette.kernels.distance import distance_field
 from vedette.kernels.frontier import traversable
+from vedette.kernels.reference.coverage import dense
 from vedette.problem import exhaustive
 
 Places = list[tuple[float, float]]
@@ -267,7 +268,7 @@ def test_a_robot_without_a_route_goes_only_where_nobody_else_would() -> None:
 def test_the_joint_optimum_is_that_of_trying_everything(seed: int) -> None:
     rng = np.random.default_rng(seed)
     belief = frozen(worth=layers.rate())
-    unknown = np.flatnonzero(belief.weights)[:60]  # few, so that impacts overlap
+    unknown = np.flatnonzero(dense(belief.weights))[:60]  # few, so that impacts overlap
 
     def impact() -> Impact:
         cells = np.sort(rng.choice(unknown, int(rng.integers(1, 30)), replace=False))

@@ -18,6 +18,7 @@ from vedette.domains.mapping.objective import MappingObjective
 from vedette.kernels.coverage import LAYERS
 from vedette.kernels.misses import CERTAIN
 from vedette.kernels.reference import coverage as reference
+from vedette.kernels.reference.coverage import dense
 from vedette.testing import check_objective
 
 seeds = st.integers(0, 2**32 - 1)
@@ -82,7 +83,7 @@ def test_under_rate_certain_sightings_are_worth_entropy_over_the_time_of_the_fir
     expected = 0.0
     for c, cell in enumerate(cells):
         times = [edges[arrival[robot, c]] for robot in range(3) if sighted[robot, c]]
-        expected += belief.weights[cell] / min(times) if times else 0.0
+        expected += dense(belief.weights)[cell] / min(times) if times else 0.0
     assert OBJECTIVE.value(belief, team) == pytest.approx(expected, rel=1e-9)
 
 
@@ -91,10 +92,10 @@ def test_under_rate_certain_sightings_are_worth_entropy_over_the_time_of_the_fir
 def test_plain_is_the_papers_expected_entropy_in_gain_form_whatever_the_arrivals(seed: int) -> None:
     rng, belief = np.random.default_rng(seed), belief_with(layers.plain())
     robots = [random_impact(rng, 300, most=12) for _ in range(3)]
-    entropy_left = belief.weights.astype(np.float64)
+    entropy_left = dense(belief.weights).astype(np.float64)
     for impact in robots:
         np.multiply.at(entropy_left, impact.keys // LAYERS, np.exp(impact.misses / -16.0))
-    gain = belief.weights.sum(dtype=np.float64) - entropy_left.sum()
+    gain = dense(belief.weights).sum(dtype=np.float64) - entropy_left.sum()
     value = OBJECTIVE.value(belief, functools.reduce(OBJECTIVE.combine, robots))
     assert value == pytest.approx(gain, rel=1e-9, abs=1e-9)
 
@@ -142,9 +143,9 @@ def test_to_see_the_same_earlier_is_never_worth_less(seed: int, worth: TimeLayer
 
 def test_reading_saturation_as_certain_costs_no_more_than_stated() -> None:
     belief = belief_with(layers.plain())
-    cell = int(np.flatnonzero(belief.weights)[0])
+    cell = int(np.flatnonzero(dense(belief.weights))[0])
     key = np.array([cell * LAYERS], np.uint32)
     values = [OBJECTIVE.value(belief, Impact(key, np.array([q], np.uint8))) for q in range(1, 256)]
-    gains = np.diff(values) / float(belief.weights[cell])
+    gains = np.diff(values) / float(dense(belief.weights)[cell])
     assert np.all(np.diff(gains[:-1]) <= 1e-15)  # returns diminish up to the last step
     assert gains[-1] - gains[-2] <= np.exp(-255 / 16)

@@ -16,7 +16,9 @@ from vedette.domains.mapping.sightings import BINS
 from vedette.domains.mapping.stops import CLEARANCES
 from vedette.fusion import ReplicatedEvidence
 from vedette.kernels.frontier import traversable
+from vedette.kernels.tiles import TiledGrid
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
+from vedette.maps.lattice import Lattice
 from vedette.missions.explore.exploring import AVOID_TIME, TRIES, Exploring
 from vedette.team import PlatformSpec
 
@@ -34,7 +36,7 @@ def occupied_near(mission: Exploring, mate: Mate) -> NDArray[np.bool_]:
     mission.publish(0.0)
     away = np.hypot(*(FRAME.centres(np.arange(FRAME.size)) - (mate.x, mate.y)).T)
     near = np.flatnonzero(away < mate.radius + 0.1)
-    return np.equal(mission.fusion.classes.flat[near], OCCUPIED)
+    return np.equal(mission.fusion.classes.window().flat[near], OCCUPIED)
 
 
 def test_team_mates_of_any_size_do_not_get_into_the_map() -> None:
@@ -58,7 +60,7 @@ def test_a_mate_that_drove_on_since_its_beacon_does_not_get_into_the_map() -> No
 def test_what_noisy_scans_show_is_right_up_to_one_cell_from_the_true_walls() -> None:
     mission = explorer()
     look(mission, HERE, times=20)
-    classes, solid = mission.fusion.classes, np.pad(building(), 1, mode="edge")
+    classes, solid = mission.fusion.classes.window(), np.pad(building(), 1, mode="edge")
     around = [solid[1 + r : 102 + r, 1 + c : 144 + c] for r in (-1, 0, 1) for c in (-1, 0, 1)]
     deep_in_walls, deep_in_rooms = np.all(around, axis=0), ~np.any(around, axis=0)
     assert not (classes[deep_in_walls] == FREE).any()
@@ -88,10 +90,11 @@ def test_two_robots_that_exchange_hold_the_same_map_and_freeze_the_same_belief()
     assert one.fusion.digest == other.fusion.digest
     np.testing.assert_array_equal(one.fusion.counts, (one.counts + other.counts).ravel())
     a, b = one.freeze(0.0), other.freeze(0.0)
-    for name in ("classes", "weights", "frontier_cells", "frontier_starts", "counts"):
+    for name in ("classes", "frontier_cells", "frontier_starts", "counts"):
         np.testing.assert_array_equal(getattr(a, name), getattr(b, name))
-    known = np.count_nonzero(one.fusion.classes != UNKNOWN)
-    assert known > np.count_nonzero(one.log_odds) > 0
+    np.testing.assert_array_equal(a.weights.window, b.weights.window)
+    known = np.count_nonzero(one.fusion.classes.window() != UNKNOWN)
+    assert known > np.count_nonzero(one.log_odds.window()) > 0
 
 
 def prepared(mission: Exploring, now: float = 0.0) -> None:
@@ -134,7 +137,8 @@ def test_a_goal_is_served_when_a_mate_has_seen_most_of_what_it_was_to_reveal() -
     assert not mission.served()
     x, y = mission.strategy.targets[0].tolist()
     row, col = FRAME.cell(x, y)
-    mission.log_odds[row - 6 : row + 7, col - 6 : col + 7] = -4
+    near = np.arange(FRAME.size).reshape(FRAME.shape)[row - 6 : row + 7, col - 6 : col + 7].ravel()
+    mission.log_odds.put(near, np.full(len(near), -4, np.int8))
     mission.fusion.publish(mission.log_odds, None, None)
     assert mission.served()
 
@@ -151,9 +155,9 @@ def before_a_passage(width: int) -> NDArray[np.uint8]:
 def broad_explorer(classes: NDArray[np.uint8]) -> Exploring:
     """Return the mission of a robot 0.48 m across that knows this map."""
     fusion = ReplicatedEvidence(0, 1, FRAME.shape, 4 * BINS)
-    fusion.publish(np.array([0, -20, 20], np.int8)[classes], None, None)
+    fusion.publish(TiledGrid.of(np.array([0, -20, 20], np.int8)[classes]), None, None)
     spec = PlatformSpec(range=4.0, radius=0.24)
-    return Exploring(FRAME, spec, planner("tours"), fusion)
+    return Exploring(Lattice(FRAME), spec, planner("tours"), fusion)
 
 
 def test_a_robot_takes_a_narrow_way_where_there_is_no_wider_one_and_none_that_its_body_does_not_fit() -> None:

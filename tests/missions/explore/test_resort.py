@@ -18,6 +18,7 @@ from vedette.kernels.distance import distance_field
 from vedette.kernels.lidar import cast_rays
 from vedette.maps import FREE, UNKNOWN
 from vedette.maps.disc import cells_under
+from vedette.maps.lattice import Lattice
 from vedette.missions.explore.exploring import Exploring
 from vedette.missions.explore.looking import Looking
 from vedette.missions.explore.resort import CREEP, CREEPS, LastResort
@@ -33,7 +34,7 @@ NARROW = PlatformSpec(range=4.0, view=45.0, radius=0.21)  # what it lies on is n
 def explorer(robot: int, spec: PlatformSpec) -> Exploring:
     """A robot's mission of which nothing is seen yet."""
     fusion = ReplicatedEvidence(robot, 1 + robot, FRAME.shape, 4 * BINS)
-    return Exploring(FRAME, spec, planner("tours"), fusion)
+    return Exploring(Lattice(FRAME), spec, planner("tours"), fusion)
 
 
 def look(mission: Exploring, pose: Pose) -> None:
@@ -61,12 +62,12 @@ def test_where_a_robot_stands_is_free_to_it_and_to_its_mates_and_what_it_sees_st
     look(seen, HERE)
     exchange(mission, mate)
     under = cells_under(FRAME, HERE.x, HERE.y, NARROW.radius)
-    assert (seen.log_odds.flat[under] == 0).any()
-    assert (mate.fusion.classes.flat[under] == FREE).all()
+    assert (seen.log_odds.take(under) == 0).any()
+    assert (mate.fusion.classes.take(under) == FREE).all()
     elsewhere = np.setdiff1d(np.arange(FRAME.size), under)
-    np.testing.assert_array_equal(mission.log_odds.flat[elsewhere], seen.log_odds.flat[elsewhere])
-    known = np.flatnonzero(seen.log_odds)
-    np.testing.assert_array_equal(mission.log_odds.flat[known], seen.log_odds.flat[known])
+    np.testing.assert_array_equal(mission.log_odds.take(elsewhere), seen.log_odds.take(elsewhere))
+    known = np.flatnonzero(seen.log_odds.window())
+    np.testing.assert_array_equal(mission.log_odds.take(known), seen.log_odds.take(known))
 
 
 def test_a_robot_that_is_told_its_place_inexactly_claims_what_is_under_it_anyway() -> None:
@@ -74,8 +75,8 @@ def test_a_robot_that_is_told_its_place_inexactly_claims_what_is_under_it_anyway
     look(mission, Pose(HERE.x, HERE.y, HERE.heading, deviation=0.06))
     under = cells_under(FRAME, HERE.x, HERE.y, NARROW.radius)
     sure = cells_under(FRAME, HERE.x, HERE.y, NARROW.radius - 0.12)
-    assert (mission.log_odds.flat[sure] < 0).all()
-    assert (mission.log_odds.flat[under] == 0).any()
+    assert (mission.log_odds.take(sure) < 0).all()
+    assert (mission.log_odds.take(under) == 0).any()
 
 
 def turn_round(mission: Exploring, pose: Pose) -> list[Pose]:
@@ -109,7 +110,7 @@ def test_a_robot_that_has_seen_little_finds_a_way_by_turning_on_the_spot() -> No
 def knowing(classes: NDArray[np.uint8]) -> Exploring:
     """The mission of a robot that knows this much of the room."""
     mission = explorer(0, NARROW)
-    mission.log_odds[:] = np.array([0, -20, 20], np.int8)[classes]
+    mission.log_odds.put(np.arange(FRAME.size), np.array([0, -20, 20], np.int8)[classes].ravel())
     mission.fusion.publish(mission.log_odds, None, None)
     return mission
 

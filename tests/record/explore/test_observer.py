@@ -52,7 +52,8 @@ def view(
     x, y, heading = STARTS[i].tolist()
     sample = RobotSample(x, y, heading, "idle", alive, np.empty((0, 2)), SPECS[i].name, None)
     own = classes != UNKNOWN if seen is None else seen
-    return RobotView(sample, classes, own, impact, figures or GroundFigures())
+    frame = GridFrame(WORLD.frame.resolution, *classes.shape)
+    return RobotView(sample, frame, classes, own, impact, figures or GroundFigures())
 
 
 def columns(*known: int, kind: int = FREE) -> NDArray[np.uint8]:
@@ -73,8 +74,6 @@ def test_a_robot_holds_what_is_fused_and_its_own_cells_that_are_not_published_ye
     held = held_map(fused, own)
     np.testing.assert_array_equal(held, [[FREE, OCCUPIED, UNKNOWN, FREE, OCCUPIED, FREE]])
     assert not np.shares_memory(held, fused)
-    wide = [np.pad(grid, ((2, 3), (4, 1))) for grid in (fused, own, held)]
-    np.testing.assert_array_equal(held_map(*wide[:2], (slice(2, 4), slice(3, 10))), wide[2])
 
 
 @settings(deadline=None, max_examples=30)
@@ -85,7 +84,7 @@ def test_the_union_knows_what_any_living_robot_holds_occupied_before_free(n: int
     alive = rng.random(n) < 0.7
     team = [view(0, classes, bool(lives)) for classes, lives in zip(maps, alive, strict=True)]
     counted = maps[alive] if alive.any() else maps
-    union = union_map(team)
+    union = union_map(team, team[0].frame)
     for cell in np.ndindex(3, 4):
         held = set(counted[(slice(None), *cell)].tolist())
         expected = OCCUPIED if OCCUPIED in held else FREE if FREE in held else UNKNOWN
@@ -139,7 +138,7 @@ def test_a_team_of_the_dead_is_not_apart_and_leaves_what_all_held() -> None:
     looking.look(0.0, dead, ())
     looking.finish(2.0, dead, ())
     assert looking.apart_s == 0.0
-    np.testing.assert_array_equal(looking.delivered_map(), union_map(dead))
+    np.testing.assert_array_equal(looking.delivered_map(), union_map(dead, WORLD.frame))
     assert looking.log.last.coverage == pytest.approx(3 / COLS)
 
 
@@ -219,10 +218,10 @@ def test_a_simulated_team_is_seen_as_it_is() -> None:
     team = views(simulation)
     for i, robot in enumerate(team):
         assert (robot.sample.x, robot.sample.y, robot.sample.heading) == simulation.pose(i)
-        own = simulation.missions[i].log_odds
-        np.testing.assert_array_equal(robot.seen, own != 0)
+        own = simulation.missions[i].log_odds.window()
+        np.testing.assert_array_equal(robot.seen_on(simulation.world.frame), own != 0)
         assert (robot.classes[robot.seen] != UNKNOWN).all()
-        assert not np.shares_memory(robot.classes, simulation.missions[i].fusion.classes)
+        assert not np.shares_memory(robot.classes, simulation.missions[i].fusion.classes.blocks)
         assert robot.figures.travelled_m == report.summary.path_m[robot.sample.name]
         assert robot.figures.messages == report.summary.messages[robot.sample.name]
     assert report.summary.apart_s == 0.0

@@ -81,8 +81,8 @@ def test_what_a_dead_robot_has_told_still_counts() -> None:
     simulation = prepare(small_maze(), robots(2), ExploreSetup(kills=((1, 15.0),), max_time=15.5))
     report = explore(simulation)
     assert report.summary.coverage > 0.0
-    before = simulation.missions[0].fusion.classes != UNKNOWN
-    own = simulation.missions[0].log_odds != 0
+    before = simulation.missions[0].fusion.classes.window() != UNKNOWN
+    own = simulation.missions[0].log_odds.window() != 0
     assert (before & ~own).any()  # some of the survivor's map is the dead robot's
     covered = Reference(simulation.world, simulation.specs, simulation.starts).coverable
     assert report.summary.coverage == pytest.approx(float((before | own)[covered].mean()), abs=1e-6)
@@ -148,7 +148,7 @@ def test_team_mates_are_not_in_the_map() -> None:
     simulation, report = run(drawn(ROOM), specs)
     check_complete(report)
     for mission in simulation.missions:
-        assert not ((mission.fusion.classes == OCCUPIED) & ~simulation.world.solid)[7:-7, 7:-7].any()
+        assert not ((mission.fusion.classes.window() == OCCUPIED) & ~simulation.world.solid)[7:-7, 7:-7].any()
 
 
 def test_given_starts_are_kept() -> None:

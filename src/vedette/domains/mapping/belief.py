@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 from vedette.domains.mapping.frontier_worth import frontier_areas, spread_behind
 from vedette.domains.mapping.layers import TimeLayers, rate
 from vedette.domains.mapping.outlook import mean_promise
+from vedette.kernels.coverage import CellWeights
 from vedette.kernels.frontier import find_frontiers
 from vedette.maps import UNKNOWN, GridFrame
+from vedette.maps.area import Area
 from vedette.maps.bounds import EVERYWHERE, Extent
 
 PLANNING_CELL = 0.2  # [m]; coarser costs quality, finer only bytes (docs/mapping.md, section 3)
@@ -31,7 +33,7 @@ class MapBelief:
     factor: int  # side of a planning cell [cells]
     first: tuple[int, int]  # planning cell (row, col) at the window's corner
     unknown: NDArray[np.uint16]  # (r, c) unknown cells of each planning cell in the window
-    weights: NDArray[np.float32]  # (planning.size,) worth of each planning cell [nats]
+    weights: CellWeights  # of each planning cell of the whole map
     frontier_cells: NDArray[np.int64]  # (M,) flat cells of the window, by cluster
     frontier_starts: NDArray[np.int64]  # (K + 1,)
     layers: TimeLayers
@@ -77,6 +79,7 @@ def freeze(
     layers: TimeLayers,
     counts: NDArray[np.int64],
     known: Extent = EVERYWHERE,
+    area: Area | None = None,
 ) -> MapBelief:
     """Snapshot a team map for a round.
 
@@ -84,8 +87,8 @@ def freeze(
     cells that touch a frontier carry the area that the frontier stands for.  docs/mapping.md (V24)
 
     Args:
-        classes: (R, C) team map; copied.
-        frame: where it lies.
+        classes: (R, C) the part of the team map within ``known``; copied.
+        frame: where the whole map lies.
         reach: how far beyond what is known the sensors may see [m].
         extent: longest frontier before it is split [m].
         shortest: length from which a frontier counts [m].
@@ -95,12 +98,17 @@ def freeze(
         layers: the time layers of the objective.
         counts: (4, BINS) the team's sightings.
         known: rows and columns outside of which nothing is known.
+        area: outside of which there is nothing to see and no way; None: everywhere is the team's.
     """
     factor = planning_factor(frame.resolution)
     planning = frame.coarse(factor)
-    rows, cols = _window(classes, known, factor, int(np.ceil(reach / frame.resolution)))
-    crop = classes[rows, cols].copy()  # the map goes on changing while a round lasts
+    corner = known[0].start or 0, known[1].start or 0
+    rows, cols = _window(classes, corner, frame, factor, int(np.ceil(reach / frame.resolution)))
+    crop = np.zeros((rows.stop - rows.start, cols.stop - cols.start), np.uint8)
+    _paste(classes, crop, (corner[0] - rows.start, corner[1] - cols.start))
     window = frame.window(rows, cols)
+    if area is not None:
+        crop = area.close(crop, window)
     cells, starts = find_frontiers(crop, *frontier_limits(extent, frame.resolution, shortest))
     unknown = _block_sum(crop == UNKNOWN, factor)
     local = unknown.astype(np.float32) * LN2
@@ -112,8 +120,7 @@ def freeze(
     if gathering and areas.any():
         local += LN2 / frame.resolution**2 * spread_behind(crop, cells, starts, areas, factor)
     first = (rows.start // factor, cols.start // factor)
-    weights = _all_unknown(frame, factor)  # outside the window; each robot's is its own
-    weights[first[0] : first[0] + local.shape[0], first[1] : first[1] + local.shape[1]] = local
+    weights = CellWeights(local, first, planning.shape, _all_unknown(frame, factor))
     return MapBelief(
         window,
         crop,
@@ -121,7 +128,7 @@ def freeze(
         factor,
         first,
         unknown,
-        weights.ravel(),
+        weights,
         cells,
         starts,
         layers if gathering else rate(),
@@ -130,35 +137,43 @@ def freeze(
     )
 
 
-def _window(classes: NDArray[np.uint8], known: Extent, factor: int, reach: int) -> tuple[slice, slice]:
-    """The known part, grown by the sensor's reach and aligned to planning cells."""
+def _window(
+    classes: NDArray[np.uint8], corner: tuple[int, int], frame: GridFrame, factor: int, reach: int
+) -> Extent:
+    """The known part, grown by the reach, aligned to planning cells; one of them if nothing is known."""
 
     def span(known: NDArray[np.uint8], size: int, offset: int) -> slice:
         where = np.flatnonzero(known) + offset
         if not len(where):
-            return slice(0, size)
+            return slice(0, min(size, factor))
         start = max(0, int(where[0]) - reach) // factor * factor
         return slice(start, min(size, -(-(int(where[-1]) + 1 + reach) // factor) * factor))
 
-    crop = classes[known]
     return (
-        span(crop.max(axis=1, initial=0), classes.shape[0], known[0].start or 0),
-        span(crop.max(axis=0, initial=0), classes.shape[1], known[1].start or 0),
+        span(classes.max(axis=1, initial=0), frame.rows, corner[0]),
+        span(classes.max(axis=0, initial=0), frame.cols, corner[1]),
     )
 
 
-def _all_unknown(frame: GridFrame, factor: int) -> NDArray[np.float32]:
-    """Worth of each planning cell where nothing is known [nats]."""
-    rows, cols, worth = _sizes(frame.rows, factor), _sizes(frame.cols, factor), np.float32(LN2)
-    weights = np.full((len(rows), len(cols)), np.float32(factor) * np.float32(factor) * worth)
-    weights[-1] = rows[-1] * cols * worth
-    weights[:, -1] = rows * cols[-1] * worth
-    return weights
+def _paste(part: NDArray[np.uint8], onto: NDArray[np.uint8], corner: tuple[int, int]) -> None:
+    """Write a part whose first cell lies at ``corner`` of a grid; what lies outside the grid is left out."""
+    low = np.maximum(corner, 0)
+    high = np.minimum(np.add(corner, part.shape), onto.shape)
+    if (low < high).all():
+        inside = part[low[0] - corner[0] : high[0] - corner[0], low[1] - corner[1] : high[1] - corner[1]]
+        onto[low[0] : high[0], low[1] : high[1]] = inside
 
 
-def _sizes(cells: int, factor: int) -> NDArray[np.float32]:
-    """Cells along one side in each planning cell; the last may have fewer."""
-    return np.minimum(factor, cells - np.arange(0, cells, factor)).astype(np.float32)
+def _all_unknown(frame: GridFrame, factor: int) -> tuple[float, float, float, float]:
+    """Worth of a planning cell where nothing is known: inside the map, in its last column, last row, both."""
+    rows, cols = (np.float32(min(factor, size - (size - 1) // factor * factor)) for size in frame.shape)
+    side, worth = np.float32(factor), np.float32(LN2)
+    return (
+        float(side * side * worth),
+        float(side * cols * worth),
+        float(rows * side * worth),
+        float(rows * cols * worth),
+    )
 
 
 def _block_sum(mask: NDArray[np.bool_], factor: int) -> NDArray[np.uint16]:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from vedette.kernels.coverage import LAYERS
 from vedette.kernels.misses import CERTAIN, STEPS_PER_NAT, Misses, MissesCodec, SparseMisses
+from vedette.maps import GridFrame
 from vedette.maps.swept import most_cells_swept
 from vedette.team import Most
 
@@ -32,6 +33,19 @@ def final_miss(impact: Impact, size: int) -> NDArray[np.float32]:
     """Miss probability of every planning cell after the last layer, shape (size,)."""
     total = np.bincount(impact.keys // LAYERS, impact.misses, minlength=size)
     return np.where(total >= CERTAIN, 0.0, np.exp(-total / STEPS_PER_NAT)).astype(np.float32)
+
+
+def moved(impact: Impact, planning: GridFrame, onto: GridFrame) -> Impact:
+    """Return an impact over planning cells as one over those of another grid, without what lies outside."""
+    if planning == onto:
+        return impact
+    cells, layers = np.divmod(impact.keys, np.uint32(LAYERS))
+    x, y = planning.centres(cells).T
+    col = np.floor((x - onto.origin_x) / onto.resolution).astype(np.int64)
+    row = np.floor((y - onto.origin_y) / onto.resolution).astype(np.int64)
+    inside = (row >= 0) & (row < onto.rows) & (col >= 0) & (col < onto.cols)
+    keys = ((row * onto.cols + col) * LAYERS + layers)[inside].astype(np.uint32)
+    return Impact(keys, impact.misses[inside])
 
 
 def check_claim(

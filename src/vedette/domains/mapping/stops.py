@@ -15,6 +15,7 @@ from vedette.domains.mapping.sightings import SightingModel
 from vedette.kernels import coverage, distance, frontier
 from vedette.kernels.coverage import Footprints, Viewpoints
 from vedette.maps import FREE, UNKNOWN, GridFrame
+from vedette.maps.bounds import Extent
 from vedette.team import PlatformSpec
 
 LEAST_SHARE = 0.0008  # of the area known to be free that a stop must promise ...
@@ -90,12 +91,19 @@ def block(passable: NDArray[np.bool_], frame: GridFrame, disc: Disc, radius: flo
     near[rows[:, None] ** 2 + cols**2 < (size + radius) ** 2] = False
 
 
-def unknown_near(classes: NDArray[np.uint8], frame: GridFrame, x: float, y: float) -> int:
-    """Count the unknown cells in a square of about 1.2 m around a point."""
+def around(frame: GridFrame, x: float, y: float) -> Extent:
+    """Return the rows and columns of a square of about 1.2 m around a point."""
     reach = max(1, round(NEARBY / frame.resolution))
     row, col = frame.cell(x, y)
-    window = classes[max(0, row - reach) : row + reach + 1, max(0, col - reach) : col + reach + 1]
-    return int(np.count_nonzero(window == UNKNOWN))
+    return (
+        slice(max(0, row - reach), max(0, row + reach + 1)),
+        slice(max(0, col - reach), max(0, col + reach + 1)),
+    )
+
+
+def unknown_near(classes: NDArray[np.uint8], frame: GridFrame, x: float, y: float) -> int:
+    """Count the unknown cells in a square of about 1.2 m around a point."""
+    return int(np.count_nonzero(classes[around(frame, x, y)] == UNKNOWN))
 
 
 def find_stops(

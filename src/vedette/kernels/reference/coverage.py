@@ -11,7 +11,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.kernels.coverage import LAYERS, TourProblem
+from vedette.kernels.coverage import LAYERS, CellWeights, TourProblem
 from vedette.kernels.misses import CERTAIN, STEPS_PER_NAT, Keys, Misses
 from vedette.kernels.reference.lidar import crossings
 
@@ -169,13 +169,19 @@ def missed(impact: Sparse, cells: int) -> Floats:
     return np.where(total >= CERTAIN, 0.0, np.exp(-total / STEPS_PER_NAT))
 
 
-def value(weights: NDArray[np.float32], layer_weights: Floats, impact: Sparse) -> float:
+def dense(weights: CellWeights) -> NDArray[np.float32]:
+    """Return the worth of every cell of the grid, (N,)."""
+    return weights.of(np.arange(weights.shape[0] * weights.shape[1], dtype=np.uint32))
+
+
+def value(weights: CellWeights, layer_weights: Floats, impact: Sparse) -> float:
     """``sum_s w_s sum_b w_b (1 - m(s, b))``.  docs/mapping.md (V21)"""
-    return float(weights.astype(np.float64) @ (1.0 - missed(impact, len(weights))) @ layer_weights)
+    worth = dense(weights).astype(np.float64)
+    return float(worth @ (1.0 - missed(impact, len(worth))) @ layer_weights)
 
 
 def marginals(
-    weights: NDArray[np.float32],
+    weights: CellWeights,
     layer_weights: Floats,
     others: Sparse,
     starts: NDArray[np.int64],

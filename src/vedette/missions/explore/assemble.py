@@ -12,7 +12,7 @@ from vedette.domains.mapping.planners import planner
 from vedette.domains.mapping.sightings import BINS
 from vedette.errors import check_word
 from vedette.fusion import ChannelFilter, Fusion, ReplicatedEvidence
-from vedette.maps import GridFrame
+from vedette.maps.lattice import Lattice
 from vedette.missions.explore.exploring import Exploring
 from vedette.missions.explore.options import ExploreOptions
 from vedette.team import Most, PlatformSpec
@@ -23,9 +23,9 @@ FUSIONS: Mapping[str, type[ReplicatedEvidence] | type[ChannelFilter]] = {
 }
 
 
-def terms_of(frame: GridFrame, options: ExploreOptions) -> Terms:
+def terms_of(lattice: Lattice, options: ExploreOptions) -> Terms:
     """Return what all of a team have to agree on: not the search behind a planner, nor anybody's body."""
-    how = planner(options.planner)
+    how, resolution = planner(options.planner), lattice.frame.resolution
     objective = {
         "worth after 5 s": float(how.layers.weights.sum()),
         "worth in the end": float(how.layers.weights[-1]),
@@ -35,8 +35,9 @@ def terms_of(frame: GridFrame, options: ExploreOptions) -> Terms:
     }
     return {
         "mission": "explore",
-        **dict(flat("map", frame)),
-        "planning cell": f"{frame.resolution * planning_factor(frame.resolution):g}",
+        **dict(flat("map", lattice.frame)),
+        **({} if lattice.area is None else dict(flat("area", lattice.area))),
+        "planning cell": f"{resolution * planning_factor(resolution):g}",
         **{f"objective.{name}": f"{value:g}" for name, value in objective.items()},
         "scheme": options.negotiates_by,
         "fusion": options.fusion,
@@ -44,7 +45,7 @@ def terms_of(frame: GridFrame, options: ExploreOptions) -> Terms:
 
 
 def assemble(
-    frame: GridFrame,
+    lattice: Lattice,
     spec: PlatformSpec,
     options: ExploreOptions,
     robot: int,
@@ -57,7 +58,7 @@ def assemble(
     """Return a fresh agent of a team.
 
     Args:
-        frame: of the map.
+        lattice: that the team agrees on.
         spec: its body.
         options: how the team explores.
         robot: its number, from 0.
@@ -70,7 +71,7 @@ def assemble(
         InputError: the planner or the way of fusing is unknown, or cannot serve such a team.
     """
     check_word("fusion", options.fusion, FUSIONS)
-    fusion: Fusion = FUSIONS[options.fusion](robot, boot, frame.shape, 4 * BINS)
-    mission = Exploring(frame, spec, planner(options.planner, robots), fusion, most=most)
-    behaviour = GroundBehaviour(mission, Driver(robot, spec, frame), options.return_home, waits_for)
+    fusion: Fusion = FUSIONS[options.fusion](robot, boot, lattice.frame.shape, 4 * BINS, mark=lattice.mark)
+    mission = Exploring(lattice, spec, planner(options.planner, robots), fusion, most=most)
+    behaviour = GroundBehaviour(mission, Driver(robot, spec), options.return_home, waits_for)
     return Agent(robot, boot, spec, behaviour, options.negotiates_by)

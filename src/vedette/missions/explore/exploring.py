@@ -30,15 +30,17 @@ from vedette.domains.mapping.stops import (
     NEARBY,
     VIEW_REACH,
     Disc,
+    around,
     block,
-    unknown_near,
 )
 from vedette.domains.mapping.views import MOST_STOPS
 from vedette.fusion import Fusion
 from vedette.kernels import distance, frontier, lidar
-from vedette.maps import FREE, GridFrame
+from vedette.kernels.tiles import TiledGrid, Tiling
+from vedette.maps import FREE, UNKNOWN, GridFrame
 from vedette.maps.bounds import Bounds, Extent
 from vedette.maps.disc import cells_under
+from vedette.maps.lattice import Lattice
 from vedette.missions.explore.doubts import Doubts
 from vedette.missions.explore.looking import Looking
 from vedette.missions.explore.resort import LastResort, hemmed_in
@@ -60,8 +62,10 @@ WELL_SEEN = 0.5  # nothing is concluded from a look at what is nearer the end of
 IN_THE_WAY = 1.0  # a mate this near a frontier may hide it [m]
 AVOID_TIME = 20.0  # a stop that could not be carried out is left alone for so long, longer each time [s]
 TRIES = 4  # a stop that could not be carried out so often is given up
+JOIN = 4  # cells beyond what is known from which a robot or a goal still joins it
 SERVED_SHARE = 0.4  # a frontier with less than this of its unknown cells left has lost its point
 
+Ways = tuple[Extent, NDArray[np.bool_]]  # where a robot's centre may be of some rows and columns
 
 _NOTHING = np.empty(0, np.int64)
 
@@ -70,7 +74,7 @@ _NOTHING = np.empty(0, np.int64)
 class Exploring:
     """One robot's share of exploring; ``vedette.agent.mission.GroundMission``."""
 
-    frame: GridFrame
+    lattice: Lattice
     spec: PlatformSpec
     planner: Planner
     fusion: Fusion
@@ -79,13 +83,13 @@ class Exploring:
     objective: MappingObjective = field(default_factory=MappingObjective)
     codec: MapImpactCodec = field(init=False)
     platform: MappingPlatform = field(init=False)
-    log_odds: NDArray[np.int8] = field(init=False)  # (R, C) own evidence
+    log_odds: TiledGrid[np.int8] = field(init=False)  # own evidence
     counts: NDArray[np.int64] = field(init=False)  # (4, BINS) own sightings
     _changed: list[NDArray[np.int64]] = field(default_factory=list)  # cells whose own class changed
     _counts_due: float = 0.0
     _seen: Bounds = field(default_factory=Bounds)  # of its own evidence
     _learned: tuple[float, float] | None = None  # where it last learned
-    _then: NDArray[np.int8] = field(init=False)  # (R, C) its evidence then, to the class
+    _then: TiledGrid[np.int8] = field(init=False)  # its evidence then, to the class
     _since: list[NDArray[np.int64]] = field(default_factory=list)  # cells whose own class changed since
     _at: tuple[float, float] = (np.inf, np.inf)  # where it last observed [m], team frame
     _looking: Looking = field(init=False)
@@ -93,16 +97,22 @@ class Exploring:
     _doubts: Doubts = field(init=False)
     _left: list[Leftover] | None = None  # as of the last round; None: there was a stop
     _released: list[tuple[float, float]] = field(default_factory=list)  # stops that could not be carried out
-    _passable: dict[float, tuple[int, NDArray[np.bool_]]] = field(default_factory=dict)  # by clearance
+    _ground: dict[float, tuple[int, Ways]] = field(default_factory=dict)  # by clearance, as of a digest
 
     def __post_init__(self) -> None:
         self.codec = MapImpactCodec(self.frame.coarse(planning_factor(self.frame.resolution)).size)
         self.platform = self.planner.platform(self.spec)
-        self.log_odds, self._then = np.zeros(self.frame.shape, np.int8), np.zeros(self.frame.shape, np.int8)
+        tiling = Tiling(*self.frame.shape)
+        self.log_odds, self._then = TiledGrid(tiling, np.int8), TiledGrid(tiling, np.int8)
         self.counts = empty_counts()
         self._looking = Looking(self.spec, self.frame.resolution)
         self._resort = LastResort(self._looking)
         self._doubts = Doubts(self.spec.radius)
+
+    @property
+    def frame(self) -> GridFrame:
+        """Where the cells lie that there can be."""
+        return self.lattice.frame
 
     # -- evidence -----------------------------------------------------------------------------------
 
@@ -147,8 +157,8 @@ class Exploring:
     def _stand(self, pose: Pose) -> None:
         """Where the robot stands is free, as far as it has not seen what is there."""
         under = cells_under(self.frame, pose.x, pose.y, self.spec.radius - 2.0 * pose.deviation)
-        unseen = under[self.log_odds.flat[under] == 0]
-        self.log_odds.flat[unseen] = -GAIN_MISS
+        unseen = under[self.log_odds.take(under) == 0]
+        self.log_odds.put(unseen, np.full(len(unseen), -GAIN_MISS, np.int8))
         self._note(unseen)
 
     def _note(self, changed: NDArray[np.int64]) -> None:
@@ -191,7 +201,7 @@ class Exploring:
         self.counts[:, : seen.shape[1]] += seen[:, :BINS]
         self._learned = x, y
         for cells in self._since:
-            self._then.flat[cells] = self.log_odds.flat[cells]
+            self._then.put(cells, self.log_odds.take(cells))
         self._since.clear()
 
     def _leave_out(
@@ -253,8 +263,9 @@ class Exploring:
 
     def freeze(self, t0: float) -> MapBelief:
         """Snapshot the team map for a round; tours count time from when it is frozen."""
+        known = self.fusion.known
         return freeze(
-            self.fusion.classes,
+            self.fusion.classes.window(*known),
             self.frame,
             reach=max(self.spec.range, NEARBY + self.frame.resolution),
             extent=longest_frontier(self.spec.range),
@@ -264,7 +275,8 @@ class Exploring:
             turn=self.planner.turn,
             layers=self.planner.layers,
             counts=self.fusion.counts.reshape(4, BINS).copy(),
-            known=self.fusion.known,
+            known=known,
+            area=self.lattice.area,
         )
 
     def prepare(
@@ -292,8 +304,10 @@ class Exploring:
     def _doubtful(self, belief: MapBelief) -> NDArray[np.bool_]:
         """Return ``(R, C)`` which cells of a round's window are occupied, but perhaps by mistake."""
         row, col = (first * belief.factor for first in belief.first)
-        own = self.log_odds[row : row + belief.frame.rows, col : col + belief.frame.cols]
-        return self._doubts.about(belief.classes, own, belief.frame)
+        own = self.log_odds.window(slice(row, row + belief.frame.rows), slice(col, col + belief.frame.cols))
+        doubtful = self._doubts.about(belief.classes, own, belief.frame)
+        area = self.lattice.area
+        return doubtful if area is None else doubtful & area.holds(belief.frame)
 
     @property
     def left_out(self) -> list[Leftover]:
@@ -342,7 +356,8 @@ class Exploring:
         return self._unknown_at(self.strategy.targets[0]) < SERVED_SHARE * planned
 
     def _unknown_at(self, target: NDArray[np.float64]) -> int:
-        return unknown_near(self.fusion.classes, self.frame, *target)
+        near = self.fusion.classes.window(*around(self.frame, *target))
+        return int(np.count_nonzero(near == UNKNOWN))
 
     def reached(self, pose: Pose, mates: Sequence[Mate], now: float) -> bool:
         """Go on to the tour's next stop; the next round sees whether this one changed the map.
@@ -424,49 +439,67 @@ class Exploring:
         A narrow way is taken only where there is no wider one.
         """
         discs = self._discs(pose, mates, blocked, now)
-        source, target = self._cell(pose.x, pose.y), self._cell(*goal)
-        for clearance, passable in self._ways(goal):
+        for clearance, (extent, passable) in self._ways(goal):
+            frame = self.frame.window(*extent)
             if discs:
-                passable = self._within_known(passable[self.fusion.known])
+                passable = passable.copy()
             for disc in discs:
-                block(passable, self.frame, disc, self.spec.radius + clearance)
-            cells = distance.shortest_path(passable, source, target, self.frame.resolution)
+                block(passable, frame, disc, self.spec.radius + clearance)
+            source, target = self._cell(pose.x, pose.y, extent), self._cell(*goal, extent)
+            cells = distance.shortest_path(passable, source, target, frame.resolution)
             if len(cells):
-                path = self.frame.centres(distance.shortcut(passable, cells))
+                path = self.frame.centres(self._in_all(distance.shortcut(passable, cells), extent))
                 path[0] = pose.x, pose.y
                 there = np.hypot(pose.x - goal[0], pose.y - goal[1]) <= THERE and goal == self.goal()
-                return Route(path, passable, clearance, self._facing(pose) if there else None)
+                return Route(path, passable, frame, clearance, self._facing(pose) if there else None)
         return None
 
-    def _ways(self, goal: tuple[float, float]) -> Iterator[tuple[float, NDArray[np.bool_]]]:
+    def _ways(self, goal: tuple[float, float]) -> Iterator[tuple[float, Ways]]:
         """Yield clearances and where they let the robot's centre be, the widest first, the doubtful last."""
         for clearance in CLEARANCES:
             yield clearance, self._passable_now(clearance)
         if self.platform.daring and goal == self.goal():
             yield CLEARANCES[-1], self._passable_daring(CLEARANCES[-1])
 
-    def _cell(self, x: float, y: float) -> int:
-        row, col = self.frame.cell(x, y)
-        return min(max(row, 0), self.frame.rows - 1) * self.frame.cols + min(max(col, 0), self.frame.cols - 1)
+    def _cell(self, x: float, y: float, extent: Extent) -> int:
+        """Return the flat cell of a part of the grid that a point lies in or is nearest to."""
+        (row, col), (rows, cols) = self.frame.cell(x, y), extent
+        row, col = min(max(row, rows.start), rows.stop - 1), min(max(col, cols.start), cols.stop - 1)
+        return int((row - rows.start) * (cols.stop - cols.start) + col - cols.start)
 
-    def _passable_now(self, clearance: float) -> NDArray[np.bool_]:
+    def _in_all(self, cells: NDArray[np.int64], extent: Extent) -> NDArray[np.int64]:
+        """Return flat cells of a part of the grid as those of all of it."""
+        rows, cols = extent
+        row, col = np.divmod(cells, cols.stop - cols.start)
+        flat: NDArray[np.int64] = (row + rows.start) * self.frame.cols + col + cols.start
+        return flat
+
+    def _passable_now(self, clearance: float) -> Ways:
+        """Return where the robot's centre may be; nowhere else."""
         digest = self.fusion.digest
-        known = self._passable.get(clearance)
-        if known is None or known[0] != digest:
-            reach, crop = self.spec.radius + clearance, self.fusion.classes[self.fusion.known]
-            known = digest, self._within_known(frontier.traversable(crop, reach, self.frame.resolution))
-            self._passable[clearance] = known
-        return known[1]
+        if clearance not in self._ground or self._ground[clearance][0] != digest:
+            extent = self._around_known
+            classes = self.fusion.classes.window(*extent)
+            self._ground[clearance] = digest, self._traversable(classes, extent, clearance)
+        return self._ground[clearance][1]
 
-    def _passable_daring(self, clearance: float) -> NDArray[np.bool_]:
-        rows, cols = known = self.fusion.known
-        crop, frame = self.fusion.classes[known], self.frame.window(rows, cols)
-        free = np.where(self._doubts.about(crop, self.log_odds[known], frame), np.uint8(FREE), crop)
-        passable = frontier.traversable(free, self.spec.radius + clearance, frame.resolution)
-        return self._within_known(passable)
+    def _passable_daring(self, clearance: float) -> Ways:
+        extent = self._around_known
+        classes, own = self.fusion.classes.window(*extent), self.log_odds.window(*extent)
+        doubtful = self._doubts.about(classes, own, self.frame.window(*extent))
+        return self._traversable(np.where(doubtful, np.uint8(FREE), classes), extent, clearance)
 
-    def _within_known(self, mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Return a mask over the whole map that holds another within what is known, and nothing outside."""
-        whole = np.zeros(self.frame.shape, np.bool_)  # costs no more than what is written to it
-        whole[self.fusion.known] = mask
-        return whole
+    @property
+    def _around_known(self) -> Extent:
+        """Rows and columns of what the team knows, and as far beyond as a robot or a goal still joins it."""
+        rows, cols = (
+            slice(max(0, known.start - JOIN), min(size, known.stop + JOIN))
+            for known, size in zip(self.fusion.known, self.frame.shape, strict=True)
+        )
+        return rows, cols
+
+    def _traversable(self, classes: NDArray[np.uint8], extent: Extent, clearance: float) -> Ways:
+        """Return where the robot's centre may be on a map of some rows and columns; never beside the area."""
+        if self.lattice.area is not None:
+            classes = self.lattice.area.close(classes, self.frame.window(*extent))
+        return extent, frontier.traversable(classes, self.spec.radius + clearance, self.frame.resolution)

@@ -15,15 +15,16 @@ from vedette import wire
 from vedette.agent import Agent, GroundBehaviour
 from vedette.domains.mapping.impact import MapImpactCodec
 from vedette.domains.mapping.leftovers import Leftover, Why
-from vedette.maps import OCCUPIED, UNKNOWN
+from vedette.maps import OCCUPIED, GridFrame
 from vedette.missions.explore.exploring import Exploring
 from vedette.net.gather import figures_of, path_of
 from vedette.net.report import MOST_BYTES, Condition, Count, Real, inflated
 from vedette.record.explore.log import RobotSample
-from vedette.record.explore.views import GroundFigures, RobotView, held_map, left_out, seen_by
+from vedette.record.explore.views import GroundFigures, RobotView, held, left_out
 
 MOST_CELLS = 1 << 26
 UNTOUCHED = GroundFigures().min_clearance_m  # [m]
+Cells = Annotated[int, Meta(ge=0, le=MOST_CELLS)]
 Grid = Annotated[bytes, Meta(max_length=MOST_BYTES)]
 
 
@@ -36,11 +37,13 @@ class Spot(NamedTuple):
     why: Why
 
 
-class MapContent(msgspec.Struct, frozen=True, array_like=True, tag=2):
-    """A robot's map."""
+class MapContent(msgspec.Struct, frozen=True, array_like=True, tag=3):
+    """A robot's map: the part of the team's lattice outside of which it knows nothing."""
 
-    rows: Annotated[int, Meta(ge=1, le=MOST_CELLS)]
-    cols: Annotated[int, Meta(ge=1, le=MOST_CELLS)]
+    row: Cells  # of the lattice, where the part begins
+    col: Cells
+    rows: Cells
+    cols: Cells
     classes: Grid  # deflated
     seen: Grid  # bits of what its own sensor observed, deflated
     impact: Grid | None  # of its last decision
@@ -62,14 +65,15 @@ class ExploreTeller:
         return cast(Exploring, self.agent.mission)
 
     @property
-    def _held(self) -> NDArray[np.uint8]:
-        return held_map(self._mission.fusion.classes, self._mission.log_odds, self._mission.known)
-
-    @property
-    def known(self) -> float:
-        """Share of the map's cells."""
-        held = self._held
-        return float(np.count_nonzero(held != UNKNOWN) / held.size)
+    def known(self) -> float | None:
+        """Share of the cells of the team's ground; None: nobody knows how large it is."""
+        lattice, known = self._mission.lattice, self._mission.known
+        if lattice.cells is None:
+            return None
+        classes, _ = held(self._mission.fusion.classes, self._mission.log_odds, known)
+        if lattice.area is not None:
+            classes *= lattice.area.holds(lattice.frame.window(*known))
+        return float(np.count_nonzero(classes) / lattice.cells)
 
     def path(self, now: float) -> NDArray[np.float64]:
         """Return the way that the robot wants to go."""
@@ -81,17 +85,23 @@ class ExploreTeller:
         mission, decided = self._mission, self.agent.rounds.impact
         impact = None if decided is None else mission.codec.encode(decided)
         spots = tuple(Spot(each.x, each.y, each.unknown, each.why) for each in mission.left_out)
-        return content(self._held, seen_by(mission.log_odds, mission.known), impact, spots[-1024:])
+        rows, cols = mission.known
+        grids = held(mission.fusion.classes, mission.log_odds, (rows, cols))
+        return content((rows.start, cols.start), *grids, impact, spots[-1024:])
 
 
 def content(
-    classes: NDArray[np.uint8], seen: NDArray[np.bool_], impact: bytes | None, left: tuple[Spot, ...] = ()
+    corner: tuple[int, int],
+    classes: NDArray[np.uint8],
+    seen: NDArray[np.bool_],
+    impact: bytes | None,
+    left: tuple[Spot, ...] = (),
 ) -> bytes:
-    """Return a map as bytes; ``classes`` and ``seen`` are ``(R, C)``."""
+    """Return a map as bytes; ``classes`` and ``seen`` are ``(R, C)`` from a cell of the lattice on."""
     rows, cols = classes.shape
     packed = zlib.compress(np.ascontiguousarray(classes).tobytes(), 1)
     bits = zlib.compress(np.packbits(seen).tobytes(), 1)
-    return _encode(MapContent(rows, cols, packed, bits, impact, left))
+    return _encode(MapContent(*corner, rows, cols, packed, bits, impact, left))
 
 
 def read_content(payload: bytes) -> MapContent:
@@ -103,19 +113,23 @@ def read_content(payload: bytes) -> MapContent:
     return wire.decode(_CONTENTS, payload, "report")
 
 
-def view_of(condition: Condition, payload: bytes, shape: tuple[int, int], codec: MapImpactCodec) -> RobotView:
-    """Return what a robot reports, over a map of this shape.
+def view_of(condition: Condition, payload: bytes, frame: GridFrame, codec: MapImpactCodec) -> RobotView:
+    """Return what a robot reports, over a lattice with this frame.
 
     Raises:
-        ValueError: malformed, or of another map.
+        ValueError: malformed, or of another lattice.
     """
     told = read_content(payload)
-    if (told.rows, told.cols) != shape:
-        raise ValueError(f"report of a map of {told.rows} x {told.cols} cells, not {shape}")
+    end = told.row + told.rows, told.col + told.cols
+    if end[0] > frame.rows or end[1] > frame.cols:
+        raise ValueError(
+            f"report of a map up to cell {end}, beyond the {frame.rows} x {frame.cols} there are"
+        )
     path, at = path_of(condition), (condition.x, condition.y, condition.heading)
     goal = (float(path[-1, 0]), float(path[-1, 1])) if len(path) else None
     return RobotView(
         sample=RobotSample(*at, condition.state, True, path, condition.name, goal),
+        frame=frame.window(slice(told.row, end[0]), slice(told.col, end[1])),
         classes=classes_of(told),
         seen=seen_of(told),
         impact=None if told.impact is None else codec.decode(told.impact),
@@ -135,7 +149,7 @@ def classes_of(told: MapContent) -> NDArray[np.uint8]:
         ValueError: not a map of that size.
     """
     classes = np.frombuffer(inflated(told.classes, _cells(told)), np.uint8)
-    if classes.max() > OCCUPIED:
+    if classes.max(initial=0) > OCCUPIED:
         raise ValueError("report: a cell is neither unknown, free nor occupied")
     return classes.reshape(told.rows, told.cols)
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vedette.agent.body import Body, Shown
-from vedette.maps import GridFrame
+from vedette.maps.lattice import Lattice
 from vedette.maps.world import World
 from vedette.missions.explore.assemble import assemble, terms_of
 from vedette.missions.explore.options import ExploreOptions
@@ -24,7 +24,7 @@ from vedette.team import Most, PlatformSpec
 class _Place(NamedTuple):
     """A body, and where it is."""
 
-    frame: GridFrame  # of the team's map
+    lattice: Lattice  # of the team
     hull: PlatformSpec
     body: Body
     shown: Shown | None
@@ -40,7 +40,7 @@ def explorer(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robo
     place = _simulated(config, folder) if config.body.ros2 is None else _real(config)
     best, options = config.best, config.explore or ExploreOptions()
     agent = assemble(
-        place.frame,
+        place.lattice,
         place.hull,
         options,
         config.robot - 1,
@@ -49,7 +49,7 @@ def explorer(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robo
         most=Most.of([place.hull]) if best is None else Most(best.range, best.speed),
         waits_for=config.robots,
     )
-    terms = {**terms_of(place.frame, options), **place.terms}
+    terms = {**terms_of(place.lattice, options), **place.terms}
     return Robot(agent, place.body, place.shown, ExploreTeller(agent), terms)
 
 
@@ -57,12 +57,12 @@ def _simulated(config: AgentConfig, folder: Path) -> _Place:
     assert config.body.map is not None
     world = World.from_map(folder / config.body.map, config.body.resolution)
     body = simulated_robot(config, world)
-    return _Place(world.frame, body.hull, body, body, {"map.content": _fingerprint(world)})
+    return _Place(Lattice(world.frame), body.hull, body, body, {"map.content": _fingerprint(world)})
 
 
 def _real(config: AgentConfig) -> _Place:
     body = real_robot(config)
-    return _Place(real_frame(config), body.hull, body, None, {})
+    return _Place(Lattice(real_frame(config)), body.hull, body, None, {})
 
 
 def _fingerprint(world: World) -> str:

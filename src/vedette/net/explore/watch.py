@@ -9,6 +9,7 @@ import numpy as np
 
 from vedette.agent.state import State
 from vedette.domains.mapping.impact import MapImpactCodec
+from vedette.maps import GridFrame
 from vedette.net.explore.content import view_of
 from vedette.net.explore.plan import ExplorePlan
 from vedette.net.report import Condition
@@ -31,10 +32,10 @@ class ExploreWatcher:
     ) -> None:
         """Prepare to watch; the ``sinks`` follow the mission."""
         self._observer = ExploreObserver(plan.world, plan.specs, plan.starts, plan.options, setting, sinks)
-        self._shape = plan.world.frame.shape
+        self._frame = plan.world.frame
         self._codec = MapImpactCodec(self._observer.log.scene.planning.size)
         self._views = [
-            _unheard(spec.name, start, self._shape)
+            _unheard(spec.name, start, self._frame)
             for spec, start in zip(plan.specs, plan.starts.tolist(), strict=True)
         ]
         self._ways: dict[int, float] = {}  # of each robot by now [m]
@@ -47,7 +48,7 @@ class ExploreWatcher:
 
     def take(self, condition: Condition, content: bytes) -> None:
         """Take a robot's map."""
-        self._views[condition.robot] = view_of(condition, content, self._shape, self._codec)
+        self._views[condition.robot] = view_of(condition, content, self._frame, self._codec)
         self._ways[condition.robot] = condition.travelled
 
     def look(self, now: float, alive: Sequence[bool], links: Links) -> None:
@@ -78,7 +79,9 @@ class ExploreWatcher:
         ]
 
 
-def _unheard(name: str, start: Sequence[float], shape: tuple[int, int]) -> RobotView:
+def _unheard(name: str, start: Sequence[float], frame: GridFrame) -> RobotView:
     x, y, heading = start
     sample = RobotSample(x, y, heading, "starting", True, np.empty((0, 2)), name, None)
-    return RobotView(sample, np.zeros(shape, np.uint8), np.zeros(shape, np.bool_), None, GroundFigures())
+    nothing, nowhere = np.zeros((0, 0), np.uint8), slice(0, 0)
+    part = frame.window(nowhere, nowhere)
+    return RobotView(sample, part, nothing, nothing.astype(np.bool_), None, GroundFigures())

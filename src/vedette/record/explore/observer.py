@@ -12,10 +12,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.domains.mapping.belief import LN2
-from vedette.domains.mapping.impact import final_miss
+from vedette.domains.mapping.belief import LN2, planning_factor
+from vedette.domains.mapping.impact import final_miss, moved
 from vedette.domains.mapping.stops import unknown_near
 from vedette.maps import UNKNOWN
+from vedette.maps.lattice import Lattice
 from vedette.maps.world import World
 from vedette.missions.explore.options import ExploreOptions
 from vedette.outcome import Outcome
@@ -54,11 +55,14 @@ class ExploreObserver:
         options: ExploreOptions,
         setting: Setting,
         sinks: Sequence[Sink[ExploreSnapshot]] = (),
+        lattice: Lattice | None = None,
     ) -> None:
         """Prepare to observe a team that starts at ``starts``, (n, 3) x, y, heading [m, m, rad].
 
-        The ``sinks`` follow the mission while it goes on.
+        The ``sinks`` follow the mission while it goes on. ``lattice``: the team's; None: the world's map.
         """
+        ground = world.frame if lattice is None else lattice.frame
+        self._planning = ground.coarse(planning_factor(ground.resolution))  # of the robots' impacts
         self._world, self._options, self._setting = world, options, setting
         self._reference = Reference(world, specs, starts)
         self._progress = CoverageProgress()
@@ -85,7 +89,7 @@ class ExploreObserver:
     def _measure(
         self, now: float, views: Sequence[RobotView], links: Sequence[Link] | None, log: bool
     ) -> None:
-        classes = union_map(views)
+        classes = union_map(views, self._world.frame)
         share = coverage(self._reference, classes)
         if self._apart:
             self.apart_s += now - self._progress.times[-1]
@@ -117,13 +121,15 @@ class ExploreObserver:
         miss = np.ones(frame.size, np.float32)
         for view in self._views:
             if view.sample.alive and view.impact is not None and len(view.impact.keys):
-                miss *= final_miss(view.impact, frame.size)
+                miss *= final_miss(moved(view.impact, self._planning, frame), frame.size)
         return (1.0 - miss).reshape(frame.shape)
 
     def delivered_map(self) -> NDArray[np.uint8]:
         """Return the map of the living robot that knows most; if none lives, what all held."""
-        living = [view.classes for view in self._views if view.sample.alive]
-        return max(living, key=np.count_nonzero).copy() if living else union_map(self._views)
+        living = [view for view in self._views if view.sample.alive]
+        if not living:
+            return union_map(self._views, self._world.frame)
+        return max(living, key=lambda view: np.count_nonzero(view.classes)).classes_on(self._world.frame)
 
     def report(self, outcome: Outcome, timing: Timing) -> ExploreReport:
         """Return what the mission leaves; not before the first look."""
@@ -152,7 +158,7 @@ class ExploreObserver:
             coverage=progress.coverages[-1],
             map_errors=wrong,
             map_error_share=wrong / known if known else 0.0,
-            overlap=overlap([view.seen for view in views]),
+            overlap=overlap([view.seen_on(self._world.frame) for view in views]),
             collisions=sum(each.collisions for each in team),
             min_clearance_m=min(each.min_clearance_m for each in team),
             apart_s=self.apart_s,
@@ -163,7 +169,8 @@ class ExploreObserver:
 
     def _left_out(self) -> tuple[LeftOut, ...]:
         """Return what robots left and nobody knows by now; out of reach is what is so to all who live."""
-        frame, classes = self._world.frame, union_map(self._views)
+        frame = self._world.frame
+        classes = union_map(self._views, frame)
         living = [view for view in self._views if view.sample.alive]
         beyond = [{_place(spot) for spot in view.left_out if spot.why == "out_of_reach"} for view in living]
         nobody = set.intersection(*beyond) if beyond else set()

@@ -35,14 +35,7 @@ def known_window(frame: GridFrame, classes: NDArray[np.uint8], margin: float = 0
     row, col = (np.flatnonzero(known.any(axis=axis)) for axis in (1, 0))
     rows = slice(max(0, int(row[0]) - pad), min(frame.rows, int(row[-1]) + 1 + pad))
     cols = slice(max(0, int(col[0]) - pad), min(frame.cols, int(col[-1]) + 1 + pad))
-    part = GridFrame(
-        frame.resolution,
-        rows.stop - rows.start,
-        cols.stop - cols.start,
-        frame.origin_x + cols.start * frame.resolution,
-        frame.origin_y + rows.start * frame.resolution,
-    )
-    return Window(rows, cols, part)
+    return Window(rows, cols, frame.window(rows, cols))
 
 
 def pool(classes: NDArray[np.uint8], rows: int, cols: int) -> NDArray[np.uint8]:

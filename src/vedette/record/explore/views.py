@@ -10,8 +10,10 @@ from numpy.typing import NDArray
 
 from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.leftovers import Leftover
-from vedette.maps import UNKNOWN
-from vedette.maps.bounds import EVERYWHERE, Extent
+from vedette.kernels.tiles import TiledGrid
+from vedette.maps import UNKNOWN, GridFrame
+from vedette.maps.bounds import Extent
+from vedette.maps.laid import laid
 from vedette.record.explore.log import RobotSample
 from vedette.record.explore.summary import LeftOut
 from vedette.record.figures import RobotFigures
@@ -30,45 +32,51 @@ class RobotView:
     """All that can be told of one robot from outside; nothing in it changes after it is made."""
 
     sample: RobotSample  # where it is, what it does, where it goes
-    classes: NDArray[np.uint8]  # (R, C) the map as it holds it, its own cells included: see ``held_map``
-    seen: NDArray[np.bool_]  # (R, C) what its own sensor has observed
+    frame: GridFrame  # of the part of the ground outside of which it knows nothing
+    classes: NDArray[np.uint8]  # (R, C) the map there as it holds it, with its own cells: see ``held_map``
+    seen: NDArray[np.bool_]  # (R, C) what its own sensor has observed there
     impact: Impact | None  # of its last decision, over planning cells; None: it has not decided yet
     figures: GroundFigures
     left_out: tuple[LeftOut, ...] = ()
 
+    def classes_on(self, frame: GridFrame) -> NDArray[np.uint8]:
+        """Return its map as ``(R, C)`` of a grid of the observer's."""
+        return laid(self.classes, self.frame, frame)
 
-def held_map(
-    fused: NDArray[np.uint8], own: NDArray[np.int8], known: Extent = EVERYWHERE
-) -> NDArray[np.uint8]:
+    def seen_on(self, frame: GridFrame) -> NDArray[np.bool_]:
+        """Return what its own sensor has observed as ``(R, C)`` of a grid of the observer's."""
+        return laid(self.seen, self.frame, frame)
+
+
+def held_map(fused: NDArray[np.uint8], own: NDArray[np.int8]) -> NDArray[np.uint8]:
     """Return a robot's fused ``(R, C)`` classes, and where they are unknown the class of its own log-odds.
 
-    The log-odds differ from the map until the robot publishes them. Outside ``known`` there is nothing.
+    The log-odds differ from the map until the robot publishes them.
     """
-    whole = np.zeros(fused.shape, np.uint8)  # costs no more than what is written to it
-    held = whole[known]
-    held += own[known] != 0  # UNKNOWN, FREE, OCCUPIED are 0, 1, 2
-    held += own[known] > 0
-    held *= fused[known] == UNKNOWN
-    held += fused[known]
-    return whole
+    held: NDArray[np.uint8] = (own != 0).astype(np.uint8)  # UNKNOWN, FREE, OCCUPIED are 0, 1, 2
+    held += own > 0
+    held *= fused == UNKNOWN
+    held += fused
+    return held
 
 
-def seen_by(own: NDArray[np.int8], known: Extent = EVERYWHERE) -> NDArray[np.bool_]:
-    """Return ``(R, C)`` where a robot has evidence of its own; outside ``known`` it has none."""
-    whole = np.zeros(own.shape, np.bool_)
-    whole[known] = own[known] != 0
-    return whole
+def held(
+    fused: TiledGrid[np.uint8], own: TiledGrid[np.int8], known: Extent
+) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
+    """Return what a robot holds of the rows and columns where it knows anything, and what it saw itself."""
+    evidence = own.window(*known)
+    return held_map(fused.window(*known), evidence), evidence != 0
 
 
-def union_map(views: Sequence[RobotView]) -> NDArray[np.uint8]:
+def union_map(views: Sequence[RobotView], frame: GridFrame) -> NDArray[np.uint8]:
     """Return ``(R, C)``: what the living robots hold together, told or not; if none lives, what all held.
 
     Where they differ, occupied wins over free, and free over unknown.
     """
     living = [view for view in views if view.sample.alive] or views
-    union = living[0].classes.copy()
+    union = living[0].classes_on(frame)
     for view in living[1:]:
-        np.maximum(union, view.classes, out=union)  # UNKNOWN < FREE < OCCUPIED
+        np.maximum(union, view.classes_on(frame), out=union)  # UNKNOWN < FREE < OCCUPIED
     return union
 
 

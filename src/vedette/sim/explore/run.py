@@ -11,7 +11,7 @@ from vedette.maps.world import World
 from vedette.outcome import Outcome
 from vedette.record.explore.log import ExploreSnapshot, RobotSample
 from vedette.record.explore.observer import ExploreObserver, ExploreReport
-from vedette.record.explore.views import GroundFigures, RobotView, held_map, left_out, seen_by
+from vedette.record.explore.views import GroundFigures, RobotView, held, left_out
 from vedette.record.log import Sink
 from vedette.sim.explore.simulation import ExploreSetup, ExploreSimulation
 from vedette.sim.starts import choose_starts
@@ -66,7 +66,13 @@ def observer_of(
     """Return an observer of a simulated mission that has not begun."""
     setup = simulation.setup
     return ExploreObserver(
-        simulation.world, simulation.specs, simulation.starts, setup.options, setting(setup), sinks
+        simulation.world,
+        simulation.specs,
+        simulation.starts,
+        setup.options,
+        setting(setup),
+        sinks,
+        setup.lattice,
     )
 
 
@@ -79,8 +85,8 @@ def _view(simulation: ExploreSimulation, i: int) -> RobotView:
     mission, bodies, sample = simulation.missions[i], simulation.robots.bodies, _sample(simulation, i)
     return RobotView(
         sample,
-        held_map(mission.fusion.classes, mission.log_odds, mission.known),
-        seen_by(mission.log_odds, mission.known),
+        mission.frame.window(*mission.known),
+        *held(mission.fusion.classes, mission.log_odds, mission.known),
         simulation.network.agents[i].rounds.impact,
         GroundFigures(
             **vars(figures(simulation, i, float(bodies.travelled[i]))),

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from vedette.agent import Agent, GroundBehaviour
 from vedette.agent.driving import Driver
 from vedette.domains.mapping.planners import DEFAULT
+from vedette.maps.lattice import Lattice
 from vedette.maps.world import World
 from vedette.missions.explore.assemble import assemble
 from vedette.missions.explore.exploring import Exploring
@@ -29,6 +30,7 @@ class ExploreSetup(Setup):
     planner: str = DEFAULT
     fusion: str = "replicated"
     return_home: bool = False
+    lattice: Lattice | None = None  # that the team agrees on; None: that of the world's map
 
     @property
     def options(self) -> ExploreOptions:
@@ -61,8 +63,9 @@ class ExploreSimulation(Simulation):
 
     def _explorer(self, robot: int, boot: int) -> Agent:
         specs = self.specs
-        frame, options, most = self.world.frame, self.setup.options, Most.of(specs)
-        return assemble(frame, specs[robot], options, robot, boot, robots=len(specs), most=most)
+        lattice = self.setup.lattice or Lattice(self.world.frame)
+        options, most = self.setup.options, Most.of(specs)
+        return assemble(lattice, specs[robot], options, robot, boot, robots=len(specs), most=most)
 
     @property
     def missions(self) -> list[Exploring]:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from vedette.errors import InputError
 from vedette.kernels import lidar
+from vedette.kernels.tiles import TiledGrid, Tiling
 from vedette.logs import RecordedLog, RecordedScan
 from vedette.maps import GridFrame
 from vedette.maps.world import World
@@ -40,13 +41,13 @@ def logged(log: RecordedLog, resolution: float, reach: float, no_return: str) ->
     """
     check_length("resolution of a world", resolution, RESOLUTIONS)
     frame = _frame(log, resolution, reach)
-    evidence = np.zeros(frame.shape, np.int8)
+    evidence = TiledGrid(Tiling(*frame.shape), np.int8)
     for scan in log.scans:
         ranges, hits = beams(scan, reach, no_return)
         x, y = scan.x - frame.origin_x, scan.y - frame.origin_y
         gains = GAIN_HIT, GAIN_MISS, CLAMP, NUDGE * resolution
         lidar.integrate_scan(evidence, resolution, x, y, scan.angles, ranges, hits, *gains)
-    solid = ~largest(_specks_freed(evidence, round(SPECK / resolution**2)))
+    solid = ~largest(_specks_freed(evidence.window(), round(SPECK / resolution**2)))
     if solid.all():
         raise InputError(f"{log.name}: its scans leave nothing free within {reach:g} m; raise --range")
     return World(frame, solid, log.name)

@@ -42,6 +42,6 @@ def expected_areas(belief: MapBelief, stops: Stops) -> NDArray[np.float64]:
     marks = stops.footprints
     seen = np.where(marks.misses == CERTAIN, 1.0, -np.expm1(marks.misses / -STEPS_PER_NAT))
     stop = np.repeat(np.arange(len(stops)), np.diff(marks.starts))
-    nats = np.bincount(stop, seen * belief.weights[marks.cells], minlength=len(stops))
+    nats = np.bincount(stop, seen * belief.weights.of(marks.cells), minlength=len(stops))
     area: NDArray[np.float64] = nats / LN2 * belief.frame.resolution**2
     return area

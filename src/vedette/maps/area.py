@@ -1,0 +1,68 @@
+"""Where a team has leave to work: a polygon, outside of which nothing is anybody's."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.errors import InputError
+from vedette.maps.frame import OCCUPIED, GridFrame
+
+MOST_CORNERS = 1000
+MOST_METRES = 1e6  # from the team frame's origin
+
+
+@dataclass(frozen=True)
+class Area:
+    """A polygon without holes; where its edges cross, what an odd number of them goes round is inside."""
+
+    corners: tuple[tuple[float, float], ...]  # x, y [m], team frame, in order
+
+    @classmethod
+    def of(cls, corners: Sequence[Sequence[float]]) -> Area:
+        """Return the area with these corners.
+
+        Raises:
+            InputError: they make no area.
+        """
+        if not 3 <= len(corners) <= MOST_CORNERS:
+            raise InputError(f"area: {len(corners)} corners; a polygon has 3 to {MOST_CORNERS}")
+        points = tuple((float(x), float(y)) for x, y in corners)
+        for x, y in points:
+            if not (abs(x) <= MOST_METRES and abs(y) <= MOST_METRES):
+                raise InputError(f"area: corner [{x:g}, {y:g}]; give metres within {MOST_METRES:g}")
+        if max(x for x, _ in points) == min(x for x, _ in points) or (
+            max(y for _, y in points) == min(y for _, y in points)
+        ):
+            raise InputError("area: all corners are on a line; give them in order round the ground")
+        return cls(points)
+
+    @property
+    def box(self) -> tuple[float, float, float, float]:
+        """Lowest x, lowest y, highest x, highest y [m]."""
+        xs, ys = zip(*self.corners, strict=True)
+        return min(xs), min(ys), max(xs), max(ys)
+
+    def holds(self, frame: GridFrame) -> NDArray[np.bool_]:
+        """Return ``(R, C)``: which cells of a grid have their centre inside, by the crossings of each row."""
+        inside = np.zeros(frame.shape, np.bool_)
+        y = frame.origin_y + (np.arange(frame.rows) + 0.5) * frame.resolution
+        crossings: list[list[float]] = [[] for _ in range(frame.rows)]
+        for (x0, y0), (x1, y1) in zip(self.corners, (*self.corners[1:], self.corners[0]), strict=True):
+            if y0 == y1:
+                continue
+            for row in np.flatnonzero((y >= min(y0, y1)) & (y < max(y0, y1))).tolist():
+                crossings[row].append(x0 + (y[row] - y0) * (x1 - x0) / (y1 - y0))
+        for row, xs in enumerate(crossings):
+            first = [math.ceil((x - frame.origin_x) / frame.resolution - 0.5) for x in sorted(xs)]
+            for low, high in zip(first[::2], first[1::2], strict=True):
+                inside[row, max(low, 0) : max(high, 0)] = True
+        return inside
+
+    def close(self, classes: NDArray[np.uint8], frame: GridFrame) -> NDArray[np.uint8]:
+        """Return the ``(R, C)`` classes of a grid with walls wherever the ground is not the team's."""
+        return np.where(self.holds(frame), classes, np.uint8(OCCUPIED))

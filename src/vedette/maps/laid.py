@@ -1,0 +1,35 @@
+"""A grid seen on another: each cell takes what lies under its middle."""
+
+from __future__ import annotations
+
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.maps.frame import GridFrame
+
+CellT = TypeVar("CellT", np.bool_, np.uint8, np.float32)
+
+
+def laid(grid: NDArray[CellT], frame: GridFrame, onto: GridFrame) -> NDArray[CellT]:
+    """Return ``(R, C)`` over the frame ``onto``: what a grid has under each middle; 0 where nothing."""
+    whole = np.zeros(onto.shape, grid.dtype)  # costs no more than what is written to it
+    to_rows, rows = _matching(onto.origin_y, onto, onto.rows, frame.origin_y, frame, frame.rows)
+    to_cols, cols = _matching(onto.origin_x, onto, onto.cols, frame.origin_x, frame, frame.cols)
+    whole[to_rows, to_cols] = grid[rows][:, cols]
+    return whole
+
+
+def _matching(
+    onto_origin: float, onto: GridFrame, onto_size: int, origin: float, frame: GridFrame, size: int
+) -> tuple[slice, slice | NDArray[np.int64]]:
+    """Return along one axis the cells that have something under their middle, and what that is."""
+    middles = onto_origin - origin + (np.arange(onto_size) + 0.5) * onto.resolution
+    under = np.floor(middles / frame.resolution).astype(np.int64)
+    where = np.flatnonzero((under >= 0) & (under < size))
+    if not len(where):
+        return slice(0, 0), slice(0, 0)
+    to, under = slice(int(where[0]), int(where[-1]) + 1), under[where]
+    first, end = int(under[0]), int(under[-1]) + 1
+    return to, slice(first, end) if onto.resolution == frame.resolution else under

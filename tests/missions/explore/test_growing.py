@@ -1,0 +1,200 @@
+"""A team that does not know how large its ground is maps and plans as one that does, on what it has seen."""
+
+from __future__ import annotations
+
+import tracemalloc
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from tests.support.explorers import exchange, scan_from
+from tests.support.mapping_scenes import FRAME, RESOLUTION, SPEC
+from tests.support.small_missions import robots, small_office
+from vedette.agent.events import Pose, Scan
+from vedette.domains.mapping.impact import NOTHING, moved
+from vedette.domains.mapping.planners import planner
+from vedette.domains.mapping.sightings import BINS
+from vedette.fusion import ReplicatedEvidence
+from vedette.maps import UNKNOWN, GridFrame
+from vedette.maps.area import Area
+from vedette.maps.laid import laid
+from vedette.maps.lattice import Lattice
+from vedette.missions.explore.exploring import Exploring
+from vedette.sim.explore.run import explore, prepare
+from vedette.sim.explore.simulation import ExploreSetup
+from vedette.team import Most
+
+POSES = [Pose(-0.53, 7.12, 0.0), Pose(2.97, 7.08, 0.4), Pose(-0.61, 4.03, 1.0), Pose(10.02, 7.93, 2.0)]
+MARGIN = 100  # cells that the whole frame has beyond the building: no robot sees so far
+WHOLE = GridFrame(
+    RESOLUTION,
+    FRAME.rows + 2 * MARGIN,
+    FRAME.cols + 2 * MARGIN,
+    FRAME.origin_x - MARGIN * RESOLUTION,
+    FRAME.origin_y - MARGIN * RESOLUTION,
+)
+OPEN = Lattice.open(RESOLUTION, (FRAME.origin_x, FRAME.origin_y))
+
+
+def explorer(lattice: Lattice, robot: int = 0) -> Exploring:
+    """A robot's mission of which nothing is seen yet."""
+    shape = lattice.frame.shape
+    fusion = ReplicatedEvidence(robot, 1 + robot, shape, 4 * BINS, mark=lattice.mark)
+    return Exploring(lattice, SPEC, planner("tours"), fusion, most=Most.of([SPEC]))
+
+
+def look(mission: Exploring, pose: Pose, seed: int) -> None:
+    """Take a scan from a pose into the map and publish it."""
+    mission.observe(scan_from(pose, np.random.default_rng(seed)), pose, [], 0.0)
+    mission.publish(20.0 * seed)
+
+
+def on_map(mission: Exploring) -> NDArray[np.uint8]:
+    """The team's map on the whole frame."""
+    known = mission.fusion.known
+    return laid(mission.fusion.classes.window(*known), mission.frame.window(*known), WHOLE)
+
+
+def test_a_growing_team_holds_cell_for_cell_what_a_team_with_the_whole_frame_holds() -> None:
+    grown, given = ([explorer(lattice, robot) for robot in (0, 1)] for lattice in (OPEN, Lattice(WHOLE)))
+    for team in (grown, given):
+        for k, pose in enumerate(POSES):
+            look(team[k % 2], pose, k)
+            exchange(*team)
+            assert team[0].fusion.digest == team[1].fusion.digest
+    np.testing.assert_array_equal(on_map(grown[0]), given[0].fusion.classes.window())
+    np.testing.assert_array_equal(grown[0].fusion.counts, given[0].fusion.counts)
+    assert grown[0].fusion.digest != given[0].fusion.digest  # they are not of one team
+
+
+def decided(mission: Exploring) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
+    """Let a robot decide alone; return its views, their arrivals, and the value."""
+    belief = mission.freeze(0.0)
+    mission.prepare(belief, POSES[1], [], False, 0.0)
+    tour = mission.platform.reply(belief, NOTHING, mission.strategy)
+    value = mission.objective.value(belief, mission.platform.impact(belief, tour))
+    return tour.views, tour.arrivals, value
+
+
+def test_a_growing_robot_decides_what_one_with_the_whole_frame_decides() -> None:
+    results = []
+    for lattice in (OPEN, Lattice(WHOLE)):
+        mission = explorer(lattice)
+        for k, pose in enumerate(POSES[:2]):
+            look(mission, pose, k)
+        results.append(decided(mission))
+    (views, arrivals, value), (other_views, other_arrivals, other_value) = results
+    assert len(views)
+    np.testing.assert_allclose(views, other_views, atol=1e-9)
+    np.testing.assert_allclose(arrivals, other_arrivals, rtol=1e-5)
+    assert value == pytest.approx(other_value, rel=1e-5)
+
+
+def test_impacts_of_robots_that_know_different_parts_combine_as_on_the_whole_map() -> None:
+    impacts, beliefs = [], []
+    for lattice in (OPEN, Lattice(WHOLE)):
+        for k in (0, 3):  # two robots, each with a map of its own
+            mission = explorer(lattice, robot=k)
+            look(mission, POSES[k], k)
+            belief = mission.freeze(0.0)
+            mission.prepare(belief, POSES[k], [], False, 0.0)
+            tour = mission.platform.reply(belief, NOTHING, mission.strategy)
+            impacts.append(mission.codec.decode(mission.codec.encode(mission.platform.impact(belief, tour))))
+            beliefs.append(belief)
+    assert beliefs[0].frame != beliefs[1].frame
+    team, whole = (mission.objective.combine(*impacts[k : k + 2]) for k in (0, 2))
+    there = moved(team, beliefs[0].planning, beliefs[2].planning)
+    assert len(there.keys) > 0
+    np.testing.assert_array_equal(there.keys, whole.keys)
+    np.testing.assert_array_equal(there.misses, whole.misses)
+
+
+def test_evidence_and_impacts_lie_on_either_side_of_the_origin() -> None:
+    mission, mate = explorer(Lattice.open(RESOLUTION)), explorer(Lattice.open(RESOLUTION), robot=1)
+    for k, pose in enumerate(POSES):
+        look(mission, pose, k)
+    exchange(mission, mate)
+    rows, cols = mate.fusion.known
+    corner = mate.frame.window(rows, cols)
+    assert corner.origin_x < 0.0 < corner.extent[1]
+    assert mate.fusion.digest == mission.fusion.digest
+    np.testing.assert_array_equal(
+        mate.fusion.classes.window(rows, cols), mission.fusion.classes.window(rows, cols)
+    )
+
+
+def test_robots_of_different_lattices_never_hold_the_same_digest() -> None:
+    yard = Area.of([(-3.0, 2.0), (11.0, 2.0), (11.0, 12.0), (-3.0, 12.0)])
+    lattices = [OPEN, Lattice.open(RESOLUTION), Lattice(FRAME), Lattice(FRAME, yard)]
+    assert len({explorer(lattice).fusion.digest for lattice in lattices}) == len(lattices)
+
+
+def test_nothing_outside_the_area_is_anybodys() -> None:
+    yard = Area.of([(-3.0, 2.0), (2.0, 2.0), (2.0, 12.0), (-3.0, 12.0)])
+    mission = explorer(Lattice(FRAME, yard))
+    for k, pose in enumerate(POSES[:2]):
+        look(mission, pose, k)
+    belief = mission.freeze(0.0)
+    outside = ~yard.holds(belief.frame)
+    assert outside.any()
+    assert not (belief.classes[outside] == UNKNOWN).any()
+    points = belief.frame.centres(belief.frontier_cells)
+    assert len(points)
+    assert points[:, 0].max() < 2.0
+    here = Pose(1.0, 7.1, 0.0)
+    assert mission.route(here, (0.0, 7.1), [], False, 0.0) is not None
+    assert mission.route(here, (3.0, 7.1), [], False, 0.0) is None
+
+
+def test_a_team_that_does_not_know_how_large_its_world_is_explores_all_of_it() -> None:
+    world = small_office(seed=1)
+    simulation = prepare(world, robots(2), ExploreSetup(seed=7, lattice=Lattice.open(world.frame.resolution)))
+    report = explore(simulation)
+    assert report.summary.completed
+    assert report.summary.coverage >= 0.995
+    assert report.summary.map_errors == 0
+    assert report.summary.collisions == 0
+
+
+def memory_and_tiles(team: list[Exploring], places: NDArray[np.float64], seed: int) -> tuple[int, int]:
+    """Let robots see some places in turn and tell each other; return bytes in use, and tiles seen by all."""
+    angles = np.radians(np.arange(360.0))
+    for k, (x, y) in enumerate(places.tolist()):
+        mission, time = team[k % len(team)], float(seed * len(places) + k)
+        mission.observe(Scan(angles, np.full(360, np.inf)), Pose(x, y, 0.0), [], time)
+        mission.publish(time)
+    for one, other in ((0, 1), (1, 2), (0, 1)):
+        exchange(team[one], team[other])
+    return tracemalloc.get_traced_memory()[0], sum(len(mission.log_odds.held) for mission in team)
+
+
+def test_three_robots_that_see_400_by_400_metres_piece_by_piece_use_memory_as_they_see_more() -> None:
+    side = 66.0 * np.arange(-3, 4)
+    places = np.random.default_rng(0).permutation(np.array([(x, y) for x in side for y in side]))[:48]
+    tracemalloc.start()
+    team = [explorer(Lattice.open(0.1), robot) for robot in range(3)]
+    before = tracemalloc.get_traced_memory()[0]
+    used = [memory_and_tiles(team, part, k) for k, part in enumerate(np.split(places, 4))]
+    tracemalloc.stop()
+    assert before < 8e6  # three tables of where tiles are, for 820 by 820 m
+    rows, cols = team[0].fusion.known
+    assert min(rows.stop - rows.start, cols.stop - cols.start) > 3900
+    assert [tiles for _, tiles in used] == pytest.approx(used[0][1] * np.arange(1, 5), rel=0.2)
+    for (
+        memory,
+        tiles,
+    ) in used:  # own log-odds twice, levels and stamps of three, sums, classes; half of it spare
+        assert (memory - before) / tiles < 2 * 1024 * (2 + 3 * 3 * 3 + 3 * 5)
+
+
+def test_a_step_costs_what_it_changes_not_what_is_known() -> None:
+    angles, peaks = np.radians(np.arange(360.0)), []
+    mission = explorer(Lattice.open(0.1))
+    for k in range(40):
+        tracemalloc.start()
+        mission.observe(Scan(angles, np.full(360, np.inf)), Pose(9.6 * k, 0.0, 0.0), [], float(k))
+        mission.publish(float(k))
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    assert np.median(peaks[20:]) <= 1.5 * np.median(peaks[5:15])
