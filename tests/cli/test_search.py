@@ -23,8 +23,8 @@ FIELDS = [
     "schema_version", "completed", "outcome", "lost", "seed", "scenario", "coordination", "scheme", "fusion",
     "worth", "radio", "faults", "vehicles", "time_s",
     "found_s", "found_by", "declared_m", "target_m", "error_m",
-    "detection_then", "outside_then",
-    "duration_s", "detection", "t50_s", "t90_s", "mean_time_s", "outside", "counted", "bound", "koopman",
+    "declare", "counted", "detection_then", "outside_then",
+    "duration_s", "detection", "t50_s", "t90_s", "mean_time_s", "outside", "bound", "koopman",
     "path_m",
     "rounds", "sweeps", "bound_ratio", "messages", "bytes", "comparison",
 ]  # fmt: skip
@@ -71,8 +71,10 @@ def test_a_search_that_finds_leaves_every_file_and_says_where_the_pictures_are(v
     assert summary["comparison"]["negotiated"] == own
     counted = summary["counted"]
     assert (counted["trials"], counted["of"], counted["mistaken"]) == (1000, "looks", 0)
-    assert counted["detection_low"] <= counted["detection"] <= counted["detection_high"]
-    assert abs(counted["detection"] - own["detection"]) <= counted["band"]
+    assert counted["found_low"] <= counted["found"] <= counted["found_high"]
+    assert abs(counted["found"] - own["detection"]) <= counted["band"]
+    assert counted["missed"] == round(1000 * (1.0 - counted["found"]))
+    assert summary["declare"] is None
     assert own["detection"] <= summary["bound"]["detection"]
     assert own["mean_time_s"] >= summary["bound"]["mean_time_s"]
     assert summary["detection_then"] <= own["detection"] + 1e-6
@@ -135,8 +137,34 @@ def test_with_false_alarms_each_trial_is_a_search_of_its_own(vedette: Command) -
     arguments = ("--no-compare", "--trials", 3, "--json", "--out", "out")
     ran = vedette("search", scenario(detector=ALARMS, duration=24), *arguments)
     summary = json.loads(ran.out)
-    assert (summary["counted"]["trials"], summary["counted"]["of"]) == (3, "runs")
+    counted = summary["counted"]
+    assert (counted["trials"], counted["of"], counted["off"]) == (3, "runs", None)
+    assert round(3 * counted["found"]) + counted["mistaken"] + counted["missed"] == 3
     check_run(Path("out"))
+
+
+def test_with_false_alarms_what_was_found_comes_before_what_was_reported_by_names_of_their_own(
+    vedette: Command,
+) -> None:
+    alarming = {"type": "definite", "detection": 0.3, "range": 80, "false_alarm": 0.9}
+    ran = vedette("search", scenario(detector=alarming), "--no-compare", "--trials", 3, "--out", "out")
+    lines = ran.out.splitlines()
+    found, reported = (
+        next(k for k, line in enumerate(lines) if line.startswith(words))
+        for words in (
+            "declared found, counted over 3 searches: 0 % (0 to 56 %)",
+            "some true report, predicted",
+        )
+    )
+    assert found < reported
+    assert (
+        "where it is not: 0; never declared: 3; declared at a posterior of 95 % within 100 m" in lines[found]
+    )
+    assert "probability of detection" not in ran.out
+    summary = json.loads((Path("out") / "summary.json").read_text())
+    assert summary["declare"] == {"probability": 0.95, "radius_m": 100.0}
+    assert (summary["counted"]["found"], summary["counted"]["missed"]) == (0.0, 3)
+    assert summary["detection"] > 0.3
 
 
 def test_a_declared_place_that_is_wrong_is_a_mistake_with_status_1(vedette: Command) -> None:

@@ -17,7 +17,7 @@ from vedette.errors import InputError
 from vedette.missions.search.options import COORDINATIONS, FUSIONS
 from vedette.missions.search.searching import Looks, Searching
 from vedette.outcome import Outcome
-from vedette.record.search.counting import dkw, wilson
+from vedette.record.search.counting import Trials, dkw, wilson
 from vedette.record.search.curves import ideal
 from vedette.sim.search.run import search
 from vedette.sim.search.simulation import SearchSetup, SearchSimulation
@@ -280,6 +280,17 @@ def test_a_team_without_a_vehicle_left_has_lost() -> None:
         case(detector=BOX), SearchSetup(max_time=60.0, kills=((0, 0.0), (1, 2.0), (2, 3.0)))
     )
     assert search(simulation).summary.outcome is Outcome.TEAM_LOST
+
+
+def test_false_declarations_and_misses_are_counted_apart_from_what_was_found() -> None:
+    """Of five searches of four steps: found after 2, wrong after 3, never, found after 4, wrong after 1."""
+    steps, wrong = np.array([2, 3, 5, 4, 1]), np.array([False, True, False, False, True])
+    trials = Trials(steps, "runs", wrong)
+    assert trials.curve(4).tolist() == [0.0, 0.0, 0.2, 0.2, 0.4]
+    assert trials.curve(4, wrong=True).tolist() == [0.0, 0.2, 0.2, 0.4, 0.4]
+    counted = trials.figures(np.arange(5) * 2.0, np.zeros(5))
+    assert (counted.found, counted.mistaken, counted.missed, counted.off) == (0.4, 2, 1, None)
+    assert counted.mean_time_s == pytest.approx((4.0 + 8.0 + 8.0 + 8.0 + 8.0) / 5)
 
 
 def test_bands_and_intervals_have_their_textbook_values() -> None:

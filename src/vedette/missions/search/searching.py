@@ -14,6 +14,7 @@ from vedette.agent.flight import FlightPlan, start_step, step_of
 from vedette.agent.mates import Mate
 from vedette.agent.mission import RoundPlatform
 from vedette.domains.search.belief import SearchBelief, TargetPdf, freeze
+from vedette.domains.search.declaring import declared_place
 from vedette.domains.search.detectors import Report
 from vedette.domains.search.evidence import LEVELS_PER_NAT, LookEvidence, evidence_of_looks
 from vedette.domains.search.flights import Flight
@@ -134,16 +135,9 @@ class Searching(FlyingMission):
         step = max(self.team.step(t0), self.first_step)
         pdf = self.pdf(step)
         if self.declared is None and self.vehicle.detector.false_alarm > 0.0:
-            self.declared = self._sure(pdf, t0)
+            place = declared_place(pdf, self.team.threshold, self.team.radius)
+            self.declared = None if place is None else Declared(*place, t0, certain=False)
         return freeze(pdf, self.team.worth, max(0, start_step(t0, self.team.lead, pdf.dt) - step))
-
-    def _sure(self, pdf: TargetPdf, now: float) -> Declared | None:
-        """Return the most probable place if the target is near it with the threshold's probability."""
-        row, col = pdf.best_cell
-        x, y = pdf.frame.centres(np.array([row * pdf.frame.cols + col]))[0].tolist()
-        if pdf.probability_near(x, y, self.team.radius) < self.team.threshold:
-            return None
-        return Declared(x, y, now, certain=False)
 
     def prepare(
         self, belief: SearchBelief, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float

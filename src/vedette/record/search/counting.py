@@ -16,37 +16,39 @@ _NORMAL = 1.959963984540054  # 97.5 % quantile
 
 @dataclass(frozen=True, eq=False)
 class Trials:
-    """When each of many targets was found."""
+    """When each of many targets was found, or taken for found where it is not."""
 
-    steps: NDArray[np.int64]  # (n,) at whose end; K + 1: never, or the team was mistaken
+    steps: NDArray[np.int64]  # (n,) at whose end; K + 1: never
     of: str  # "looks": at which the vehicles looked as they would; "runs": each looked for in earnest
-    mistaken: int = 0
+    wrong: NDArray[np.bool_]  # (n,) what was found then was something else
 
-    def curve(self, steps: int) -> Floats:
-        """Return the share found by the end of each step, (steps + 1,)."""
-        counts = np.bincount(self.steps, minlength=steps + 2)[: steps + 1]
+    def curve(self, steps: int, wrong: bool = False) -> Floats:
+        """Return the share found, or declared wrongly, by the end of each step, (steps + 1,)."""
+        counts = np.bincount(self.steps[self.wrong == wrong], minlength=steps + 2)[: steps + 1]
         return np.asarray(counts.cumsum() / len(self.steps))
 
     def figures(self, times: Floats, predicted: Floats) -> Counted:
         """Return what they say of a search whose steps end at ``times`` [s], both (K + 1,)."""
         steps, count = len(times) - 1, len(self.steps)
-        found = int(np.count_nonzero(self.steps <= steps))
+        ended = self.steps <= steps
+        found, mistaken = (int(np.count_nonzero(ended & (self.wrong == wrong))) for wrong in (False, True))
         low, high = wilson(found, count)
-        spent = times[np.minimum(self.steps, steps)]
+        spent = times[np.where(self.wrong, steps, np.minimum(self.steps, steps))]
         mean = float(spent.mean())
         half = _NORMAL * float(spent.std(ddof=1)) / math.sqrt(count) if count > 1 else None
         return Counted(
             trials=count,
             of=self.of,
-            detection=found / count,
-            detection_low=low,
-            detection_high=high,
+            found=found / count,
+            found_low=low,
+            found_high=high,
+            mistaken=mistaken,
+            missed=count - found - mistaken,
             mean_time_s=mean,
             mean_time_low_s=None if half is None else mean - half,
             mean_time_high_s=None if half is None else mean + half,
             band=dkw(count),
             off=float(np.abs(self.curve(steps) - predicted).max()) if self.of == "looks" else None,
-            mistaken=self.mistaken,
         )
 
 

@@ -22,6 +22,7 @@ class Curves:
     detection: Mapping[str, Floats] = field(default_factory=dict)  # predicted, by coordination
     outside: Floats | None = None  # predicted to have left undetected; None: the target cannot leave
     counted: Floats | None = None  # share of the trials that had found their target
+    mistaken: Floats | None = None  # share that had declared another place; None: there are no false alarms
 
 
 def ideal(case: SearchCase, steps: int) -> Curves:

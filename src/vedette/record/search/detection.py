@@ -1,4 +1,4 @@
-"""``detection.png``: the probability that the target has been found, against time."""
+"""``detection.png``: the probability that the target has been detected, or found, against time."""
 
 from __future__ import annotations
 
@@ -22,6 +22,7 @@ _STYLES: dict[str, dict[str, Any]] = {  # a line differs in more than its colour
     "shared": {"color": palette.unit((0, 158, 115)), "ls": (0, (6, 2)), "lw": 1.7, "zorder": 4},
     "negotiated": {"color": palette.unit((0, 114, 178)), "ls": "-", "lw": 2.2, "zorder": 5},
 }
+_WRONG = palette.unit((204, 121, 167))
 _MEANING = {
     "none": "none: nobody tells anybody anything",
     "shared": "shared: one belief, everybody plans alone",
@@ -30,16 +31,25 @@ _MEANING = {
 
 
 def detection_png(curves: Curves, summary: SearchSummary, path: Path | str) -> None:
-    """Draw the predicted curves by coordination, what was counted, the bound and Koopman's ideal."""
+    """Draw the predicted curves by coordination, what was counted, the bound and Koopman's ideal.
+
+    With false alarms a true report is not yet a finding: what was declared comes first, by a name of its own.
+    """
     with picture():
         figure = Figure(figsize=_SIZE, dpi=DPI)
         axes = figure.add_axes((0.085, 0.105, 0.895, 0.79))
-        _ideal(axes, curves)
+        alarms = summary.declare is not None
+        if alarms:
+            _declared(axes, curves, summary)
+        _ideal(axes, curves, "bound of true reports" if alarms else "bound: no team can do better")
         _outside(axes, curves)
-        _counted(axes, curves, summary)
+        if not alarms:
+            _counted(axes, curves, summary)
         for name in (name for name in _STYLES if name in curves.detection):
             mean = summary.comparison[name].mean_time_s
             label = f"{_MEANING[name]}  (mean {mean:.0f} s)"
+            if alarms:
+                label = f"some true report, predicted: {name}  (mean {mean:.0f} s)"
             axes.plot(curves.times, curves.detection[name], label=label, **_STYLES[name])
         if summary.found_s is not None:
             axes.axvline(summary.found_s, color=INK, lw=0.8, ls=(0, (2, 2)), zorder=1)
@@ -48,7 +58,8 @@ def detection_png(curves: Curves, summary: SearchSummary, path: Path | str) -> N
                 xycoords=("data", "axes fraction"), textcoords="offset points", va="top", fontsize=8,
                 color=FAINT,
             )  # fmt: skip
-        axes.set(xlabel="time [s]", ylabel="probability of detection", ylim=(0.0, 1.08))
+        what = "probability of being found, or reported" if alarms else "probability of detection"
+        axes.set(xlabel="time [s]", ylabel=what, ylim=(0.0, 1.08))
         axes.set(xlim=(0.0, float(curves.times[-1]) or 1.0), yticks=np.linspace(0.0, 1.0, 6))
         axes.yaxis.set_major_formatter(PercentFormatter(1.0))
         tidy(axes, "y")
@@ -59,13 +70,13 @@ def detection_png(curves: Curves, summary: SearchSummary, path: Path | str) -> N
         save(figure, path)
 
 
-def _ideal(axes: Axes, curves: Curves) -> None:
+def _ideal(axes: Axes, curves: Curves, meaning: str) -> None:
     """Shade what nobody can reach, and draw Koopman's ideal searcher."""
     edge = palette.unit((150, 153, 157))
     axes.fill_between(
         curves.times, curves.bound, 1.08, color=palette.unit((225, 227, 230)), alpha=0.6, lw=0, zorder=0
     )
-    axes.plot(curves.times, curves.bound, color=edge, lw=1.2, zorder=2, label="bound: no team can do better")
+    axes.plot(curves.times, curves.bound, color=edge, lw=1.2, zorder=2, label=meaning)
     axes.plot(
         curves.times, curves.koopman, color=edge, lw=1.1, ls=(0, (5, 1.5, 1, 1.5)), zorder=2,
         label="Koopman: swept area spread ideally, looks at random",
@@ -88,10 +99,28 @@ def _counted(axes: Axes, curves: Curves, summary: SearchSummary) -> None:
         return
     colour = _STYLES[summary.coordination]["color"]
     low, high = (np.clip(share + way * counted.band, 0.0, 1.0) for way in (-1.0, 1.0))
-    what = "targets drawn" if counted.of == "looks" else "searches run"
     axes.fill_between(
         curves.times, low, high, color=colour, alpha=0.16, lw=0, zorder=1,
-        label=f"{summary.coordination}, counted over {counted.trials} {what}, 95 % band",
+        label=f"{summary.coordination}, counted over {counted.trials} targets drawn, 95 % band",
     )  # fmt: skip
-    if counted.of == "runs":
-        axes.plot(curves.times, share, color=colour, lw=1.0, zorder=2)
+
+
+def _declared(axes: Axes, curves: Curves, summary: SearchSummary) -> None:
+    """Draw what was declared in searches of their own, rightly and wrongly, and by which rule."""
+    counted, rule, found, mistaken = summary.counted, summary.declare, curves.counted, curves.mistaken
+    if counted is None or rule is None or found is None or mistaken is None:
+        return
+    low, high = (np.clip(found + way * counted.band, 0.0, 1.0) for way in (-1.0, 1.0))
+    axes.fill_between(curves.times, low, high, color=INK, alpha=0.12, lw=0, zorder=1)
+    axes.plot(
+        curves.times, found, color=INK, lw=2.4, zorder=7,
+        label=f"declared found: {100 * counted.found:.0f} % of {counted.trials} searches, 95 % band",
+    )  # fmt: skip
+    axes.plot(
+        curves.times, mistaken, color=_WRONG, lw=1.8, ls=(0, (3, 1.5)), zorder=6,
+        label=f"declared where it is not: {counted.mistaken}; never declared: {counted.missed}",
+    )  # fmt: skip
+    axes.set_title(
+        f"declared at a posterior of {100 * rule.probability:g} % within {rule.radius_m:g} m", loc="left",
+        fontsize=9, color=FAINT, pad=4,
+    )  # fmt: skip

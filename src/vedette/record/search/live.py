@@ -29,7 +29,7 @@ def search_display(
 def line(scene: SearchScene, snapshot: SearchSnapshot) -> str:
     """Return a snapshot in one line."""
     team = states(scene, snapshot.vehicles)
-    detection = f"detection {100 * snapshot.detection:5.1f} %"
+    detection = f"{_detection(scene)} {100 * snapshot.detection:5.1f} %"
     left = "" if snapshot.outside is None else f"  has left {100 * snapshot.outside:5.1f} %"
     return f"{snapshot.t:7.1f} s  {detection}{left}  entropy {snapshot.entropy:5.2f} nat  {team}"
 
@@ -37,7 +37,7 @@ def line(scene: SearchScene, snapshot: SearchSnapshot) -> str:
 def screen(scene: SearchScene, console: Console, snapshot: SearchSnapshot) -> RenderableType:
     """Return the picture of a snapshot, fitted to the console: the darker, the likelier."""
     figures = figures_line(("time", f"{snapshot.t:6.1f} s"), ("entropy", f"{snapshot.entropy:.2f} nat"))
-    head: list[RenderableType] = [figures, share_bar("detection", snapshot.detection)]
+    head: list[RenderableType] = [figures, share_bar(_detection(scene), snapshot.detection)]
     if snapshot.outside is not None:
         head.append(share_bar("has left", snapshot.outside))
     goals = [
@@ -53,6 +53,10 @@ def screen(scene: SearchScene, console: Console, snapshot: SearchSnapshot) -> Re
     picture.fill(["".join(_SHADES[k] for k in row) for row in shades[::-1].tolist()])
     picture.put_vehicles(snapshot.vehicles)
     return framed(scene, *head, picture.text(), Text(""), table)
+
+
+def _detection(scene: SearchScene) -> str:
+    return "true report" if scene.false_alarms else "detection"
 
 
 def _shades(mass: NDArray[np.float32], lines: int, columns: int) -> NDArray[np.int64]:

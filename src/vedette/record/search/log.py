@@ -24,6 +24,12 @@ class SearchScene(FlightScene):
     frame: GridFrame  # of the pdf
     widths: tuple[float, ...]  # that the vehicles sweep [m]
     duration: float  # [s]
+    false_alarms: bool  # so that a report of the target is not yet its finding
+
+    @property
+    def detection(self) -> str:
+        """What the probability of detection is called: that some look has reported the target, truly."""
+        return "some true report" if self.false_alarms else "probability of detection"
 
     @classmethod
     def of(cls, case: SearchCase, duration: float) -> SearchScene:
@@ -38,6 +44,7 @@ class SearchScene(FlightScene):
             frame=case.pdf.frame,
             widths=tuple(widths),
             duration=duration,
+            false_alarms=case.false_alarms,
         )
 
 

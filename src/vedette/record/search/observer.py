@@ -23,7 +23,7 @@ from vedette.record.figures import RobotFigures, TeamFigures
 from vedette.record.log import Floats, Sink
 from vedette.record.search.curves import Curves
 from vedette.record.search.log import SearchLog, SearchSample, SearchScene, SearchSnapshot
-from vedette.record.search.summary import IdealSearch, SearchSummary
+from vedette.record.search.summary import IdealSearch, Rule, SearchSummary
 from vedette.record.summary import Setting, Timing
 
 
@@ -103,10 +103,10 @@ class SearchObserver:
         return SearchReport(self._summary(outcome, now, curves), timing, self.log, curves)
 
     def _summary(self, outcome: Outcome, now: float, curves: Curves) -> SearchSummary:
-        scene, last = self.log.scene, self.log.snapshots[-1]
+        scene, last, plan = self.log.scene, self.log.snapshots[-1], self._team.plan
         declared = first_declared([view.declared for view in self._views])
         by, place = (None, None) if declared is None else declared
-        ended = ended_as(outcome, place, self._team.plan, self._truth.place)
+        ended = ended_as(outcome, place, plan, self._truth.place)
         found = place is not None and ended is Outcome.FOUND
         at = None if place is None else (place.x, place.y)
         figures, alive = zip(*((view.figures, view.sample.alive) for view in self._views), strict=True)
@@ -122,6 +122,7 @@ class SearchObserver:
             declared_m=at,
             target_m=last.target,
             error_m=None if at is None else float(np.hypot(*np.subtract(at, last.target))),
+            declare=Rule(plan.threshold, plan.radius) if scene.false_alarms else None,
             detection_then=last.detection,
             outside_then=self._undetected.outside if self._team.case.pdf.motion.leaves else None,
             duration_s=float(curves.times[-1]),

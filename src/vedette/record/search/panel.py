@@ -43,7 +43,7 @@ def draw(axes: Axes, log: SearchLog, snapshot: SearchSnapshot, norm: PowerNorm, 
         interpolation="bilinear", zorder=0,
     )  # fmt: skip
     axes.set(xticks=(), yticks=(), xlim=extent[:2], ylim=extent[2:])
-    title = f"{snapshot.t:.0f} s    probability of detection {100 * snapshot.detection:.0f} %"
+    title = f"{snapshot.t:.0f} s    {log.scene.detection} {100 * snapshot.detection:.0f} %"
     if snapshot.outside is not None:
         title += f", has left {100 * snapshot.outside:.0f} %"
     axes.set_title(title, fontsize=10, loc="left", pad=5)

@@ -14,7 +14,7 @@ from vedette.record.summary import MissionSummary, Traffic
 
 @dataclass(frozen=True)
 class SearchQuality:
-    """How soon a search finds its target; what the ways of coordination are compared by."""
+    """How soon some look truly reports the target; what the ways of coordination are compared by."""
 
     detection: float
     t50_s: float | None
@@ -36,20 +36,32 @@ class SearchQuality:
 
 
 @dataclass(frozen=True)
+class Rule:
+    """When a place is declared, where there are false alarms."""
+
+    probability: float  # posterior that the target is within
+    radius_m: float  # of it
+
+
+@dataclass(frozen=True)
 class Counted:
-    """What was counted over many targets drawn from the prior; intervals of 95 %."""
+    """What was counted over many targets drawn from the prior; intervals of 95 %.
+
+    Without false alarms a detection is a declaration, and never mistaken.
+    """
 
     trials: int
     of: str  # "looks": others' looks at each target; "runs": a mission of its own for each
-    detection: float
-    detection_low: float
-    detection_high: float
+    found: float  # share of them
+    found_low: float
+    found_high: float
+    mistaken: int  # declared where the target is not
+    missed: int  # never declared
     mean_time_s: float
     mean_time_low_s: float | None  # None: of a single trial
     mean_time_high_s: float | None
     band: float
     off: float | None  # largest distance from the predicted curve; None: it predicts something else
-    mistaken: int
 
 
 @dataclass(frozen=True)
@@ -84,6 +96,8 @@ class SearchSummary(MissionSummary):
     declared_m: tuple[float, float] | None
     target_m: tuple[float, float]
     error_m: float | None
+    declare: Rule | None = None
+    counted: Counted | None = None
     detection_then: float
     outside_then: float | None
     duration_s: float
@@ -92,7 +106,6 @@ class SearchSummary(MissionSummary):
     t90_s: float | None = None
     mean_time_s: float | None = None
     outside: float | None = None
-    counted: Counted | None = None
     bound: IdealSearch
     koopman: IdealSearch
     path_m: Mapping[str, float]

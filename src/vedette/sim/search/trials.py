@@ -91,7 +91,8 @@ def _trials(
         running.say(f"{wanted} searches with other chance")
         return _runs(case, setup, steps, wanted, running)
     rng = np.random.default_rng([setup.seed, 4])
-    return Trials(detected_at(case.pdf, case.detectors, looks, steps, wanted, rng), "looks")
+    first = detected_at(case.pdf, case.detectors, looks, steps, wanted, rng)
+    return Trials(first, "looks", np.zeros(wanted, bool))
 
 
 def _runs(case: SearchCase, setup: SearchSetup, steps: int, trials: int, running: Running) -> Trials | None:
@@ -110,10 +111,10 @@ def _runs(case: SearchCase, setup: SearchSetup, steps: int, trials: int, running
                 pool.shutdown(cancel_futures=True)
                 return None
             ended.append(task.result())
-    at = [
-        ceil(time / case.pdf.dt - 1e-6) if outcome is Outcome.FOUND else steps + 1 for outcome, time in ended
-    ]
-    return Trials(np.array(at), "runs", sum(outcome is Outcome.MISTAKEN for outcome, _ in ended))
+    wrong = np.array([outcome is Outcome.MISTAKEN for outcome, _ in ended])
+    declared = wrong | [outcome is Outcome.FOUND for outcome, _ in ended]
+    at = [ceil(time / case.pdf.dt - 1e-6) for _, time in ended]
+    return Trials(np.where(declared, at, steps + 1), "runs", wrong)
 
 
 def search_once(case: SearchCase, setup: SearchSetup) -> tuple[Outcome, float]:
@@ -143,8 +144,11 @@ def _joined(
         counted=None if trials is None else trials.figures(times, detection[coordination]),
         comparison=comparison,
     )
-    curve = None if trials is None else trials.curve(len(times) - 1)
-    curves = replace(report.curves, detection=detection, outside=outside, counted=curve)
+    curves = replace(report.curves, detection=detection, outside=outside)
+    if trials is not None:
+        curves = replace(curves, counted=trials.curve(len(times) - 1))
+        if report.summary.declare is not None:
+            curves = replace(curves, mistaken=trials.curve(len(times) - 1, wrong=True))
     return replace(report, summary=summary, curves=curves)
 
 
