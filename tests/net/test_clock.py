@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from vedette.agent.body import TICK
-from vedette.net.clock import LATE, MissionClock
+from vedette.net.clock import LATE, MissionClock, ToldClock
 
 
 def test_a_clock_of_its_own_shows_no_more_than_the_body_has_done() -> None:
@@ -43,3 +43,16 @@ def test_a_shared_clock_shows_the_time_since_the_mission_began_whenever_it_start
     for clock in (early, late):
         assert clock.at == pytest.approx((90.0 - 50.0) * speed, abs=2 * TICK)
     assert late.at == pytest.approx(early.at, abs=TICK * 1.001)
+
+
+def test_a_clock_that_is_told_stands_still_with_its_source_and_never_goes_back() -> None:
+    source: list[float | None] = [None]
+    clock = ToldClock(lambda: source[0], 0.05)
+    clock.start(100.0)
+    seen = []
+    for now, shown in enumerate([None, 500.0, 500.5, 500.5, 3.0, 4.0]):
+        source[0] = shown
+        clock.tick(100.0 + now)
+        seen.append(clock.shows(100.0 + now))
+    assert seen == [0.0, 0.0, 0.5, 0.5, 0.5, 1.5]
+    assert clock.next == 105.05

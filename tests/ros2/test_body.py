@@ -2,66 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
 from math import pi
 
 import numpy as np
 import pytest
 
+from tests.support.ros2_doors import FakeDoor, at, scan
 from vedette.agent.effects import Drive, Route
 from vedette.agent.events import Arrived, Pose, Scan, Stuck
 from vedette.errors import InputError
 from vedette.ros2.body import Ros2Body
-from vedette.ros2.door import Answer, Deviation, GoalStatus, Joint, NavigatorGone, Told
-from vedette.ros2.goals import ActionStatus, Place
+from vedette.ros2.door import Answer, Deviation, GoalStatus, NavigatorGone, Told
+from vedette.ros2.goals import ActionStatus
 from vedette.ros2.robot import awaited
-from vedette.ros2.scans import LaserSweep
 from vedette.ros2.settings import Ros2Settings
-from vedette.ros2.transforms import planar
 from vedette.team import PlatformSpec
 
 START = (10.0, 5.0, 90.0)  # of the robot's map frame in the team's
 
 
-@dataclass
-class FakeDoor:
-    """Told by the test; remembers what it is asked for."""
-
-    told: list[Told] = field(default_factory=list)
-    asked: list[tuple[int, Place]] = field(default_factory=list)
-    cancelled: list[int] = field(default_factory=list)
-    closed: bool = False
-
-    def take(self) -> Sequence[Told]:
-        told, self.told = self.told, []
-        return told
-
-    def ask(self, goal: int, place: Place) -> None:
-        self.asked.append((goal, place))
-
-    def cancel(self, goal: int) -> None:
-        self.cancelled.append(goal)
-
-    def close(self) -> None:
-        self.closed = True
-
-
 def body_of(door: FakeDoor, **settings: object) -> Ros2Body:
     return Ros2Body(PlatformSpec(), Ros2Settings(start=START, **settings), door)  # type: ignore[arg-type]
-
-
-def at(stamp: float, x: float, y: float = 0.0, yaw: float = 0.0, prefix: str = "") -> list[Told]:
-    """What TF tells at a time of a robot at a place of its map, with a lidar 0.2 m ahead of its middle."""
-    return [
-        Joint(f"{prefix}map", f"{prefix}odom", stamp, planar(0.0, 0.0, 0.0)),
-        Joint(f"{prefix}odom", f"{prefix}base_link", stamp, planar(x, y, yaw)),
-        Joint(f"{prefix}base_link", f"{prefix}laser", 0.0, planar(0.2, 0.0, 0.0), fixed=True),
-    ]
-
-
-def scan(stamp: float, prefix: str = "") -> LaserSweep:
-    return LaserSweep(f"{prefix}laser", stamp, -0.5, 0.1, 0.0, 0.1, 6.0, np.full(11, 2.0))
 
 
 def route(*path: tuple[float, float], facing: float | None = None) -> Drive:

@@ -24,6 +24,7 @@ COMMANDS = {
     "explore": "Let a team of robots explore a building in simulation.",
     "keys": "Make the keys of a team.",
     "reproduce": "Compute the paper's figures and try its claims.",
+    "ros2": "Look at a robot that runs ROS 2.",
     "search": "Let a team of vehicles look for a hidden target in simulation.",
     "status": "List a team's agents: tree, links, agreement, refused messages.",
     "study": "Compare planners on many worlds.",

@@ -61,7 +61,6 @@ class BodySettings(Struct, forbid_unknown_fields=True, frozen=True):
     """The robot itself: a real one that runs ROS 2, or a simulated one."""
 
     ros2: Ros2Settings | None = None  # how a real one is reached; its lidar is what it tells of it
-
     map: str | None = None  # the world: a map_server .yaml beside this file, or an image
     start: tuple[float, float, float] | None = None  # x, y, heading [m, m, deg], team frame
     resolution: float | None = None  # of an image [m]

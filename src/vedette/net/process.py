@@ -14,7 +14,7 @@ from vedette.agent.body import Body, Shown
 from vedette.agent.effects import Drive, Fly, Job
 from vedette.agent.events import JobDone
 from vedette.agent.networked import Output
-from vedette.net.clock import MissionClock
+from vedette.net.clock import Clockwork
 from vedette.net.inbox import Inbox, PeerGone, PeerSeen
 from vedette.net.inbox import ReceivedDatagram as Received
 from vedette.net.names import Topic, robot_name
@@ -58,7 +58,7 @@ class AgentProcess:
     transport: Transport
     inbox: Inbox
     witness: Witness
-    mission: MissionClock
+    mission: Clockwork
     say: Callable[[str], None]  # tells whoever watches this process, a line each
     staged: Staged | None = None  # what befalls its links, to try a team
     clock: Callable[[], float] = time.monotonic

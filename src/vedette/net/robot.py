@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from vedette.agent import Agent
@@ -19,3 +20,4 @@ class Robot:
     shown: Shown | None  # the body, where it is simulated and others are to see it
     teller: Teller
     terms: Terms  # what its team has to agree on
+    time: Callable[[], float | None] | None = None  # its own clock [s], to go by; None: this host's

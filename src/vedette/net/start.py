@@ -8,8 +8,9 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from vedette.agent import NetworkedAgent
+from vedette.agent.body import TICK
 from vedette.missions.pairs import tell_unheeded, tell_unsaid
-from vedette.net.clock import MissionClock
+from vedette.net.clock import Clockwork, MissionClock, ToldClock
 from vedette.net.config import AgentConfig, access_of
 from vedette.net.explore.robot import explorer
 from vedette.net.inbox import Inbox
@@ -58,10 +59,9 @@ def agent_process(
     index = config.robot - 1
     begins = None if config.begins is None else time.monotonic() + (config.begins - now).total_seconds()
     shared = MissionClock(speed, begins)
-    # Robots on the ground begin when they have found each other, each by a clock of its own.
-    clock = MissionClock(speed) if config.mission == "explore" else shared
     staged = staged_faults(config, folder, shared)
     robot = ROBOTS[config.mission](config, folder, boot_at(now), speed)
+    clock = _clock_of(config, robot, speed, shared)
     inbox = Inbox()
     transport = Transport(access_of(config, folder, now), index, inbox)
     node = NetworkedAgent(
@@ -75,6 +75,16 @@ def agent_process(
     )
     witness = Witness(node, robot.body, transport, robot.teller, robot_name(index))
     return AgentProcess(node, robot.body, robot.shown, transport, inbox, witness, clock, say, staged)
+
+
+def _clock_of(config: AgentConfig, robot: Robot, speed: float, shared: MissionClock) -> Clockwork:
+    """Return what the mission's time goes by.
+
+    Robots on the ground begin when they have found each other, each by a clock of its own.
+    """
+    if robot.time is not None:
+        return ToldClock(robot.time, 0.5 * TICK / speed)
+    return MissionClock(speed) if config.mission == "explore" else shared
 
 
 def _tell_what_is_in_vain(config: AgentConfig) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from math import atan2, hypot, inf
 
@@ -43,6 +44,11 @@ class Ros2Body:
     _seen: float = -inf  # stamp of the latest scan that was taken in [s]
     _deviation: Deviation = field(default_factory=Deviation)
     _waiting: deque[LaserSweep] = field(default_factory=lambda: deque(maxlen=WAITING))
+
+    @property
+    def time(self) -> Callable[[], float | None] | None:
+        """The clock that the robot goes by, if that is a simulation's; None: this host's."""
+        return (lambda: self.door.time) if self.settings.use_sim_time else None
 
     @property
     def pose(self) -> Place:
@@ -89,9 +95,10 @@ class Ros2Body:
     def hear(self, now: float) -> None:
         """Take in what the robot has told."""
         for told in self.door.take():
-            self._hear(told, now)
+            self.take_in(told, now)
 
-    def _hear(self, told: Told, now: float) -> None:
+    def take_in(self, told: Told, now: float) -> None:
+        """Take in one thing."""
         match told:
             case Joint(parent, child, stamp, T, fixed):
                 self.transforms.add(parent, child, stamp, T, fixed=fixed)

@@ -60,6 +60,10 @@ class Door(Protocol):
     def take(self) -> Sequence[Told]:
         """Return what has been told since the last call, in order."""
 
+    @property
+    def time(self) -> float | None:
+        """What ``/clock`` shows [s]; None: nothing yet."""
+
     def ask(self, goal: int, place: Place) -> None:
         """Send the navigator a goal; ``place``: x, y [m], heading [rad], map frame."""
 

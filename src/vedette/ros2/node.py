@@ -17,6 +17,7 @@ import numpy as np
 from vedette.errors import InputError
 from vedette.ros2.door import Answer, Deviation, GoalStatus, Joint, NavigatorGone, Told
 from vedette.ros2.goals import Place
+from vedette.ros2.offered import Offered, Writer
 from vedette.ros2.scans import LaserSweep
 from vedette.ros2.settings import Ros2Settings
 from vedette.ros2.transforms import deviations, matrix
@@ -24,6 +25,8 @@ from vedette.ros2.transforms import deviations, matrix
 HOW = "start it where ROS 2 is set up: source /opt/ros/<distro>/setup.bash"
 MOST_GOALS = 64  # that are remembered
 GOODBYE = 1.0  # what was ordered last has so long to get out [s]
+TOPICS = ("scan", "pose", "navigate_to_pose")  # settings that name some
+NAVIGATOR = "bt_navigator"  # Nav2's node that offers the action
 DEPTH = 5  # messages of a sensor that are kept for us
 
 
@@ -54,6 +57,7 @@ class RosDoor:
     _told: deque[Told] = field(default_factory=deque)
     _goals: dict[bytes, int] = field(default_factory=dict)  # our numbers by the names that goals travel with
     _was_there: bool = False  # the navigator
+    time: float | None = None  # that /clock shows [s]
 
     def __post_init__(self) -> None:
         rclpy, signals = ros("rclpy"), ros("rclpy.signals")
@@ -104,6 +108,13 @@ class RosDoor:
             static = f"{topic}_static"
             node.create_subscription(tf, static, lambda m, own=own: self._hear_tf(m, own, True), latched)
 
+        if settings.use_sim_time:
+            newest = qos.QoSProfile(depth=1, reliability=qos.ReliabilityPolicy.BEST_EFFORT)
+            node.create_subscription(ros("rosgraph_msgs.msg").Clock, "/clock", self._hear_clock, newest)
+
+    def _hear_clock(self, message: Any) -> None:
+        self.time = seconds(message.clock)
+
     @property
     def _prefix(self) -> str:
         """What frames on the common topic begin with that are this robot's."""
@@ -138,6 +149,45 @@ class RosDoor:
     def _hear_pose(self, message: Any) -> None:
         self._told.append(Deviation(*deviations(message.pose.covariance)))
 
+    # -- what there is to be told -------------------------------------------------------------------------
+
+    def offered(self) -> Offered:
+        """Return what the robot's ROS offers by now."""
+        node, settings = self.node, self.settings
+        resolved = {name: node.resolve_topic_name(getattr(settings, name)) for name in TOPICS}
+        resolved |= {name: node.resolve_topic_name(name) for name in ("tf", "tf_static")}
+        sure, kept = ros("rclpy.qos").ReliabilityPolicy, ros("rclpy.qos").DurabilityPolicy
+        return Offered(
+            {name: tuple(types) for name, types in node.get_topic_names_and_types()},
+            resolved,
+            {
+                topic: tuple(
+                    Writer(
+                        info.qos_profile.reliability == sure.RELIABLE,
+                        info.qos_profile.durability == kept.TRANSIENT_LOCAL,
+                    )
+                    for info in node.get_publishers_info_by_topic(topic)
+                )
+                for topic in (*resolved.values(), "/tf", "/tf_static", "/clock")
+            },
+            self._there,
+            self._state_of(NAVIGATOR),
+        )
+
+    def _state_of(self, node: str) -> str | None:
+        """Ask a node for the state of its life cycle; None: it does not answer."""
+        get_state = ros("lifecycle_msgs.srv").GetState
+        client = self.node.create_client(get_state, f"{node}/get_state")
+        try:
+            if not client.wait_for_service(timeout_sec=GOODBYE):
+                return None
+            asked, until = client.call_async(get_state.Request()), time.monotonic() + GOODBYE
+            while not asked.done() and time.monotonic() < until:
+                time.sleep(0.01)
+            return str(asked.result().current_state.label) if asked.done() else None
+        finally:
+            self.node.destroy_client(client)
+
     # -- the navigator ------------------------------------------------------------------------------------
 
     def _find_navigator(self) -> None:
@@ -169,11 +219,8 @@ class RosDoor:
         if len(self._goals) > MOST_GOALS:
             del self._goals[next(iter(self._goals))]
         request.goal_id.uuid = np.frombuffer(name, np.uint8)
-        pose = request.goal.pose
-        pose.header.frame_id, pose.header.stamp = (
-            self.settings.map_frame,
-            self.node.get_clock().now().to_msg(),
-        )
+        pose = request.goal.pose  # its stamp stays 0: the place is where it is now
+        pose.header.frame_id = self.settings.map_frame
         pose.pose.position.x, pose.pose.position.y = x, y
         pose.pose.orientation.z, pose.pose.orientation.w = sin(heading / 2), cos(heading / 2)
         answer = self._asker.call_async(request)

@@ -61,6 +61,8 @@ def awaited(
 def what_is_missing(body: Ros2Body) -> str | None:
     """Return what an agent still lacks of a robot to begin, with a remedy; None: nothing."""
     settings, sweep = body.settings, body.latest
+    if settings.use_sim_time and body.door.time is None:
+        return "nothing on /clock; start the simulation, or leave use_sim_time out"
     if sweep is None:
         return f"nothing on {settings.scan}; start the lidar's driver, or name its topic in scan"
     base = body.frame(settings.base_frame)

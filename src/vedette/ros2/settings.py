@@ -25,6 +25,7 @@ class Ros2Settings(Struct, forbid_unknown_fields=True, frozen=True):
     map_frame: Name = "map"
     pose: Name = "amcl_pose"  # geometry_msgs/PoseWithCovarianceStamped, where there is one
     navigate_to_pose: Name = "navigate_to_pose"
+    use_sim_time: bool = False  # the mission goes by /clock
     no_return: Literal["ignore", "free"] = "ignore"  # what a beam says that nothing came back from
     area: tuple[float, float, float, float] = (-50.0, -50.0, 50.0, 50.0)  # left, lower, right, upper [m]
     wait: Annotated[float, Meta(ge=0.0, le=86400.0)] = 60.0  # for what the agent needs to begin [s]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from math import atan2, cos, hypot, inf, pi, tau
 from typing import Any
 
@@ -34,7 +35,6 @@ class _Run:
     handle: Any
     goal: Pose
     done: Future
-    began: float
     path: NDArray[np.float64] | None = None
     planned: float = -inf
     moved: tuple[Pose, float] | None = None
@@ -60,7 +60,7 @@ class Navigator:
             self.node,
             NavigateToPose,
             "navigate_to_pose",
-            execute_callback=self._execute,
+            execute_callback=lambda handle: None,  # each goal brings its own
             goal_callback=self._consider,
             handle_accepted_callback=self._accept,
             cancel_callback=lambda handle: CancelResponse.ACCEPT,
@@ -74,12 +74,10 @@ class Navigator:
         asked = handle.request.pose.pose
         yaw = 2.0 * atan2(asked.orientation.z, asked.orientation.w)
         goal = self.to_world((asked.position.x, asked.position.y, yaw))
-        self._run = _Run(handle, goal, Future(), self.now)
-        handle.execute()
+        self._run = run = _Run(handle, goal, Future())
+        handle.execute(partial(self._execute, run=run))
 
-    async def _execute(self, handle: Any) -> Any:
-        run = self._run
-        assert run is not None
+    async def _execute(self, handle: Any, run: _Run) -> Any:
         result = NavigateToPose.Result()
         how = await run.done
         self.ended[how] = self.ended.get(how, 0) + 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -29,6 +30,7 @@ class _Place(NamedTuple):
     body: Body
     shown: Shown | None
     terms: dict[str, str]  # what its team has to agree on beside how it explores
+    time: Callable[[], float | None] | None = None  # its own clock [s]
 
 
 def explorer(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robot:
@@ -50,7 +52,7 @@ def explorer(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robo
         waits_for=config.robots,
     )
     terms = {**terms_of(place.lattice, options), **place.terms}
-    return Robot(agent, place.body, place.shown, ExploreTeller(agent), terms)
+    return Robot(agent, place.body, place.shown, ExploreTeller(agent), terms, place.time)
 
 
 def _simulated(config: AgentConfig, folder: Path) -> _Place:
@@ -62,7 +64,7 @@ def _simulated(config: AgentConfig, folder: Path) -> _Place:
 
 def _real(config: AgentConfig) -> _Place:
     body = real_robot(config)
-    return _Place(Lattice(real_frame(config)), body.hull, body, None, {})
+    return _Place(Lattice(real_frame(config)), body.hull, body, None, {}, body.time)
 
 
 def _fingerprint(world: World) -> str:

@@ -47,6 +47,7 @@ class Ros2Plan(ExplorePlan):
         left, right, lower, upper = frame.extent
         ros2 = {
             "namespace": _namespace(i),
+            "use_sim_time": True,  # a host that is too slow for them slows the mission down
             "no_return": "free",  # what simulated lidars do not see is not there
             "start": self._start(i),
             "area": [left, lower, right, upper],
@@ -75,7 +76,7 @@ def strangers(
         InputError: they do not start; the line says what is missing.
     """
     command = [sys.executable, "-m", "vedette.ros2_robots", str(folder / ROBOTS)]
-    options = ["--speed", str(speed), "--starter", str(os.getpid())]
+    options = ["--speed", str(speed), "--sim-time", "--starter", str(os.getpid())]
     log.parent.mkdir(parents=True, exist_ok=True)
     with log.open("wb") as said:
         process = subprocess.Popen(
