@@ -11,6 +11,7 @@ from tests.support.ros2_doors import FakeDoor, at, scan
 from vedette.agent.effects import Drive, Route
 from vedette.agent.events import Arrived, Pose, Scan, Stuck
 from vedette.errors import InputError
+from vedette.maps import GridFrame
 from vedette.ros2.body import Ros2Body
 from vedette.ros2.door import Answer, Deviation, GoalStatus, NavigatorGone, Told
 from vedette.ros2.goals import ActionStatus
@@ -26,7 +27,7 @@ def body_of(door: FakeDoor, **settings: object) -> Ros2Body:
 
 
 def route(*path: tuple[float, float], facing: float | None = None) -> Drive:
-    return Drive(Route(np.array(path), np.ones((2, 2), np.bool_), facing=facing))
+    return Drive(Route(np.array(path), np.ones((2, 2), np.bool_), GridFrame(0.1, 2, 2), facing=facing))
 
 
 @pytest.mark.parametrize(("namespace", "prefix"), [("", ""), ("robot1", ""), ("/robot1", "robot1/")])
