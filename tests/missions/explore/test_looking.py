@@ -58,6 +58,24 @@ def follow(looking: Looking, pose: Pose, direction: float | None, distance: floa
 
 
 @settings(max_examples=60)
+@given(st.fixed_dictionaries(SENSORS), st.floats(0.5, 8.0), st.floats(-3.0, 3.0), st.booleans())
+def test_until_a_scan_was_taken_where_it_turned_to_it_stays_there(
+    sensor: dict[str, float], distance: float, heading: float, around: bool
+) -> None:
+    spec = PlatformSpec(view=sensor["view"], beams=int(sensor["beams"]))
+    looking, pose = Looking(spec, 0.05), Pose(0.0, 0.0, heading)
+    for _ in range(5):
+        looking.add(pose, beams(spec, pose.heading))
+        turn = looking.around(pose, distance) if around else looking.toward(pose, 1.0, distance)
+        if turn is None:
+            return
+        pose = Pose(0.0, 0.0, turn)
+        again = looking.around(pose, distance) if around else looking.toward(pose, 1.0, distance)
+        assert again is not None
+        assert math.isclose(again, pose.heading, abs_tol=DIRECTION)
+
+
+@settings(max_examples=60)
 @given(heading=st.floats(-7.0, 7.0), distance=st.floats(0.3, 6.0), **SENSORS)
 def test_a_look_all_round_leaves_no_gap_wider_than_between_beams_or_two_cells(
     heading: float, distance: float, view: float, beams: int

@@ -30,6 +30,7 @@ class Looking:
     resolution: float  # of the map [m]
     _seen: NDArray[np.bool_] = field(init=False)  # (DIRECTIONS,) from direction 0 = +x on
     _spot: tuple[float, float] = (inf, inf)  # from where [m], team frame
+    _first: float = 0.0  # direction of the first beam that was sent from there [rad]
 
     def __post_init__(self) -> None:
         self._seen = np.zeros(DIRECTIONS, np.bool_)
@@ -55,7 +56,7 @@ class Looking:
         if self.all_round:
             return
         if not self.here(pose):
-            self._spot = pose.x, pose.y
+            self._spot, self._first = (pose.x, pose.y), self._first_beam(pose)
             self._seen[:] = False
         self._seen[np.floor(angles / DIRECTION).astype(np.int64) % DIRECTIONS] = True
 
@@ -70,18 +71,19 @@ class Looking:
         ``distance``: of what is looked at [m], at which beams shall lie close together.
         """
         if self.spec.view >= 360.0:
-            return self._next(pose, pose.heading, tau, distance)
+            return self.around(pose, distance)
         width = self.view - 2.0 * self.between
         return self._next(pose, direction - 0.5 * width, width, distance)
 
     def around(self, pose: Pose, distance: float) -> float | None:
         """Return the heading to turn to next for a look all round; None: there has been one."""
-        return self._next(pose, pose.heading - 0.5 * (self.view - self.between), tau, distance)
+        return self._next(pose, self._first if self.here(pose) else self._first_beam(pose), tau, distance)
 
     def _next(self, pose: Pose, start: float, width: float, distance: float) -> float | None:
         """Return the heading that brings the first beam to where the first unseen direction is.
 
-        The directions are those from ``start`` on, counter-clockwise, over ``width`` [rad].
+        The directions are those from ``start`` on, counter-clockwise, over ``width`` [rad]. Until a scan was
+        taken there, it is the same heading again.
         """
         if self.all_round:
             return None
@@ -91,11 +93,14 @@ class Looking:
         )  # beams are told by direction
         if unseen is None:
             return None
-        first_beam = 0.5 * (self.between - self.view)
-        turn = unseen[0] + 0.5 * min(wanted, unseen[1] - unseen[0]) - first_beam - pose.heading
+        turn = unseen[0] + 0.5 * min(wanted, unseen[1] - unseen[0]) - self._first_beam(pose)
         if self.spec.view >= 360.0:  # any beam will do
-            turn %= self.between
+            turn = (turn + 0.5 * DIRECTION) % self.between - 0.5 * DIRECTION
         return pose.heading + (turn + pi) % tau - pi
+
+    def _first_beam(self, pose: Pose) -> float:
+        """Return the direction of the first beam [rad]."""
+        return pose.heading - 0.5 * (self.view - self.between)
 
     def _first_unseen(
         self, pose: Pose, start: float, width: float, apart: float
