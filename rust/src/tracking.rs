@@ -2,16 +2,19 @@
 //!
 //! Information is sparse: targets in ascending order, and for each a block of `steps` symmetric 2x2 matrices.
 
+mod cloud;
+pub mod look;
 pub mod small;
 pub mod track;
 
 use numpy::{
-    IntoPyArray, PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray3,
-    PyUntypedArrayMethods,
+    IntoPyArray, PyArray1, PyArray2, PyArray3, PyArray4, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
+    PyReadonlyArray3, PyUntypedArrayMethods,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use look::Sight;
 use small::{Mat, Sym};
 use track::{Measure, Track};
 
@@ -171,8 +174,74 @@ fn py_track_gradient<'py>(
     out.into_flattened().into_pyarray(py).reshape([rows, steps, 3])
 }
 
+type Numbers = (f64, f64, f64, f64, f64);
+
+fn sight_of((range, bearing, place, min_range, stride): Numbers) -> Sight {
+    Sight { range, bearing, place, min_range, stride }
+}
+
+type Lines<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray3<f64>>, Bound<'py, PyArray2<f64>>);
+
+#[pyfunction(name = "track_lines")]
+fn py_track_lines<'py>(
+    py: Python<'py>,
+    sight: Numbers,
+    offsets: PyReadonlyArray2<'py, f64>,
+    covariances: PyReadonlyArray2<'py, f64>,
+) -> PyResult<Lines<'py>> {
+    let count = offsets.shape()[0];
+    check(offsets.shape() == [count, 2] && covariances.shape() == [count, 3], "offsets and covariances")?;
+    let (sight, at, spread) = (sight_of(sight), offsets.as_slice()?, covariances.as_slice()?);
+    let (mut info, mut gain, mut expected) =
+        (Vec::with_capacity(3 * count), Vec::with_capacity(6 * count), Vec::with_capacity(3 * count));
+    for (x, p) in at.chunks_exact(2).zip(spread.chunks_exact(3)) {
+        let line = sight.line([x[0], x[1]], [p[0], p[1], p[2]]);
+        info.extend(line.information);
+        gain.extend(line.gain.as_flattened());
+        expected.extend(line.expected);
+    }
+    Ok((
+        info.into_pyarray(py).reshape([count, 3])?,
+        gain.into_pyarray(py).reshape([count, 2, 3])?,
+        expected.into_pyarray(py).reshape([count, 3])?,
+    ))
+}
+
+#[pyfunction(name = "track_foreseen")]
+fn py_track_foreseen<'py>(
+    py: Python<'py>,
+    sight: Numbers,
+    view: (f64, f64),
+    poses: Matrices<'py>,
+    points: Matrices<'py>,
+    covariances: Matrices<'py>,
+) -> PyResult<Bound<'py, PyArray4<f64>>> {
+    let ([paths, steps], targets) = ([poses.shape()[0], poses.shape()[1]], points.shape()[0]);
+    let fits = poses.shape()[2] == 3
+        && points.shape() == [targets, steps, 2]
+        && covariances.shape() == [targets, steps, 3];
+    check(fits, "poses, points and covariances")?;
+    let (sight, from, to, spread) =
+        (sight_of(sight), poses.as_slice()?, points.as_slice()?, covariances.as_slice()?);
+    let mut out = Vec::with_capacity(3 * paths * targets * steps);
+    if steps > 0 {
+        for path in from.chunks_exact(3 * steps) {
+            for (x, p) in to.chunks_exact(2 * steps).zip(spread.chunks_exact(3 * steps)) {
+                for k in 0..steps {
+                    let offset = [x[2 * k] - path[3 * k], x[2 * k + 1] - path[3 * k + 1]];
+                    let covariance = [p[3 * k], p[3 * k + 1], p[3 * k + 2]];
+                    out.extend(sight.foreseen(offset, path[3 * k + 2], covariance, view.0, view.1));
+                }
+            }
+        }
+    }
+    out.into_pyarray(py).reshape([paths, targets, steps, 3])
+}
+
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(py_track_values, m)?)?;
     m.add_function(wrap_pyfunction!(py_track_gradient, m)?)?;
+    m.add_function(wrap_pyfunction!(py_track_lines, m)?)?;
+    m.add_function(wrap_pyfunction!(py_track_foreseen, m)?)?;
     Ok(())
 }

@@ -180,6 +180,18 @@ def track_gradient(
     measure: str,
     team: tuple[NDArray[np.int64], NDArray[np.float64]],
 ) -> NDArray[np.float64]: ...
+def track_lines(
+    sight: tuple[float, float, float, float, float],
+    offsets: NDArray[np.float64],
+    covariances: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
+def track_foreseen(
+    sight: tuple[float, float, float, float, float],
+    view: tuple[float, float],
+    poses: NDArray[np.float64],
+    points: NDArray[np.float64],
+    covariances: NDArray[np.float64],
+) -> NDArray[np.float64]: ...
 
 # search
 def propagate(

@@ -59,6 +59,8 @@ def test_a_reply_is_the_best_of_all_candidates_or_keeps_the_present_course(
     platform = random_platform(rng, belief, continuous=continuous)
     others = random_impact(rng, belief)
     current = Course(belief.k0, tuple(rng.uniform(-1, 1, belief.horizon) * platform.turn_rate))
+    platform.place(*platform.pose, present=current)  # as in a mission, where it is among the candidates
+    platform.prepare(belief)
 
     def value(course: Course) -> float:
         return OBJECTIVE.value(belief, OBJECTIVE.combine(others, platform.impact(belief, course)))
@@ -83,7 +85,9 @@ def test_candidates_are_the_impacts_of_the_courses_one_by_one(seed: int) -> None
     assert len(platform.candidates) == len(platform.courses) >= 27
     for course, impact in list(zip(platform.courses, platform.candidates, strict=True))[::5]:
         poses = drive(platform.pose, course.rates, platform.speed, belief.dt)
-        dense = platform.sensor.information(poses, belief.predicted_means[..., :2].swapaxes(0, 1))
+        means = belief.predicted_means[..., :2].swapaxes(0, 1)
+        spreads = belief.predicted_covariances[..., :2, :2].swapaxes(0, 1)
+        dense = platform.sensor.foresee(poses[None], means, spreads, platform.speed * belief.dt)[0]
         seen = dense.any(axis=(1, 2))
         np.testing.assert_array_equal(impact.targets, np.flatnonzero(seen))
         np.testing.assert_allclose(impact.blocks, dense[seen], rtol=1e-12, atol=1e-15)
@@ -178,7 +182,8 @@ def test_the_gradient_by_turn_rates_agrees_with_central_differences(name: str, s
     poses = drive(platform.pose, rates, 4.0, belief.dt)
     points = belief.predicted_means[..., :2].swapaxes(0, 1)
     team = objective.combine(others, platform.impact(belief, Course(belief.k0, tuple(rates))))
-    by_pose = sensor.slope(poses, points, objective.gradient(belief, team)).sum(axis=0)
+    spreads = belief.predicted_covariances[..., :2, :2].swapaxes(0, 1)
+    by_pose = sensor.foreseen_slope(poses, points, spreads, objective.gradient(belief, team), 4.0).sum(axis=0)
     found = turn_rate_gradient(platform.pose, rates, 4.0, belief.dt, by_pose)
     steps = 1e-5 * np.eye(5)
     differences = np.array([(value(rates + step) - value(rates - step)) / 2e-5 for step in steps])
@@ -311,3 +316,16 @@ def test_speeds_that_are_none_are_refused() -> None:
         TrackingPlatform(-1.0, 0.5, Position())
     with pytest.raises(InputError, match="turn_rate must be >= 0 rad/s; got nan"):
         TrackingPlatform(1.0, math.nan, Position())
+
+
+def test_gains_are_compared_relative_to_what_they_are_gains_of() -> None:
+    """A poor sensor far from a target known to a millimetre gains some 1e-11 nat, and still chooses."""
+    belief = tracks([static(1.0)], [[0.0, 60.0]], [1e-6 * np.eye(2)], dt=1.0, horizon=2)
+    platform = TrackingPlatform(5.0, 0.4, BearingOnly(range=100.0, bearing_noise=90.0))
+    platform.prepare(belief)
+    nobody = OBJECTIVE.nothing(belief)
+    values = OBJECTIVE.values(belief, nobody, platform.candidates or [])
+    assert 0.0 < values.max() < 1e-9
+    reply = platform.reply(belief, nobody, Course(0, (-0.4, -0.4)))
+    assert reply == platform.courses[int(np.argmax(values))]
+    assert OBJECTIVE.value(belief, platform.impact(belief, reply)) > values.min()

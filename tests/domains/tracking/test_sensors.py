@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from vedette.domains.tracking.belief import tracks
-from vedette.domains.tracking.filter import nees, update
+from vedette.domains.tracking.filter import update
 from vedette.domains.tracking.models import static
 from vedette.domains.tracking.sensing import Sensor, evidence, wrapped
 from vedette.domains.tracking.sensors import (
@@ -52,23 +52,6 @@ def test_information_is_that_of_the_measurements_jacobian(sensor: Sensor, seed: 
     info, _ = sensor.likelihood(sensor.predicted(pose, point), pose, np.append(point, [0, 0]))
     np.testing.assert_allclose(info[:2, :2], expected, rtol=1e-12, atol=1e-12)
     assert not info[2:].any()
-
-
-@pytest.mark.parametrize("sensor", ALL)
-@settings(deadline=None, max_examples=30)
-@given(seed=seeds)
-def test_the_slope_agrees_with_central_differences_of_the_information(sensor: Sensor, seed: int) -> None:
-    pose, point = pose_and_point(seed)
-    if abs(np.hypot(*(point - pose[:2])) - sensor.min_range) < 0.1:
-        return  # a kink
-    sensor = replace(sensor, detection=0.7)
-    by = np.random.default_rng(seed).normal(size=3)
-    step = 1e-6
-    differences = [
-        by @ (sensor.information(pose + dx, point) - sensor.information(pose - dx, point)) / (2 * step)
-        for dx in step * np.eye(2, 3)
-    ]
-    np.testing.assert_allclose(sensor.slope(pose, point, by), differences, rtol=1e-5, atol=1e-4)
 
 
 def test_many_poses_and_targets_at_once_are_each_on_its_own() -> None:
@@ -118,7 +101,6 @@ def test_closer_than_the_least_range_nothing_more_is_expected() -> None:
     at_least = sensor.information((0, 0, 0), (2.0, 0.0))
     np.testing.assert_allclose(sensor.information((0, 0, 0), (0.01, 0.0)), at_least)
     assert np.isfinite(sensor.information((0, 0, 0), (0.0, 0.0))).all()
-    assert np.isfinite(sensor.slope((0, 0, 0), (0.0, 0.0), np.ones(3))).all()
 
 
 @pytest.mark.parametrize("sensor", ALL)
@@ -168,45 +150,6 @@ def test_the_information_vector_needs_the_linearisations_offset() -> None:
     deviation = np.sqrt(np.trace(right.covariances[0, :2, :2]))
     assert np.hypot(*(right.means[0] - truth)[:2]) < 3 * deviation
     assert np.hypot(*(printed.means[0] - truth)[:2]) > 50 * deviation
-
-
-@pytest.mark.parametrize("sensor", ALL)
-@settings(deadline=None, max_examples=30)
-@given(seed=seeds)
-def test_the_curvature_is_that_of_the_measurements_second_differences(sensor: Sensor, seed: int) -> None:
-    pose, point = pose_and_point(seed)
-    point = pose[:2] + 3.0 * (point - pose[:2]) / np.hypot(*(point - pose[:2]))
-    root = np.random.default_rng(seed).normal(size=(2, 2))
-    covariance, step = root @ root.T, 1e-4
-
-    def at(dx: NDArray[np.float64]) -> NDArray[np.float64]:
-        return sensor.innovation(sensor.predicted(pose, point + dx), sensor.predicted(pose, point))
-
-    e = step * np.eye(2)
-    second = [
-        [(at(a + b) - at(a - b) - at(b - a) + at(-a - b)) / (4 * step**2) for b in e] for a in e
-    ]  # (2, 2, m)
-    curved = np.moveaxis(np.array(second), -1, 0) @ covariance
-    bias, spread = sensor.curvature(pose, point, covariance)
-    np.testing.assert_allclose(bias, np.trace(curved, axis1=1, axis2=2) / 2, rtol=1e-4, atol=1e-5)
-    np.testing.assert_allclose(spread, np.trace(curved @ curved, axis1=1, axis2=2) / 2, rtol=1e-4, atol=1e-5)
-
-
-def test_with_the_curvature_a_bearing_from_close_by_leaves_the_estimate_nearly_consistent() -> None:
-    """The NEES of a position is 2 on average; by the first order alone it is twenty times that."""
-    sensor, pose = BearingOnly(bearing_noise=1.0), np.array([9.0, 0.0, 0.0])
-    belief = tracks([static(1.0)], [[0.0, 0.0]], [np.diag([9.0, 9.0])], dt=1.0, horizon=1)
-    totals = np.zeros(2)
-    for run in range(500):
-        rng = np.random.default_rng([2006, run])
-        truth = np.append(rng.normal(0.0, 3.0, 2), [0.0, 0.0])
-        z = sensor.measure(rng, pose, truth)
-        assert z is not None
-        for order, covariances in enumerate((None, belief.covariances)):
-            after = update(belief, *evidence(sensor, pose, {0: z}, belief.means, covariances))
-            totals[order] += float(nees(after, truth[None])[0])
-    assert totals[0] / 500 > 40.0
-    assert totals[1] / 500 < 2.8
 
 
 def test_who_is_not_seen_contributes_nothing() -> None:

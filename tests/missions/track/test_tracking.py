@@ -70,7 +70,7 @@ def test_the_oracle_finds_the_best_joint_choice_of_all() -> None:
 
 
 def test_continuous_turn_rates_are_flown_and_stay_within_the_limit() -> None:
-    simulation, report = flown(scenario(duration=10), continuous=True)
+    simulation, report = flown(scenario(duration=20), continuous=True)
     assert report.summary.outcome is Outcome.COMPLETE
     rates = {rate for mission in simulation.missions for rate in mission.strategy.rates}
     assert max(map(abs, rates)) <= 0.4 + 1e-12
@@ -151,20 +151,17 @@ def test_the_nees_band_holds_nineteen_in_twenty(d: int) -> None:
     assert np.mean(drawn > high) == pytest.approx(0.025, abs=0.004)
 
 
-def test_a_measurement_from_overhead_or_beyond_all_bounds_is_left_out_and_counted() -> None:
+def test_a_measurement_from_overhead_counts_and_one_beyond_all_bounds_is_left_out_and_counted() -> None:
     mission = TrackSimulation(scenario(), TrackSetup()).missions[0]
-    before = mission.tracks()
-    x, y = before.means[0, :2].tolist()
-    mission.observe(Sensed({0: np.array([3.0, 0.1])}, 0.0), Pose(x + 2.0, y, 0.0), [], 0.0)
-    assert mission.skipped == 1
-    mission.observe(Sensed({0: np.array([1e9, 0.1])}, 0.0), Pose(x - 100.0, y, 0.0), [], 0.0)
-    assert mission.skipped == 2
-    mission.publish(0.0)
-    assert (mission.tracks().Y == before.Y).all()
-    mission.observe(Sensed({0: np.array([100.0, 0.1])}, 0.0), Pose(x - 100.0, y, 0.0), [], 0.0)
-    mission.publish(0.0)
-    assert mission.skipped == 2
-    assert np.trace(mission.tracks().Y[0]) > np.trace(before.Y[0])
+    x, y = mission.tracks().means[0, :2].tolist()
+    looks = ([3.0, 0.1], x, 0), ([1e9, 0.1], x - 100.0, 1), ([100.0, 0.1], x - 100.0, 1)
+    for measured, at, skipped in looks:
+        before = mission.tracks()
+        mission.observe(Sensed({0: np.array(measured)}, 0.0), Pose(at, y, 0.0), [], 0.0)
+        mission.publish(0.0)
+        assert mission.skipped == skipped
+        told = np.trace(mission.tracks().Y[0]) - np.trace(before.Y[0])
+        assert (told > 1e-3) == (measured[0] < 1e9)
 
 
 # -- what is planned ------------------------------------------------------------------------------------
@@ -316,3 +313,62 @@ def test_far_from_the_origin_and_precise_all_is_as_near_it(fusion: str) -> None:
     assert far.summary.entropy_mean_nat == pytest.approx(near.summary.entropy_mean_nat, abs=0.5)
     there, here = far.log.snapshots[-1], near.log.snapshots[-1]
     assert there.squared_error == pytest.approx(here.squared_error, rel=0.1, abs=1e-4)
+
+
+# -- targets that are badly known -----------------------------------------------------------------------
+
+KINDS = {
+    "range-bearing": {"type": "range-bearing", "range": 200},
+    "bearing": {"type": "bearing", "range": 200, "bearing_noise": 1},
+    "range": {"type": "range", "range": 200, "range_noise": 2},
+    "position": {"type": "position", "range": 200, "noise": 5},
+}
+
+
+def lost(kind: str) -> TrackScenario:
+    """Four vehicles go and look for a target that nobody has seen for 60 s."""
+    vehicles = [{"start": [100, 300 - 60 * i, 0], "speed": 15, "sensor": KINDS[kind]} for i in range(4)]
+    target = {"model": "constant-velocity", "mean": [400, 300, 1, 0], "sd": [67, 67, 1.8, 1.8], "q": 0.05}
+    return scenario(area=[0, 0, 1000, 600], vehicles=vehicles, targets=[target], duration=60)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_target_lost_for_a_minute_is_found_again(kind: str) -> None:
+    for seed in range(2):
+        _, report = flown(lost(kind), seed=seed)
+        assert report.summary.skipped == 0
+        assert math.sqrt(report.log.snapshots[-1].squared_error) < 10.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_target_lost_for_a_minute_is_found_again_by_all_seeds_and_honestly(kind: str) -> None:
+    """Over 20 seeds the NEES of the last step, of 4 components each, lies in its band (or below)."""
+    last = []
+    for seed in range(20):
+        _, report = flown(lost(kind), seed=seed)
+        assert math.sqrt(report.log.snapshots[-1].squared_error) < 10.0
+        last.append(report.log.snapshots[-1].nees)
+    assert np.mean(last) < nees_band(80)[1]
+
+
+@pytest.mark.parametrize("fusion", ["replicated", "sums", "channel", "intersection"])
+@pytest.mark.parametrize("mean", [(60, 40), (75, 40), (90, 40)])
+def test_a_target_under_or_beside_a_sensor_on_a_pivot_is_found(fusion: str, mean: tuple[int, int]) -> None:
+    vehicle = {"start": [60, 40, 90], "speed": 0, "sensor": {"type": "range-bearing", "range": 120}}
+    target = {"model": "static", "mean": list(mean), "sd": [20, 20], "start": [75, 40]}
+    of = scenario(vehicles=[vehicle, vehicle], targets=[target], duration=20)
+    _, report = flown(of, fusion=fusion)
+    assert report.summary.skipped == 0
+    assert math.sqrt(report.log.snapshots[-1].squared_error) < 0.5
+
+
+def test_two_bearings_from_one_spot_do_not_make_believe_that_they_know_how_far_it_is() -> None:
+    vehicle = {"start": [60, 300, 0], "speed": 0, "sensor": {"type": "bearing", "range": 800}}
+    targets = [
+        {"model": "constant-velocity", "mean": [400, 300, 2, 1], "sd": [100, 100, 3, 3]},
+        {"model": "static", "mean": [600, 200], "sd": [100, 100]},
+    ]
+    of = scenario(area=[0, 0, 800, 600], vehicles=[vehicle, vehicle], targets=targets, duration=30)
+    means = [flown(of, seed=seed)[1].summary.nees for seed in (4, 5, 6)]
+    assert max(means) < nees_band(6)[1]

@@ -87,13 +87,12 @@ class TrackingPlatform:
             belief, others, [self.objective.nothing(belief), self.impact(belief, current)]
         )
         best, value = self.courses[int(np.argmax(values))], float(values.max())
-        least = EPSILON * max(1.0, abs(base))
-        if max(value, present) - base <= least:
+        if max(value, present) - base <= EPSILON * abs(base):
             return self._transit(belief, others, current)
         if self.continuous:
             start = best if value > present else current
             best, value = self._climb(belief, others, start)
-        return best if value - present > EPSILON * max(1.0, present - base) else current
+        return best if value - present > EPSILON * abs(present) else current
 
     def slack(self, belief: Tracks, team: Impact) -> float:
         """No course adds more than this to the team's impact; infinite where the objective has no bound.
@@ -122,26 +121,31 @@ class TrackingPlatform:
         away = np.hypot(*np.moveaxis(belief.predicted_means[..., :2] - self.pose[:2], -1, 0))
         return np.flatnonzero((away <= self.sensor.range + gone[:, None]).any(axis=0))
 
+    def _expected(self, belief: Tracks) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Where the targets within reach will be, (M, K, 2), and how uncertain, (M, K, 2, 2)."""
+        near = self._near
+        means, spreads = belief.predicted_means[:, near, :2], belief.predicted_covariances[:, near, :2, :2]
+        return means.swapaxes(0, 1), spreads.swapaxes(0, 1)
+
     def _impacts(self, belief: Tracks, rates: NDArray[np.float64]) -> Impacts:
         poses = drive(self.pose, rates, self.speed, belief.dt)
-        points = belief.predicted_means[:, self._near, :2].swapaxes(0, 1)
-        return impacts.stack_dense(self.sensor.information(poses[:, None], points), self._near)
+        blocks = self.sensor.foresee(poses, *self._expected(belief), self.speed * belief.dt)
+        return impacts.stack_dense(blocks, self._near)
 
     def _ceiling(self, belief: Tracks) -> Impact:
-        """The best information in any direction, from the nearest that it can come to each target."""
+        """The best that any look tells in any direction, wherever it can come within range of a target."""
         gone = self.speed * belief.dt * np.arange(1, belief.horizon + 1)
-        points = belief.predicted_means[:, self._near, :2].swapaxes(0, 1)
-        r = np.maximum(np.hypot(*np.moveaxis(points - self.pose[:2], -1, 0)) - gone, self.sensor.min_range)
-        a, b, _, _ = self.sensor.weights(r)
-        most = np.where(r <= self.sensor.range, self.sensor.detection * np.maximum(a, b), 0.0)
+        points, _ = self._expected(belief)
+        r = np.hypot(*np.moveaxis(points - self.pose[:2], -1, 0)) - gone
+        most = np.where(r <= self.sensor.range, self.sensor.detection * self.sensor.most, 0.0)
         return impacts.impact_of(most[..., None] * np.array([1.0, 0.0, 1.0]), self._near)
 
     # -- how a course is chosen ----------------------------------------------------------------------
 
     def _climb(self, belief: Tracks, others: Impact, start: Course) -> tuple[Course, float]:
         """Improve a course by the gradient of the value as it is computed, but for the edges of the view."""
-        near, dt = self._near, belief.dt
-        points = belief.predicted_means[:, near, :2].swapaxes(0, 1)
+        near, dt, stride = self._near, belief.dt, self.speed * belief.dt
+        points, spreads = self._expected(belief)
         theirs = np.zeros((len(belief), belief.horizon, 3))
         theirs[others.targets] = others.blocks
 
@@ -150,8 +154,9 @@ class TrackingPlatform:
 
         def gradient(rates: NDArray[np.float64]) -> NDArray[np.float64]:
             poses = drive(self.pose, rates, self.speed, dt)
-            team = Impact(near, theirs[near] + self.sensor.information(poses, points))
-            slopes = self.sensor.slope(poses, points, self.objective.gradient(belief, team))
+            own = self.sensor.foresee(poses[None], points, spreads, stride)[0]
+            by = self.objective.gradient(belief, Impact(near, theirs[near] + own))
+            slopes = self.sensor.foreseen_slope(poses, points, spreads, by, stride)
             return turn_rate_gradient(self.pose, rates, self.speed, dt, slopes.sum(axis=0))
 
         rates, value = ascend(values, gradient, np.array(start.rates), self.turn_rate)
@@ -168,4 +173,4 @@ class TrackingPlatform:
         ends = drive(self.pose, rates, self.speed, belief.dt)[:, -1]
         left = times_to_see(self.sensor, self.speed, self.turn_rate, ends, points[target])
         best = int(np.argmin(left))
-        return self.courses[best - 1] if left[best] < left[0] - EPSILON else current
+        return self.courses[best - 1] if left[best] < left[0] * (1.0 - EPSILON) else current

@@ -13,6 +13,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from vedette.domains.tracking.models import STATE
 from vedette.errors import Limits, check_limits
+from vedette.kernels import looks
+from vedette.kernels.looks import Sight
+
+_DIFFERENCE = 1e-5  # of the farthest offset: step of numerical slopes
 
 _COMMON: dict[str, Limits] = {
     "range": (0.1, 1e6, "m"),
@@ -29,9 +33,12 @@ class Sensor(ABC):
     docs/tracking.md (V33)
 
     A target is seen within ``range`` and within half of ``view`` on either side of the heading. Nearer than
-    ``min_range`` the information is that at ``min_range``, or the 1 / r^2 of a bearing would draw platforms
-    onto the targets. Predicted information is scaled by the probability of detection, an approximation: the
-    mean of a log-det is below the log-det of the mean. Which target a measurement belongs to is known.
+    ``min_range`` a bearing counts as from ``min_range``. Predicted information is scaled by the probability
+    of detection, an approximation: the mean of a log-det is below the log-det of the mean. Which target a
+    measurement belongs to is known.
+
+    So much a look tells of a place that is known; of one that is not, what `foresee` and `likelihood` say,
+    both by the line that fits the measurement best over all that the place may be. docs/tracking.md (V34)
 
     Raises:
         InputError: a field is out of its range; the line names field, value and range.
@@ -48,8 +55,8 @@ class Sensor(ABC):
         check_limits(self, {**_COMMON, **self.limits})
 
     @abstractmethod
-    def weights(self, r: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
-        """Return a, b and their derivatives at ranges r not below ``min_range`` [1/m^2, 1/m^3]."""
+    def weights(self, r: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return a and b at ranges r not below ``min_range`` [1/m^2]."""
 
     @abstractmethod
     def predicted(self, pose: NDArray[np.float64], point: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -59,11 +66,22 @@ class Sensor(ABC):
     def jacobian(self, pose: NDArray[np.float64], point: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the position's part of ``H``, (m, 2)."""
 
+    @property
     @abstractmethod
-    def curvature(
-        self, pose: NDArray[np.float64], point: NDArray[np.float64], covariance: NDArray[np.float64]
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return ``1/2 tr(h'' P)`` and ``1/2 tr((h'' P)^2)``, (m,) each: what H leaves out of z."""
+    def noises(self) -> tuple[float, float, float]:
+        """Standard deviations of range [m], bearing [rad] and place [m]; 0 for what it does not measure."""
+
+    @abstractmethod
+    def statistics(
+        self, measured: NDArray[np.float64], pose: NDArray[np.float64], along: float
+    ) -> NDArray[np.float64]:
+        """Return what is linear in the position, at best: the statistics of `vedette.kernels.looks.Lines`.
+
+        Args:
+            measured: (m,).
+            pose: (3,) at the time [m, m, rad].
+            along: direction of the line of sight to the mean, team frame [rad].
+        """
 
     @property
     @abstractmethod
@@ -85,34 +103,76 @@ class Sensor(ABC):
             (..., 3)
         """
         r, radial, across = geometry(poses, points)
-        a, b, _, _ = self.weights(np.maximum(r, self.min_range))
+        a, b = self.weights(np.maximum(r, self.min_range))
         packed = a[..., None] * _outer(radial, radial) + b[..., None] * _outer(across, across)
         weight = np.where(self.sees(poses, points), self.detection, 0.0)
         return np.asarray(packed * weight[..., None])
 
-    def slope(self, poses: ArrayLike, points: ArrayLike, by: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Chain a derivative by ``information`` (..., 3) to one by the sensor's x and y, (..., 2).
+    def sight(self, stride: float) -> Sight:
+        """Return what the kernels need to know; ``stride``: how far it moves between looks [m]."""
+        return Sight(*self.noises, self.min_range, stride)
 
-        Exact where the information is smooth: not on the edge of the view, nor at ``min_range``.
+    def foresee(
+        self,
+        poses: NDArray[np.float64],
+        points: NDArray[np.float64],
+        covariances: NDArray[np.float64],
+        stride: float = 0.0,
+    ) -> NDArray[np.float64]:
+        """Expected information of looks at targets that are known so well, (C, M, K, 3) as `information`.
+
+        It is that of `likelihood`, times the probability that the target is detected and in view.
+
+        Args:
+            poses: (C, K, 3) along C courses [m, m, rad].
+            points: (M, K, 2) where M targets are expected [m].
+            covariances: (M, K, 2, 2) of their positions [m^2].
+            stride: how far the sensor moves between looks [m].
         """
-        r, radial, across = geometry(poses, points)
-        clamped = np.maximum(r, self.min_range)
-        a, b, a_slope, b_slope = self.weights(clamped)
-        farther = a_slope[..., None] * _outer(radial, radial) + b_slope[..., None] * _outer(across, across)
-        by_range = (by * farther).sum(-1) * (r > self.min_range)
-        by_angle = (by * 2.0 * _outer(radial, across)).sum(-1) * (a - b)
-        towards = by_range[..., None] * radial + (by_angle / np.maximum(r, 1e-9))[..., None] * across
-        weight = np.where(self.sees(poses, points), self.detection, 0.0)
-        return np.asarray(-weight[..., None] * towards)  # the sensor moves, the target does not
+        view = self.range, math.radians(self.view) / 2.0
+        seen = looks.foreseen(self.sight(stride), view, poses, points, packed(covariances))
+        return self.detection * seen
+
+    def foreseen_slope(
+        self,
+        poses: NDArray[np.float64],
+        points: NDArray[np.float64],
+        covariances: NDArray[np.float64],
+        by: NDArray[np.float64],
+        stride: float = 0.0,
+    ) -> NDArray[np.float64]:
+        """Chain a derivative (M, K, 3) by `foresee` of one course to one by the sensor's x and y, (M, K, 2).
+
+        By central differences, the share in view held: not on the edge of the view, nor at ``min_range``.
+        """
+        sight, spread = self.sight(stride), packed(covariances)
+        offsets = points - poses[..., :2]
+
+        def of(moved: NDArray[np.float64]) -> NDArray[np.float64]:
+            found = looks.lines(sight, moved.reshape(-1, 2), spread.reshape(-1, 3)).information
+            return found.reshape(by.shape)
+
+        here, foreseen = of(offsets), self.foresee(poses[None], points, covariances, stride)[0]
+        share = foreseen[..., ::2].sum(-1) / np.maximum(here[..., ::2].sum(-1), 1e-300)
+        step = _DIFFERENCE * max(self.min_range, float(np.abs(offsets).max(initial=0.0)))
+        moves = step * np.eye(2)
+        slopes = [(by * (of(offsets - move) - of(offsets + move))).sum(-1) / (2.0 * step) for move in moves]
+        return np.asarray(share[..., None] * np.stack(slopes, -1))
+
+    @property
+    def most(self) -> float:
+        """Most that a look tells in any direction [1/m^2]."""
+        a, b = self.weights(np.array(self.min_range))
+        return float(max(a, b))
 
     def most_evidence(self, extent: float) -> tuple[float, float]:
         """Return bounds on any number in ``I`` [1/m^2] and in ``i`` of a likelihood, for fixed-point sums.
 
         ``extent``: no pose or estimate is farther than this from the origin in x or y [m].
         """
-        a, b, _, _ = self.weights(np.array(self.min_range))
-        most = float(max(a, b))
-        return most, 8.0 * most * (extent + self.range)  # |H' R^-1| (|innovation| + |H x|), both generous
+        most = self.most
+        vector = 8.0 * most * (extent + self.range)  # |H' R^-1| (|innovation| + |H x|), both generous
+        return most * (1.0 + 1e-9), vector
 
     def sees(self, poses: ArrayLike, points: ArrayLike) -> NDArray[np.bool_]:
         """Tell which points (..., 2) [m] are in range and view from the poses (..., 3)."""
@@ -143,33 +203,42 @@ class Sensor(ABC):
         pose: ArrayLike,
         mean: ArrayLike,
         covariance: NDArray[np.float64] | None = None,
+        stride: float = 0.0,
         origin: ArrayLike = (0.0, 0.0),
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """``I = H' R^-1 H`` (4, 4) and ``i = H' R^-1 (z - a)`` (4,), with ``a = h(x) - H (x - o)``.
 
         Source: paper, eqs. (20) and (21). As printed, (21) has z for ``z - a``, which is right only where h
-        is linear without an offset. With the estimate's covariance, mean and variance of what the line leaves
-        out go into a and R: otherwise a bearing from close by makes the estimate surer than it is.
-        docs/tracking.md (V32), (V34)
+        is linear without an offset. Without a covariance the line is the tangent at the mean; with it, the
+        one that fits best over the Gaussian, and what it leaves counts as noise: so a look from close by, or
+        from overhead, tells what it can and no more. docs/tracking.md (V32), (V34)
 
         Args:
             measured: (m,) from ``measure``.
             pose: (3,) at the time [m, m, rad].
             mean: (4,) estimate to linearise about.
             covariance: (4, 4) of that estimate.
+            stride: how far the sensor moves between looks [m].
             origin: o (2,), to which ``i`` is relative [m].
         """
-        at, x = np.asarray(pose, np.float64), np.asarray(mean, np.float64)
-        expected, variances = self.predicted(at, x[:2]), self.deviations**2
-        if covariance is not None:
-            bias, spread = self.curvature(at, x[:2], covariance[:2, :2])
-            expected, variances = expected + bias, variances + spread
-        H = np.zeros((len(variances), STATE))
-        H[:, :2] = self.jacobian(at, x[:2])
-        weighted = H / variances[:, None]  # R^-1 H
-        information = H.T @ weighted
-        z_less_a = self.innovation(measured, expected) + H[:, :2] @ (x[:2] - np.asarray(origin))
-        return (information + information.T) / 2.0, weighted.T @ z_less_a
+        at, x, o = np.asarray(pose, np.float64), np.asarray(mean, np.float64)[:2], np.asarray(origin)
+        if covariance is None:
+            H, expected = self.jacobian(at, x), self.predicted(at, x)
+            gain, left = H.T / self.deviations**2, self.innovation(measured, expected)
+            information = gain @ H
+        else:
+            offset = x - at[:2]
+            spread = packed(np.asarray(covariance, np.float64)[:2, :2])
+            (xx, xy, yy), wide, known = (
+                each[0] for each in looks.lines(self.sight(stride), offset[None], spread[None])
+            )
+            found = self.statistics(measured, at, math.atan2(offset[1], offset[0]))
+            gain, left = wide[:, : len(found)], found - known[: len(found)]
+            information = np.array([[xx, xy], [xy, yy]])
+        matrix, vector = np.zeros((STATE, STATE)), np.zeros(STATE)
+        matrix[:2, :2] = (information + information.T) / 2.0
+        vector[:2] = gain @ left + information @ (x - o)
+        return matrix, vector
 
 
 def geometry(
@@ -197,12 +266,23 @@ def _outer(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64
     return np.stack([ax * bx, (ax * by + ay * bx) / 2.0, ay * by], -1)
 
 
+def packed(covariances: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return symmetric matrices (..., 2, 2) as xx, xy, yy (..., 3)."""
+    return np.stack([covariances[..., 0, 0], covariances[..., 0, 1], covariances[..., 1, 1]], -1)
+
+
+def debiased(angle: float, deviation: float) -> NDArray[np.float64]:
+    """``(cos, sin) / e^{-sigma^2 / 2}`` of a noisy angle: on average those of the true one."""
+    return np.array([math.cos(angle), math.sin(angle)]) / math.exp(-(deviation**2) / 2.0)
+
+
 def evidence(
     sensor: Sensor,
     pose: ArrayLike,
     measured: Mapping[int, NDArray[np.float64]],
     means: NDArray[np.float64],
     covariances: NDArray[np.float64] | None = None,
+    stride: float = 0.0,
     origin: ArrayLike = (0.0, 0.0),
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """What one platform's measurements of a step say about all targets: ``I`` (T, 4, 4) and ``i`` (T, 4).
@@ -212,10 +292,13 @@ def evidence(
         pose: (3,) at the step [m, m, rad].
         measured: by target; the others were not detected, and that says nothing.
         means, covariances: (T, 4) and (T, 4, 4) estimates at the step to linearise about.
+        stride: how far the sensor moves between looks [m].
         origin: (2,) to which the vectors are relative [m].
     """
     information, vector = np.zeros((len(means), STATE, STATE)), np.zeros((len(means), STATE))
     for target, z in measured.items():
         covariance = None if covariances is None else covariances[target]
-        information[target], vector[target] = sensor.likelihood(z, pose, means[target], covariance, origin)
+        information[target], vector[target] = sensor.likelihood(
+            z, pose, means[target], covariance, stride, origin
+        )
     return information, vector

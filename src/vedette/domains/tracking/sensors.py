@@ -9,7 +9,7 @@ from typing import ClassVar, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.domains.tracking.sensing import Sensor, geometry, wrapped
+from vedette.domains.tracking.sensing import Sensor, debiased, geometry, wrapped
 from vedette.scenario import as_one_of
 
 Floats: TypeAlias = NDArray[np.float64]
@@ -28,11 +28,11 @@ class RangeBearing(Sensor):
     range_noise: float = 0.5  # standard deviation [m]
     bearing_noise: float = 2.0  # standard deviation [deg]
 
-    def weights(self, r: Floats) -> tuple[Floats, ...]:
+    def weights(self, r: Floats) -> tuple[Floats, Floats]:
         """``1 / sigma_r^2`` along the line of sight, ``1 / (r sigma_b)^2`` across it."""
         along = np.full_like(r, self.range_noise**-2)
         across = (r * math.radians(self.bearing_noise)) ** -2
-        return along, across, np.zeros_like(r), -2.0 * across / r
+        return along, across
 
     def predicted(self, pose: Floats, point: Floats) -> Floats:
         """Range and bearing of the point."""
@@ -43,13 +43,16 @@ class RangeBearing(Sensor):
         r, radial, across = geometry(pose, point)
         return np.stack([radial, across / max(float(r), self.min_range)])
 
-    def curvature(self, pose: Floats, point: Floats, covariance: Floats) -> tuple[Floats, Floats]:
-        """Those of range and bearing."""
-        r, pr, pt, prt = _spread(pose, point, covariance, self.min_range)
-        return (
-            np.array([pt / (2.0 * r), -prt / r**2]),
-            np.array([(pt / r) ** 2 / 2.0, (pr * pt + prt**2) / r**4]),
-        )
+    @property
+    def noises(self) -> tuple[float, float, float]:
+        """Range and bearing."""
+        return self.range_noise, math.radians(self.bearing_noise), 0.0
+
+    def statistics(self, measured: Floats, pose: Floats, along: float) -> Floats:
+        """The debiased place that both say, and the range."""
+        r, bearing = measured.tolist()
+        place = r * debiased(bearing + float(pose[2]) - along, math.radians(self.bearing_noise))
+        return np.append(place, r)
 
     @property
     def deviations(self) -> Floats:
@@ -71,10 +74,10 @@ class BearingOnly(Sensor):
 
     bearing_noise: float = 2.0  # standard deviation [deg]
 
-    def weights(self, r: Floats) -> tuple[Floats, ...]:
+    def weights(self, r: Floats) -> tuple[Floats, Floats]:
         """Nothing along the line of sight, ``1 / (r sigma_b)^2`` across it."""
         across = (r * math.radians(self.bearing_noise)) ** -2
-        return np.zeros_like(r), across, np.zeros_like(r), -2.0 * across / r
+        return np.zeros_like(r), across
 
     def predicted(self, pose: Floats, point: Floats) -> Floats:
         """Bearing of the point."""
@@ -85,10 +88,14 @@ class BearingOnly(Sensor):
         r, _, across = geometry(pose, point)
         return across[None] / max(float(r), self.min_range)
 
-    def curvature(self, pose: Floats, point: Floats, covariance: Floats) -> tuple[Floats, Floats]:
-        """``-P_rt / r^2`` and ``(P_rr P_tt + P_rt^2) / r^4``."""
-        r, pr, pt, prt = _spread(pose, point, covariance, self.min_range)
-        return np.array([-prt / r**2]), np.array([(pr * pt + prt**2) / r**4])
+    @property
+    def noises(self) -> tuple[float, float, float]:
+        """Bearing."""
+        return 0.0, math.radians(self.bearing_noise), 0.0
+
+    def statistics(self, measured: Floats, pose: Floats, along: float) -> Floats:
+        """Debiased cosine and sine."""
+        return debiased(float(measured[0] + pose[2]) - along, math.radians(self.bearing_noise))
 
     @property
     def deviations(self) -> Floats:
@@ -108,10 +115,9 @@ class RangeOnly(Sensor):
 
     range_noise: float = 0.5  # standard deviation [m]
 
-    def weights(self, r: Floats) -> tuple[Floats, ...]:
+    def weights(self, r: Floats) -> tuple[Floats, Floats]:
         """``1 / sigma_r^2`` along the line of sight, nothing across it."""
-        zero = np.zeros_like(r)
-        return np.full_like(r, self.range_noise**-2), zero, zero, zero
+        return np.full_like(r, self.range_noise**-2), np.zeros_like(r)
 
     def predicted(self, pose: Floats, point: Floats) -> Floats:
         """Range of the point."""
@@ -121,10 +127,14 @@ class RangeOnly(Sensor):
         """``e_r'``."""
         return geometry(pose, point)[1][None]
 
-    def curvature(self, pose: Floats, point: Floats, covariance: Floats) -> tuple[Floats, Floats]:
-        """``P_tt / 2r`` and ``(P_tt / r)^2 / 2``."""
-        r, _, pt, _ = _spread(pose, point, covariance, self.min_range)
-        return np.array([pt / (2.0 * r)]), np.array([(pt / r) ** 2 / 2.0])
+    @property
+    def noises(self) -> tuple[float, float, float]:
+        """Range."""
+        return self.range_noise, 0.0, 0.0
+
+    def statistics(self, measured: Floats, pose: Floats, along: float) -> Floats:
+        """The range."""
+        return measured
 
     @property
     def deviations(self) -> Floats:
@@ -140,10 +150,10 @@ class Position(Sensor):
 
     noise: float = 1.0  # standard deviation of each coordinate [m]
 
-    def weights(self, r: Floats) -> tuple[Floats, ...]:
+    def weights(self, r: Floats) -> tuple[Floats, Floats]:
         """``1 / sigma^2`` both ways."""
-        both, zero = np.full_like(r, self.noise**-2), np.zeros_like(r)
-        return both, both, zero, zero
+        both = np.full_like(r, self.noise**-2)
+        return both, both
 
     def predicted(self, pose: Floats, point: Floats) -> Floats:
         """The point."""
@@ -153,9 +163,15 @@ class Position(Sensor):
         """The identity."""
         return np.eye(2)
 
-    def curvature(self, pose: Floats, point: Floats, covariance: Floats) -> tuple[Floats, Floats]:
-        """None."""
-        return np.zeros(2), np.zeros(2)
+    @property
+    def noises(self) -> tuple[float, float, float]:
+        """Place."""
+        return 0.0, 0.0, self.noise
+
+    def statistics(self, measured: Floats, pose: Floats, along: float) -> Floats:
+        """The place from the sensor, along the line of sight and across it."""
+        c, s = math.cos(along), math.sin(along)
+        return np.array([[c, s], [-s, c]]) @ (measured - pose[:2])
 
     @property
     def deviations(self) -> Floats:
@@ -186,13 +202,3 @@ def sensor_of(entry: object, where: str) -> Sensor:
 def _bearing(pose: Floats, point: Floats) -> float:
     """Direction of a point from the heading [rad] in (-pi, pi]."""
     return float(wrapped(math.atan2(point[1] - pose[1], point[0] - pose[0]) - pose[2]))
-
-
-def _spread(
-    pose: Floats, point: Floats, covariance: Floats, min_range: float
-) -> tuple[float, float, float, float]:
-    """Range [m], and the position's variances along and across the line of sight and between [m^2]."""
-    r, radial, across = geometry(pose, point)
-    axes = np.stack([radial, across])
-    (rr, rt), (_, tt) = axes @ covariance @ axes.T
-    return max(float(r), min_range), float(rr), float(tt), float(rt)

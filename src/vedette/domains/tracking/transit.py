@@ -48,7 +48,7 @@ def nearest_worth(
         times: (T,) to see each target [s].
     """
     count = len(belief)
-    a, b, _, _ = sensor.weights(np.array([sensor.range]))
+    a, b = sensor.weights(np.array([sensor.range]))
     looks = np.zeros((count, belief.horizon, 3))
     looks[:, -1, ::2] = sensor.detection * (a + b) / 2.0  # from whatever side
     each = Impacts(np.arange(count + 1), np.arange(count), looks)

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from vedette.agent.events import Pose, Sensed
 from vedette.agent.flight import FlightPlan, start_step, step_of
@@ -26,8 +24,6 @@ from vedette.domains.tracking.sensing import evidence
 from vedette.fusion.gaussian import Information, TrackFusion
 from vedette.missions.flying import FlyingMission, SharedBelief, box_around
 from vedette.problem import Reach
-
-NEAR = 2.0  # standard deviations of its place: a target must be farther away than that for a line to fit
 
 
 @dataclass(frozen=True)
@@ -66,7 +62,7 @@ class Tracking(FlyingMission):
     bounds: LookBounds
     tells_plans: bool = True  # False: the team shares beliefs alone
     strategy: Course = field(default_factory=lambda: Course(0, ()))
-    skipped: int = 0  # measurements that could not be linearised, or whose likelihood exceeded the bounds
+    skipped: int = 0  # measurements whose likelihood exceeded the bounds
     seen: tuple[int, ...] = ()  # targets, by the latest look
     codec: TrackImpactCodec = field(init=False)
     platform: RoundPlatform[Tracks, Course, Impact] = field(init=False)
@@ -94,30 +90,13 @@ class Tracking(FlyingMission):
         step, known = self.team.step(seen.time), self.tracks()
         known = predict(known, max(0, step - known.k0))
         at = np.array((pose.x, pose.y, pose.heading))
-        measured = {t: z for t, z in seen.data.items() if self._has_a_line(at, known, t)}
-        self.skipped += len(seen.data) - len(measured)
-        matrix, vector = evidence(
-            self.vehicle.sensor, at, measured, known.means, known.covariances, known.origin
-        )
+        sensor, stride = self.vehicle.sensor, self.vehicle.speed * self.team.dt
+        matrix, vector = evidence(sensor, at, seen.data, known.means, known.covariances, stride, known.origin)
         fits = (np.abs(matrix) <= self.bounds.matrix).all(axis=(1, 2))
         fits &= (np.abs(vector) <= self.bounds.vector).all(axis=1)
         self.skipped += int(np.count_nonzero(~fits))
         matrix[~fits], vector[~fits] = 0.0, 0.0
         self._waiting.append((step, Information(matrix, vector)))
-
-    def _has_a_line(self, at: NDArray[np.float64], known: Tracks, target: int) -> bool:
-        """Tell whether a measurement of a target can be linearised about its estimate.
-
-        A bearing from overhead says nothing of the kind: where the estimate is nearer than ``min_range``, or
-        than `NEAR` standard deviations, its direction is anybody's guess. It hangs on the estimate alone, not
-        on what was measured: so leaving it out makes nobody surer than he should be.
-        """
-        point, covariance = known.means[target, :2], known.covariances[target, :2, :2]
-        sensor = self.vehicle.sensor
-        if not sensor.curvature(at, point, covariance)[1].any():
-            return True  # linear anyhow
-        deviation = math.sqrt(np.linalg.eigvalsh(covariance)[1])
-        return math.dist(point, at[:2]) >= max(sensor.min_range, NEAR * deviation)
 
     def publish(self, now: float) -> None:
         """Hand the likelihoods that wait to fusion."""
