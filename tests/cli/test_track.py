@@ -41,6 +41,19 @@ def test_a_run_leaves_every_file_and_is_compared_with_all_other_ways(track: Comm
     assert own.items() <= summary["comparison"]["negotiated"].items()
 
 
+def test_tracks_that_are_surer_than_they_are_right_are_said_in_a_line_and_in_the_summary(
+    track: Command,
+) -> None:
+    plain = content(duration=6)
+    plain["targets"][2] |= {"sd": [1, 1], "start": [250, 230]}  # 42 m off, and told to be known to 1 m
+    Path("wrong.yaml").write_text(yaml.safe_dump(plain))
+    ran = track("wrong.yaml", "--out", "out", "--no-compare")
+    assert ran.status == 0
+    assert "the tracks are surer than they are right: NEES " in ran.out
+    assert "0.32 to 2.05 is consistent" in ran.out
+    assert json.loads((Path("out") / "summary.json").read_text())["consistency"] == "overconfident"
+
+
 def test_json_prints_the_summary_alone_and_no_compare_leaves_the_rest_out(track: Command) -> None:
     ran = track("short.yaml", "--out", "out", "--json", "--no-compare")
     assert (ran.status, ran.err) == (0, "")

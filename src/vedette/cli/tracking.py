@@ -71,9 +71,24 @@ def closing(summary: TrackSummary, folder: Path) -> list[str]:
         f"position error {summary.position_rmse_m:.1f} m (rms), NEES {summary.nees:.2f}",
         f"pictures: {folder / 'tracks.png'}, {folder / 'entropy.png'}; all else beside them",
     ]
+    lines[1:1] = _doubts(summary)
     if summary.comparison:
         each = (f"{name} {quality.entropy_mean_nat:.1f}" for name, quality in summary.comparison.items())
         lines.insert(1, f"mean entropy [nat]: {', '.join(each)}")
+    return lines
+
+
+def _doubts(summary: TrackSummary) -> list[str]:
+    """Say what makes the figures doubtful: tracks that are not as right as they are sure, looks left out."""
+    low, high = summary.nees_band
+    band = f"NEES {summary.nees:.2f}, where {low:.2f} to {high:.2f} is consistent"
+    said = {
+        "overconfident": f"the tracks are surer than they are right: {band}",
+        "cautious": f"the tracks are less sure than they are right: {band}",
+    }
+    lines = [said[summary.consistency]] if summary.consistency in said else []
+    if summary.skipped:
+        lines.append(f"looks left out, as their numbers were beyond all bounds: {summary.skipped}")
     return lines
 
 

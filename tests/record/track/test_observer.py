@@ -18,6 +18,7 @@ from vedette.record.log import Floats
 from vedette.record.summary import Setting, Timing, Traffic
 from vedette.record.track.log import TrackSample
 from vedette.record.track.observer import TrackObserver, TrackView
+from vedette.record.track.summary import consistency
 
 TEAM = TrackTeam(scenario(), TrackOptions(), RoundTimes(0.02, 0.03))
 PRIOR = TEAM.prior
@@ -122,3 +123,19 @@ def test_a_mission_that_ends_at_once_is_looked_at_once() -> None:
     looking.finish([view(i) for i in range(3)])
     looking.finish([view(i) for i in range(3)])
     assert looking.report(Outcome.INTERRUPTED, TIMING, 0.0).summary.steps == 1
+
+
+def test_means_are_scored_from_step_1_on_and_say_whether_they_are_consistent() -> None:
+    """At step 0 there is the prior, which ways of fusion tell before its looks or after."""
+    looking = observer()
+    for count in range(3):
+        looking.look([view(i, surer(1.0 + 2.0 * count)) for i in range(3)])
+    _, first, second = looking.log.snapshots
+    summary = looking.report(Outcome.COMPLETE, TIMING, 3.0).summary
+    assert summary.nees == pytest.approx((first.nees + second.nees) / 2)
+    assert summary.entropy_mean_nat == pytest.approx((first.entropy + second.entropy) / 2)
+    assert summary.position_rmse_m == pytest.approx(((first.squared_error + second.squared_error) / 2) ** 0.5)
+    low, high = summary.nees_band
+    assert summary.consistency == "cautious"
+    assert consistency(1.0, (low, high)) == "consistent"
+    assert consistency(high + 0.1, (low, high)) == "overconfident"

@@ -25,6 +25,7 @@ from vedette.record.track.log import TrackLog, TrackSample, TrackScene, TrackSna
 from vedette.record.track.summary import (
     TrackQuality,
     TrackSummary,
+    consistency,
     dimensions,
     nees_band,
     squared_position_error,
@@ -109,6 +110,7 @@ class TrackObserver:
             scheme=team.options.negotiates_by,
         )
         figures, alive = zip(*((view.figures, view.sample.alive) for view in self._views), strict=True)
+        quality, band = TrackQuality.of(log), nees_band(dimensions(scene))
         return TrackSummary(
             completed=outcome.completed,
             outcome=outcome,
@@ -118,11 +120,12 @@ class TrackObserver:
             time_s=now,
             steps=len(log.snapshots),
             in_view=dict(zip(scene.targets, log.in_view().tolist(), strict=True)),
-            nees_band=nees_band(dimensions(scene)),
+            nees_band=band,
+            consistency=consistency(quality.nees, band),
             skipped=sum(view.skipped for view in self._views),
             **vars(self._setting),
             **structs.asdict(options),
-            **TrackQuality.of(log).of_team(),
+            **quality.of_team(),
             **vars(TeamFigures.of(scene.vehicles, figures, alive)),
         )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,10 +13,15 @@ from numpy.typing import NDArray
 from vedette.record.summary import MissionSummary, Traffic
 from vedette.record.track.log import TrackLog, TrackScene
 
+Consistency: TypeAlias = Literal["consistent", "overconfident", "cautious"]
+
 
 @dataclass(frozen=True)
 class TrackQuality:
-    """How well the targets were known; what the ways of coordination are compared by."""
+    """How well the targets were known; what the ways of coordination are compared by.
+
+    Scored from step 1 on: at step 0 there is the prior, which ways of fusion tell before its looks or after.
+    """
 
     entropy_mean_nat: float
     entropy_final_nat: float
@@ -28,12 +33,13 @@ class TrackQuality:
     @classmethod
     def of(cls, log: TrackLog) -> TrackQuality:
         """Return the figures of a log that is not empty."""
-        entropy, nees = log.curve(lambda s: s.entropy), log.curve(lambda s: s.nees)
+        first = min(1, len(log.snapshots) - 1)
+        entropy, nees = log.curve(lambda s: s.entropy)[first:], log.curve(lambda s: s.nees)[first:]
         low, high = nees_band(dimensions(log.scene))
         return cls(
             entropy_mean_nat=float(entropy.mean()),
             entropy_final_nat=float(entropy[-1]),
-            position_rmse_m=float(np.sqrt(log.curve(lambda s: s.squared_error).mean())),
+            position_rmse_m=float(np.sqrt(log.curve(lambda s: s.squared_error)[first:].mean())),
             nees=float(nees.mean()),
             nees_in_band=float(np.mean((low <= nees) & (nees <= high))),
             in_view=float(log.in_view().mean()),
@@ -67,6 +73,7 @@ class TrackSummary(MissionSummary):
     nees_in_band: float
     in_view_mean: float
     nees_band: tuple[float, float]
+    consistency: Consistency
     in_view: Mapping[str, float]
     path_m: Mapping[str, float]
     rounds: int
@@ -76,6 +83,12 @@ class TrackSummary(MissionSummary):
     messages: Mapping[str, Traffic]
     bytes: Mapping[str, Traffic]
     comparison: Mapping[str, TrackQuality] = field(default_factory=dict)
+
+
+def consistency(nees: float, band: tuple[float, float]) -> Consistency:
+    """Tell whether a mission's mean NEES lies where that of a single step does nineteen times in twenty."""
+    low, high = band
+    return "overconfident" if nees > high else "cautious" if nees < low else "consistent"
 
 
 def dimensions(scene: TrackScene) -> int:
