@@ -23,6 +23,10 @@ from stonesoup.platform import FixedPlatform, Platform
 from stonesoup.predictor.kalman import KalmanPredictor
 from stonesoup.sensor.radar.radar import (
     RadarBearingRange,
+    RadarBearingRangeRate,
+    RadarBearingRangeRate2D,
+    RadarElevationBearingRange,
+    RadarElevationBearingRangeRate,
     RadarRotatingBearing,
     RadarRotatingBearingRange,
     RadarRotatingElevationBearingRange,
@@ -393,9 +397,92 @@ def test_no_sensors_no_covariance_and_a_second_best_are_told_in_one_line() -> No
     other = Track([GaussianState(StateVector([1.0]), np.eye(1), timestamp=START)])
     with pytest.raises(InputError, match="states of different sizes"):
         VedetteSensorManager(set(made.sensors), predictor=Still()).choose_actions({*made.tracks, other}, THEN)
-    flat = Track([GaussianState(StateVector(np.zeros(4)), np.zeros((4, 4)), timestamp=START)])
-    with pytest.raises(InputError, match="covariance of track 0 is not positive definite"):
-        VedetteSensorManager(set(made.sensors), predictor=Still()).choose_actions({flat}, THEN)
+    wrong = np.diag([9.0, 1.0, 9.0, -1.0])
+    none = Track([GaussianState(StateVector(np.zeros(4)), wrong, timestamp=START)])
+    with pytest.raises(InputError, match=f"covariance of track {none.id} has a negative variance"):
+        VedetteSensorManager(set(made.sensors), predictor=Still()).choose_actions({none}, THEN)
+    with pytest.raises(InputError, match="tracks hold a GaussianState, which is no track"):
+        manager(made).choose_actions({none.state}, THEN)
+
+
+def track_at(mean: list[float], variances: list[float]) -> Track:
+    return Track([GaussianState(StateVector(mean), np.diag(variances), timestamp=START)])
+
+
+@pytest.mark.parametrize("kind", [RadarRotatingBearingRange, RadarRotatingBearing])
+@pytest.mark.parametrize("x", [0.0, 500.0])
+def test_a_target_predicted_on_the_radar_itself_is_worth_what_brute_force_makes_of_it(
+    kind: Any, x: float
+) -> None:
+    """There Stone Soup takes the bearing from wherever the antenna points: it is in view of every dwell."""
+    noise = np.diag([3e-4, 25.0] if kind is RadarRotatingBearingRange else [3e-4])
+    seat = radar(kind, noise=noise, fov_angle=np.radians(30.0), rpm=29.0)
+    seat.position = StateVector([x, 0.0])
+    tracks = [track_at([x, 0.0, 0.0, 0.0], [9, 1, 9, 1]), track_at([x - 30, 0, -30, 0], [9, 1, 9, 1])]
+    model = CombinedLinearGaussianTransitionModel([ConstantVelocity(0.05)] * 2)
+    reward = UncertaintyRewardFunction(KalmanPredictor(model), ExtendedKalmanUpdater(None))
+    ours = VedetteSensorManager({seat}, reward_function=reward)
+    (config,) = ours.choose_actions(tracks, THEN)
+    assert ours.last is not None
+    assert ours.last.reward == pytest.approx(float(reward(config, tracks, THEN)), rel=1e-6)
+    assert ours.last.reward == pytest.approx(brute(ours, reward, tracks), rel=1e-6)
+
+
+@pytest.mark.parametrize("name", ["logdet", "uncertainty"])
+def test_a_component_that_is_known_and_stays_so_is_taken_as_stone_soups_reward_takes_it(name: str) -> None:
+    made = small(1, 1, 0)
+    model = CombinedLinearGaussianTransitionModel(
+        [ConstantVelocity(0.0)] * 2
+    )  # q = 0: a velocity stays known
+    reward = UncertaintyRewardFunction(KalmanPredictor(model), ExtendedKalmanUpdater(None))
+    tracks = [track_at([30, 1, 30, 0], [9, 0, 9, 0]), track_at([-30, 0, 30, 0], [4, 0, 9, 0])]
+    asked: Any = reward if name == "uncertainty" else name
+    ours = VedetteSensorManager(set(made.sensors), predictor=reward.predictor, reward_function=asked)
+    (config,) = ours.choose_actions(tracks, THEN)
+    assert ours.last is not None
+    if name == "uncertainty":
+        assert ours.last.reward == pytest.approx(float(reward(config, tracks, THEN)), rel=1e-6)
+        assert ours.last.reward == pytest.approx(brute(ours, reward, tracks), rel=1e-6)
+    else:
+        assert np.isfinite(ours.last.reward)
+
+
+@pytest.mark.parametrize(
+    ("kind", "noise"),
+    [
+        (RadarElevationBearingRange, [3e-4, 3e-4, 25.0]),
+        (RadarBearingRangeRate, [3e-4, 25.0, 1.0]),
+        (RadarElevationBearingRangeRate, [3e-4, 3e-4, 25.0, 1.0]),
+    ],
+)
+def test_elevations_and_range_rates_in_three_dimensions_are_worth_what_stone_soup_says(
+    kind: Any, noise: list[float]
+) -> None:
+    rates = {"velocity_mapping": (1, 3, 5)} if len(noise) == 4 or noise[1] == 25.0 else {}
+    seat = kind(
+        position=StateVector([5.0, 5.0, 0.0]), position_mapping=(0, 2, 4), ndim_state=6,
+        noise_covar=np.diag(noise), **rates,
+    )  # fmt: skip
+    seat.timestamp = START
+    rng = np.random.default_rng(0)
+    tracks = [track_at(rng.uniform(-50, 50, 6).tolist(), [9, 1, 9, 1, 9, 1]) for _ in range(3)]
+    model = CombinedLinearGaussianTransitionModel([ConstantVelocity(0.05)] * 3)
+    reward = UncertaintyRewardFunction(KalmanPredictor(model), ExtendedKalmanUpdater(None))
+    ours = VedetteSensorManager({seat}, reward_function=reward)
+    (config,) = ours.choose_actions(tracks, THEN)
+    assert ours.last is not None
+    assert ours.last.reward == pytest.approx(float(reward(config, tracks, THEN)), rel=1e-6)
+
+
+def test_a_range_rate_from_the_target_itself_is_refused_by_name() -> None:
+    seat = RadarBearingRangeRate2D(
+        position=StateVector([5.0, 5.0]), position_mapping=(0, 2), velocity_mapping=(1, 3), ndim_state=4,
+        noise_covar=np.diag([3e-4, 25.0, 1.0]),
+    )  # fmt: skip
+    seat.timestamp = START
+    on_it = track_at([5, 0, 5, 0], [9, 1, 9, 1])
+    with pytest.raises(InputError, match=f"RadarBearingRangeRate2D: .* no slope at .* track {on_it.id}"):
+        VedetteSensorManager({seat}, predictor=Still()).choose_actions({on_it}, THEN)
 
 
 def test_without_stone_soup_the_import_names_the_extra() -> None:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from vedette.errors import InputError
 from vedette.stonesoup.forecast import Forecast
 from vedette.stonesoup.information import measured
-from vedette.stonesoup.rotating import RotatingView, is_plain_rotating_radar
+from vedette.stonesoup.rotating import RotatingView, is_clear, is_plain_rotating_radar
 
 Actions = dict[Any, tuple[Any, ...]]  # by actionable, as Stone Soup's managers return them
 
@@ -141,7 +141,8 @@ def _question(
     """Return how to ask this sensor after any of its actions."""
     if not forecast.truths:
         return lambda sensor: forecast.covariances
-    if _changed(actions) <= {"dwell_centre"} and is_plain_rotating_radar(acting):
+    plain = _changed(actions) <= {"dwell_centre"} and is_plain_rotating_radar(acting)
+    if plain and is_clear(acting, forecast):
         return RotatingView(acting, forecast)
     return lambda sensor: measured(sensor, forecast)
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from stonesoup.types.groundtruth import GroundTruthState
+from stonesoup.types.track import Track
 
 from vedette.errors import InputError
 
@@ -18,6 +19,7 @@ from vedette.errors import InputError
 class Forecast:
     """Mean and covariance of every track at one time, in an order that does not depend on a set's."""
 
+    names: tuple[str, ...]  # the tracks' ids
     truths: tuple[Any, ...]  # GroundTruthState at the mean: what sensors are asked to measure
     means: NDArray[np.float64]  # (m, d)
     covariances: NDArray[np.float64]  # (m, d, d)
@@ -28,10 +30,14 @@ def forecast(tracks: Iterable[Any], predictor: Any, timestamp: datetime.datetime
     """Predict every track once.
 
     Raises:
-        InputError: a track without a Gaussian state or of a later time, or states of different size.
+        InputError: what is no track, a track without a Gaussian state or of a later time, or states of
+            different size.
     """
     predicted = []
     for track in tracks:
+        if not isinstance(track, Track):
+            kind = type(track).__name__
+            raise InputError(f"tracks hold a {kind}, which is no track; make it one: Track([state])")
         if len(track) == 0:
             raise InputError(f"track {track.id} is empty; leave it out")
         if not hasattr(track.state, "covar"):
@@ -57,4 +63,5 @@ def forecast(tracks: Iterable[Any], predictor: Any, timestamp: datetime.datetime
     dim = len(predicted[0][1]) if predicted else 1
     means = np.array([mean for _, mean, _, _ in predicted]).reshape(-1, dim)
     covariances = np.array([covariance for _, _, covariance, _ in predicted]).reshape(-1, dim, dim)
-    return Forecast(truths, means, covariances, timestamp)
+    names = tuple(str(track.id) for _, _, _, track in predicted)
+    return Forecast(names, truths, means, covariances, timestamp)

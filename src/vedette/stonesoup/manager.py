@@ -94,7 +94,7 @@ class VedetteSensorManager(SensorManager):  # type: ignore[misc]  # Stone Soup h
             raise InputError("the manager has no sensors; pass sensors={...}, or platforms that carry some")
         ahead = forecast(tracks, predictor, timestamp)
         found, config = menus(self.sensors, self.platforms, ahead, self.max_actions)
-        agreed = self._negotiate(objective, StoneSoupTracks.of(ahead.covariances), found)
+        agreed = self._negotiate(objective, StoneSoupTracks.of(ahead.covariances, ahead.names), found)
         for menu, k in zip(found, agreed.choice, strict=True):
             config |= menu.candidates[k].actions
         self.last = ManagerDecision(

@@ -12,30 +12,37 @@ from numpy.typing import NDArray
 from vedette.errors import InputError
 from vedette.problem import Objective
 
+_ROUNDING = 1e-12  # of the largest variance: a smaller one may be 0
+
 
 @dataclass(frozen=True, eq=False)
 class StoneSoupTracks:
     """The predicted tracks' covariances: what both rewards depend on."""
 
-    roots: NDArray[np.float64]  # (m, d, d), lower triangular, P = L L', in the units of the tracks' states
+    roots: NDArray[np.float64]  # (m, d, d), P = L L', in the units of the tracks' states
     norms: NDArray[np.float64]  # (m,), Frobenius norm of P
 
     @classmethod
-    def of(cls, covariances: NDArray[np.float64]) -> StoneSoupTracks:
-        """Return the belief with these covariances, (m, d, d).
+    def of(cls, covariances: NDArray[np.float64], names: Sequence[str] = ()) -> StoneSoupTracks:
+        """Return the belief with these covariances, (m, d, d); components may be known exactly.
+
+        ``names`` of the tracks are for messages; without them they are numbered.
 
         Raises:
-            InputError: another shape, or a covariance that is not positive definite.
+            InputError: another shape, or a covariance that is none.
         """
         shape = covariances.shape
         if len(shape) != 3 or shape[1] != shape[2]:
             raise InputError(f"tracks: covariances must have shape (tracks, d, d); got {shape}")
+        roots = np.zeros(shape)
         for i, covariance in enumerate(covariances):
-            if not np.isfinite(covariance).all() or np.linalg.eigvalsh(covariance)[0] <= 0.0:
-                raise InputError(f"tracks: the covariance of track {i} is not positive definite; mend it")
+            root = _root(covariance)
+            if root is None:
+                name = names[i] if names else i
+                raise InputError(f"tracks: the covariance of track {name} has a negative variance; mend it")
+            roots[i] = root
         norms = np.linalg.norm(covariances, axis=(1, 2))
-        roots = np.linalg.cholesky(covariances)
-        return cls(np.asarray(roots, dtype=np.float64), np.asarray(norms, dtype=np.float64))
+        return cls(roots, np.asarray(norms, dtype=np.float64))
 
 
 class TrackReward(Objective[StoneSoupTracks, NDArray[np.float64]]):
@@ -111,6 +118,18 @@ class UncertaintyReward(TrackReward):
         roots = belief.roots[tracks]
         after = roots @ np.linalg.solve(_whitened(roots, information), np.swapaxes(roots, 1, 2))
         return np.asarray(belief.norms[tracks] - np.linalg.norm(after, axis=(1, 2)), dtype=np.float64)
+
+
+def _root(covariance: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    """Return L with ``P = L L'`` for a P that may be singular; None if it is no covariance."""
+    if not np.isfinite(covariance).all():
+        return None
+    variances, axes = np.linalg.eigh(covariance)
+    if variances[0] > _ROUNDING * variances[-1]:
+        return np.asarray(np.linalg.cholesky(covariance), dtype=np.float64)
+    if variances[0] < -_ROUNDING * variances[-1]:
+        return None
+    return np.asarray(axes * np.sqrt(np.maximum(variances, 0.0)), dtype=np.float64)
 
 
 def _whitened(roots: NDArray[np.float64], information: NDArray[np.float64]) -> NDArray[np.float64]:

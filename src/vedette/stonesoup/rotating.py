@@ -1,7 +1,8 @@
 """Stone Soup's rotating radar, all dwell angles at once: one question instead of one an angle.
 
 Turning the antenna turns the measured bearing and changes neither what is known of its noise nor the range,
-so that ``H' R^-1 H`` is the same at every dwell angle that has the track in view.
+so that ``H' R^-1 H`` is the same at every dwell angle that has the track in view. Not so where the mean is on
+the radar: Stone Soup gives it a bearing of 0 from the antenna, wherever that points.
 """
 
 from __future__ import annotations
@@ -13,8 +14,9 @@ from numpy.typing import NDArray
 from stonesoup.sensor.radar import RadarRotatingBearingRange
 
 from vedette.stonesoup.forecast import Forecast
-from vedette.stonesoup.information import information, linearised
+from vedette.stonesoup.information import difference_steps, information, linearised
 
+_NEAR = 1e4  # steps of finite differences
 _ASKED = ("measurement_model", "measure", "is_detectable", "is_visible", "position", "orientation")
 
 
@@ -26,6 +28,14 @@ def is_plain_rotating_radar(sensor: Any) -> bool:
     return own and not sensor.obstacles and not np.any(sensor.orientation[:2, 0])
 
 
+def is_clear(sensor: Any, forecast: Forecast) -> bool:
+    """Whether no mean is so near to the radar that finite differences of its bearing are no slope."""
+    here = np.asarray(sensor.position, dtype=np.float64).ravel()
+    mapping = list(sensor.position_mapping)
+    away = np.linalg.norm(forecast.means[:, mapping] - here, axis=1)
+    return bool((away > _NEAR * difference_steps(forecast.means[:, mapping]).max(axis=1, initial=0.0)).all())
+
+
 class RotatingView:
     """What a plain rotating radar at a fixed place tells about each track, by its dwell angle."""
 
@@ -35,7 +45,7 @@ class RotatingView:
         (bearings, ranges), jacobians = linearised(model, forecast, list(range(len(forecast.truths))))
         self._bearings = bearings + float(sensor.dwell_centre[0, 0])  # from the radar's own axis [rad]
         self._in_range = ranges <= sensor.max_range
-        self._information = information(model, jacobians)
+        self._information = information(model, jacobians, forecast.covariances)
 
     def __call__(self, sensor: Any) -> NDArray[np.float64]:
         """Return the information about every track, (m, d, d), at the sensor's present dwell angle."""
