@@ -9,15 +9,21 @@ import numpy as np
 import pytest
 
 from tests.support.ros2_doors import FakeDoor, at, scan
-from vedette.ros2.check import SCAN, TF, Finding, check, could_start
+from vedette.ros2.check import SCAN, Finding, check, could_start
 from vedette.ros2.door import Joint, Told
 from vedette.ros2.offered import Offered, Writer
 from vedette.ros2.scans import LaserSweep
 from vedette.ros2.settings import Ros2Settings
 
 SENSOR, LATCHED = Writer(reliable=False, kept=False), Writer(reliable=True, kept=True)
-NAMES = {"scan": "/r/scan", "pose": "/r/amcl_pose", "navigate_to_pose": "/r/navigate_to_pose"}
+NAMES = {
+    "scan": "/r/scan",
+    "map": "/r/map",
+    "pose": "/r/amcl_pose",
+    "navigate_to_pose": "/r/navigate_to_pose",
+}
 NAMES |= {"tf": "/r/tf", "tf_static": "/r/tf_static"}
+TF = "tf2_msgs/msg/TFMessage"
 WHOLE = Offered(
     {"/r/scan": (SCAN,), "/r/tf": (TF,), "/r/tf_static": (TF,)},
     NAMES,
@@ -85,6 +91,13 @@ def test_a_robot_that_tells_all_lacks_nothing_and_is_sent_nothing() -> None:
         (WHOLE, Joint, {}, "/r/tf has none of this robot's frames"),
         (WHOLE, None, {"base_frame": "base_lnik"}, "did you mean 'base_link'"),
         (WHOLE, None, {"map_frame": "world"}, "no transform from world to base_link"),
+        (WHOLE, None, {"evidence": "map"}, "no map on /r/map; start SLAM"),
+        (
+            replace(WHOLE, writers=with_writers("/r/map", (SENSOR,))),
+            None,
+            {"evidence": "map"},
+            "/r/map is not published transient local",
+        ),
         (WHOLE, None, {"use_sim_time": True}, "nothing on /clock"),
         (replace(WHOLE, navigator=False), None, {}, "nobody offers /r/navigate_to_pose"),
     ],

@@ -6,38 +6,81 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from tests.support.ros2_teams import Tried, plan, tried
 from tests.support.small_missions import TWO_ROOMS, drawn
 from vedette.maps import UNKNOWN, read_map
+from vedette.outcome import Outcome
 
 pytest.importorskip("rclpy", reason="`make test-ros2` has rclpy", exc_type=ImportError)
 
+WRONG = 0.005  # of the known cells may be other ones in truth
+TRIED = 240  # a test may take so long [s]
 
-def explored(world: Path, out: Path, robots: int, speed: float = 3.0) -> dict[str, Any]:
-    """Let a team explore a world over ROS 2; return its summary."""
-    command = [sys.executable, "-m", "vedette", "team", "explore", str(world), "--ros2", "--json"]
-    options = ["--robots", str(robots), "--speed", str(speed), "--max-time", "300", "--out", str(out)]
-    ended = subprocess.run(
-        [*command, *options], capture_output=True, text=True, timeout=200, check=False, env=dict(os.environ)
-    )
-    assert ended.returncode in (0, 1), ended.stderr
-    summary: dict[str, Any] = json.loads(ended.stdout)
-    return summary
+
+def sound(ended: Tried, robots: int, outcome: Outcome = Outcome.COMPLETE) -> None:
+    summary = ended.report.summary
+    assert summary.outcome is outcome, (summary, ended.robots_said)
+    assert summary.coverage >= 0.99
+    assert ended.wrong <= WRONG
+    assert ended.robots_said.count("collided: False") == robots, ended.robots_said
 
 
 def test_robots_on_real_rclpy_explore_two_rooms_and_map_them_as_they_are(tmp_path: Path) -> None:
     drawn(TWO_ROOMS).save(tmp_path)
-    summary = explored(tmp_path / "map.yaml", tmp_path / "out", 2)
-    assert summary["outcome"] == "complete", summary
+    out = tmp_path / "out"
+    command = [sys.executable, "-m", "vedette", "team", "explore", str(tmp_path / "map.yaml"), "--ros2"]
+    options = ["--json", "--robots", "2", "--speed", "3", "--max-time", "300", "--out", str(out)]
+    ended = subprocess.run(
+        [*command, *options],
+        capture_output=True,
+        text=True,
+        timeout=TRIED,
+        check=False,
+        env=dict(os.environ),
+    )
+    assert ended.returncode == 0, (ended.stdout, ended.stderr)
+    summary: dict[str, Any] = json.loads(ended.stdout)
+    assert summary["outcome"] == "complete"
     assert summary["coverage"] >= 0.99
-    _, told = read_map(tmp_path / "out" / "map.yaml")
+    _, told = read_map(out / "map.yaml")
     _, true = read_map(tmp_path / "map.yaml")
     known = told != UNKNOWN
-    assert np.mean(told[known] != true[known]) <= 0.005
-    said = (tmp_path / "out" / "agents" / "robots.log").read_text()
+    assert np.mean(told[known] != true[known]) <= WRONG
+    said = (out / "agents" / "robots.log").read_text()
     assert said.count("collided: False") == 2, said
+
+
+def test_a_robots_own_map_is_its_evidence_and_a_mistake_of_half_a_metre_and_five_degrees_is_undone(
+    tmp_path: Path,
+) -> None:
+    odd = {"slam": True, "lost": [15.0, 0.4, 0.3, 5.0]}
+    team = plan(drawn(TWO_ROOMS), 1, oddities={0: odd}, settings={"evidence": "map"})
+    sound(tried(team, tmp_path), 1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "odd",
+    [
+        {"upside_down": True, "mount": [0.1, 0.05, 20.0]},
+        {"view": 180.0, "mount": [0.12, 0.0, 0.0]},
+        {"prefix": "robot1/"},
+        {"active_from": 20.0},
+        {"rate": 2.0, "beams": 90},
+    ],
+    ids=["upside down and off centre", "half a view", "prefixed frames", "inactive for 20 s", "few beams"],
+)
+def test_an_odd_robot_maps_two_rooms_as_they_are(tmp_path: Path, odd: Mapping[str, Any]) -> None:
+    sound(tried(plan(drawn(TWO_ROOMS), 1, oddities={0: odd}), tmp_path), 1)
+
+
+@pytest.mark.slow
+def test_three_robots_see_each_other_and_map_none_of_them(tmp_path: Path) -> None:
+    sound(tried(plan(drawn(TWO_ROOMS), 3), tmp_path), 3)

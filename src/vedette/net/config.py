@@ -164,6 +164,12 @@ def _check_explore(config: AgentConfig) -> None:
     _check_word("explore.fusion", options.fusion, list(FUSIONS))
     planner(options.planner, config.robots)
     _ = options.negotiates_by
+    real = config.body.ros2
+    if real is not None and real.evidence == "map" and options.fusion == "channel":
+        raise InputError(
+            "body.ros2.evidence: a channel filter cannot take back what an older map said; leave out "
+            "explore.fusion, or evidence: map"
+        )
     if config.body.ros2 is not None:
         if config.body.map is not None:
             raise InputError("body.map: is the world of a simulated robot; leave it, or body.ros2, out")

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from math import atan2, hypot, inf
+from dataclasses import dataclass, field, replace
+from math import atan2, hypot, inf, nan
 
 import numpy as np
 
 from vedette.agent.body import BodyFigures
 from vedette.agent.effects import Drive, Motion, Route
-from vedette.agent.events import Event, Pose, Scan
-from vedette.ros2.door import Answer, Deviation, Door, GoalStatus, Joint, NavigatorGone, Told
+from vedette.agent.events import Event, Pose, Scan, Sensed
+from vedette.ros2.door import Answer, Deviation, Door, GoalStatus, Grid, Joint, NavigatorGone, Patch, Told
 from vedette.ros2.goals import Ask, Errands, Place
+from vedette.ros2.grids import Grids
 from vedette.ros2.scans import LaserSweep, beams
 from vedette.ros2.settings import Ros2Settings
 from vedette.ros2.transforms import RESTARTED, Gap, Matrix, Transforms, place, planar
@@ -36,6 +37,7 @@ class Ros2Body:
     door: Door
     transforms: Transforms = field(default_factory=Transforms)
     goals: Errands = field(default_factory=Errands)
+    grids: Grids = field(default_factory=Grids)
     left_out: int = 0  # scans whose transforms never came
     latest: LaserSweep | None = None
     _pose: Pose | None = None  # team frame
@@ -72,7 +74,7 @@ class Ros2Body:
         scans = [event for sweep in self._due() for event in sweep]
         self._note(pose)
         outcomes, self.goals.outcomes = self.goals.outcomes, []
-        return [*scans, pose, *outcomes]
+        return [*scans, pose, *self._own_map(now), *outcomes]
 
     def carry_out(self, motion: Motion, now: float) -> None:
         """Send the navigator to the end of a route, or let the robot stand."""
@@ -104,6 +106,8 @@ class Ros2Body:
                 self.transforms.add(parent, child, stamp, T, fixed=fixed)
             case LaserSweep():
                 self._receive(told)
+            case Grid() | Patch():
+                self.grids.take(told)
             case Deviation():
                 self._deviation = told
             case Answer(goal, accepted):
@@ -177,10 +181,23 @@ class Ros2Body:
                 return T
             found.append(T)
         seen = beams(sweep, T_team_map @ found[0], T_team_map @ found[1], self.settings.no_return)
+        if self.settings.evidence == "map":  # it only tells where the robot has looked
+            seen = replace(seen, ranges=np.full(len(seen.ranges), nan))
         pose = self._pose_at(found[2])
         newest = self.transforms.newest(self.frame(self.settings.base_frame))
         age = 0.0 if newest is None else max(newest - middle, 0.0)
         return pose, Scan(seen.angles, seen.ranges, (seen.x - pose.x, seen.y - pose.y), age)
+
+    def _own_map(self, now: float) -> list[Event]:
+        """Return the robot's own map, if that is its evidence and there is news of it."""
+        grid = self.grids.latest
+        if self.settings.evidence == "scan" or grid is None:
+            return []
+        T_map_grid = self.transforms.lookup(self.frame(self.settings.map_frame), grid.frame)
+        if isinstance(T_map_grid, Gap):
+            return []
+        own_map = self.grids.due(self.settings.T_team_map @ T_map_grid, now)
+        return [] if own_map is None else [Sensed(own_map, now)]
 
     # -- where it is to go ------------------------------------------------------------------------------
 

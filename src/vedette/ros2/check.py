@@ -22,7 +22,7 @@ LOOKED = 5.0  # so long the robot is listened to [s]
 SLOW = 1.0  # fewer scans a second are too few [Hz]
 LATE = 1.0  # a transform that comes so long after its scan is late [s]
 APART = 2.0  # clocks that differ by more are worth a word [s]
-SCAN, TF = "sensor_msgs/msg/LaserScan", "tf2_msgs/msg/TFMessage"
+SCAN, GRID = "sensor_msgs/msg/LaserScan", "nav_msgs/msg/OccupancyGrid"
 
 
 @dataclass(frozen=True)
@@ -76,6 +76,7 @@ def check(
     offered = door.offered()
     return [
         *_scans(settings, offered, body, heard),
+        *_own_map(settings, offered, body),
         *_frames(settings, offered, body),
         *_clocks(settings, offered, body, heard),
         _navigator(settings, offered),
@@ -114,6 +115,20 @@ def _scans(settings: Ros2Settings, offered: Offered, body: Ros2Body, heard: _Hea
     yield Finding(None, f"{said}; that is slow") if rate < SLOW else Finding(True, said)
 
 
+def _own_map(settings: Ros2Settings, offered: Offered, body: Ros2Body) -> Iterator[Finding]:
+    if settings.evidence != "map":
+        return
+    topic, others = offered.names["map"], offered.of_type(GRID)
+    if body.grids.latest is not None:
+        rows, cols = body.grids.latest.occupancy.shape
+        yield Finding(True, f"{topic}: {cols} x {rows} cells of {body.grids.latest.resolution:g} m")
+    elif any(not writer.kept for writer in offered.writers.get(topic, ())):
+        yield Finding(False, f"{topic} is not published transient local: set that QoS where it is published")
+    else:
+        hint = f"maps are on {', '.join(others)}" if others else "start SLAM"
+        yield Finding(False, f"no map on {topic}; {hint}, or correct namespace or map")
+
+
 def _frames(settings: Ros2Settings, offered: Offered, body: Ros2Body) -> Iterator[Finding]:
     frames, own = body.transforms.frames, offered.names["tf"]
     if not frames:
@@ -126,15 +141,17 @@ def _frames(settings: Ros2Settings, offered: Offered, body: Ros2Body) -> Iterato
         if any(not writer.kept for writer in offered.writers.get(topic, ())):
             yield Finding(None, f"{topic} is not published transient local: who comes late does not hear it")
     map_frame, base = body.frame(settings.map_frame), body.frame(settings.base_frame)
-    wanted = [(map_frame, base, "base_frame or map_frame", "is the robot localised?")]
+    odom = body.frame(settings.odom_frame)
+    rolls = not isinstance(body.transforms.lookup(odom, base), Gap)
+    teller = "SLAM or a localiser" if rolls else f"odometry, in {odom}, and SLAM or a localiser"
+    wanted = [(map_frame, base, f"start {teller}")]
     if body.latest is not None:
-        wanted.append((base, body.latest.frame, "the lidar's frame_id", "is its mount told?"))
-    for target, source, key, question in wanted:
-        found = body.transforms.lookup(target, source)
-        if isinstance(found, Gap):
+        wanted.append((base, body.latest.frame, "start what tells the lidar's mount (robot_state_publisher)"))
+    for target, source, remedy in wanted:
+        if isinstance(body.transforms.lookup(target, source), Gap):
             strange = [frame for frame in (target, source) if frame not in frames]
             hint = "; ".join(f"{frame}: {nearest_name(frame, sorted(frames))}" for frame in strange)
-            yield Finding(False, f"no transform from {target} to {source}: {question} {hint or key}")
+            yield Finding(False, f"no transform from {target} to {source}: {hint or remedy}")
         else:
             yield Finding(True, f"{source} lies in {target}")
 

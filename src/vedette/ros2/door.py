@@ -6,6 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol, TypeAlias
 
+import numpy as np
+from numpy.typing import NDArray
+
 from vedette.ros2.goals import Place
 from vedette.ros2.scans import LaserSweep
 from vedette.ros2.transforms import Matrix
@@ -30,6 +33,25 @@ class Deviation:
     heading: float = 0.0  # [rad]
 
 
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """``nav_msgs/OccupancyGrid``: the robot's own map as it is now."""
+
+    frame: str
+    resolution: float  # [m]
+    T: Matrix  # T_frame_corner of its first cell
+    occupancy: NDArray[np.int8]  # (R, C) 0 to 100 %, -1 unknown
+
+
+@dataclass(frozen=True, eq=False)
+class Patch:
+    """``map_msgs/OccupancyGridUpdate``: cells of the robot's own map that are other ones now."""
+
+    row: int  # of its first cell
+    col: int
+    occupancy: NDArray[np.int8]  # (R, C) as above
+
+
 @dataclass(frozen=True)
 class Answer:
     """Whether the navigator takes a goal up."""
@@ -51,7 +73,7 @@ class NavigatorGone:
     """There is no navigator now."""
 
 
-Told: TypeAlias = Joint | LaserSweep | Deviation | Answer | GoalStatus | NavigatorGone
+Told: TypeAlias = Joint | LaserSweep | Grid | Patch | Deviation | Answer | GoalStatus | NavigatorGone
 
 
 class Door(Protocol):

@@ -6,6 +6,7 @@ import importlib
 import time
 from collections import deque
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from math import cos, sin
 from threading import Thread
@@ -15,7 +16,7 @@ from uuid import uuid4
 import numpy as np
 
 from vedette.errors import InputError
-from vedette.ros2.door import Answer, Deviation, GoalStatus, Joint, NavigatorGone, Told
+from vedette.ros2.door import Answer, Deviation, GoalStatus, Grid, Joint, NavigatorGone, Patch, Told
 from vedette.ros2.goals import Place
 from vedette.ros2.offered import Offered, Writer
 from vedette.ros2.scans import LaserSweep
@@ -25,7 +26,7 @@ from vedette.ros2.transforms import deviations, matrix
 HOW = "start it where ROS 2 is set up: source /opt/ros/<distro>/setup.bash"
 MOST_GOALS = 64  # that are remembered
 GOODBYE = 1.0  # what was ordered last has so long to get out [s]
-TOPICS = ("scan", "pose", "navigate_to_pose")  # settings that name some
+TOPICS = ("scan", "map", "pose", "navigate_to_pose")  # settings that name some
 NAVIGATOR = "bt_navigator"  # Nav2's node that offers the action
 DEPTH = 5  # messages of a sensor that are kept for us
 
@@ -108,9 +109,35 @@ class RosDoor:
             static = f"{topic}_static"
             node.create_subscription(tf, static, lambda m, own=own: self._hear_tf(m, own, True), latched)
 
+        if settings.evidence == "map":
+            one = qos.QoSProfile(depth=1, durability=qos.DurabilityPolicy.TRANSIENT_LOCAL)
+            node.create_subscription(ros("nav_msgs.msg").OccupancyGrid, settings.map, self._hear_grid, one)
+            with suppress(ImportError):  # not all robots have updates of maps
+                update = importlib.import_module("map_msgs.msg").OccupancyGridUpdate
+                node.create_subscription(update, f"{settings.map}_updates", self._hear_patch, sensor)
         if settings.use_sim_time:
             newest = qos.QoSProfile(depth=1, reliability=qos.ReliabilityPolicy.BEST_EFFORT)
             node.create_subscription(ros("rosgraph_msgs.msg").Clock, "/clock", self._hear_clock, newest)
+
+    def _hear_grid(self, message: Any) -> None:
+        info, origin = message.info, message.info.origin
+        p, q = origin.position, origin.orientation
+        quaternion = (q.x, q.y, q.z, q.w) if any((q.x, q.y, q.z, q.w)) else (0.0, 0.0, 0.0, 1.0)
+        cells = np.asarray(message.data, np.int8)
+        if info.resolution > 0.0 and len(cells) == info.height * info.width:
+            self._told.append(
+                Grid(
+                    message.header.frame_id,
+                    info.resolution,
+                    matrix((p.x, p.y, p.z), quaternion),
+                    cells.reshape(info.height, info.width),
+                )
+            )
+
+    def _hear_patch(self, message: Any) -> None:
+        cells = np.asarray(message.data, np.int8)
+        if len(cells) == message.height * message.width:
+            self._told.append(Patch(message.y, message.x, cells.reshape(message.height, message.width)))
 
     def _hear_clock(self, message: Any) -> None:
         self.time = seconds(message.clock)

@@ -65,6 +65,8 @@ def what_is_missing(body: Ros2Body) -> str | None:
         return "nothing on /clock; start the simulation, or leave use_sim_time out"
     if sweep is None:
         return f"nothing on {settings.scan}; start the lidar's driver, or name its topic in scan"
+    if settings.evidence == "map" and body.grids.latest is None:
+        return f"nothing on {settings.map}; start SLAM, or name its map's topic in map"
     base = body.frame(settings.base_frame)
     for frame, remedy in ((base, "base_frame or map_frame"), (sweep.frame, "the lidar's frame_id")):
         found = body.transforms.lookup(body.frame(settings.map_frame), frame)

@@ -20,12 +20,14 @@ class Ros2Settings(Struct, forbid_unknown_fields=True, frozen=True):
 
     namespace: Annotated[str, Meta(pattern=f"^(/?{_WORD}(/{_WORD})*)?$", max_length=200)] = ""
     scan: Name = "scan"  # sensor_msgs/LaserScan
+    map: Name = "map"  # nav_msgs/OccupancyGrid
     base_frame: Name = "base_link"
     odom_frame: Name = "odom"
     map_frame: Name = "map"
     pose: Name = "amcl_pose"  # geometry_msgs/PoseWithCovarianceStamped, where there is one
     navigate_to_pose: Name = "navigate_to_pose"
     use_sim_time: bool = False  # the mission goes by /clock
+    evidence: Literal["scan", "map"] = "scan"  # what the robot's evidence is made of
     no_return: Literal["ignore", "free"] = "ignore"  # what a beam says that nothing came back from
     area: tuple[float, float, float, float] = (-50.0, -50.0, 50.0, 50.0)  # left, lower, right, upper [m]
     wait: Annotated[float, Meta(ge=0.0, le=86400.0)] = 60.0  # for what the agent needs to begin [s]

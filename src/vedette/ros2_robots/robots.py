@@ -14,7 +14,7 @@ import numpy as np
 import yaml
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import TransformStamped
-from nav_msgs.msg import Odometry
+from nav_msgs.msg import OccupancyGrid, Odometry
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
 from rosgraph_msgs.msg import Clock
@@ -22,11 +22,13 @@ from sensor_msgs.msg import LaserScan
 from tf2_msgs.msg import TFMessage
 
 from vedette.ros2_robots.building import Building
+from vedette.ros2_robots.mapper import Mapper
 from vedette.ros2_robots.navigator import Navigator, Pose
 from vedette.ros2_robots.planner import WayFinder
 
 STEP = 0.05  # of the simulation [s]
 NOISE = 0.01  # of a range [m]
+MAP_PERIOD = 1.0  # [s]
 DEFAULTS: Mapping[str, Any] = {
     "radius": 0.2,
     "speed": 0.5,
@@ -40,6 +42,8 @@ DEFAULTS: Mapping[str, Any] = {
     "prefix": "",
     "mount": [0.0, 0.0, 0.0],  # of the lidar: x, y, yaw [m, m, deg]
     "upside_down": False,
+    "slam": False,  # it publishes a map
+    "lost": [0.0, 0.0, 0.0, 0.0],  # until when its map is wrong, and by how much [s, m, m, deg]
 }
 
 
@@ -67,13 +71,15 @@ def in_world(frame: Pose, at: Pose) -> Pose:
 
 @dataclass(eq=False)
 class RobotNode:
-    """One robot's node; its map's and its odometry's frames lie where it started."""
+    """One robot's node; its map's and its odometry's frames lie where it started, but for SLAM's mistakes."""
 
     spec: Mapping[str, Any]
     start: Pose
     node: Node
     navigator: Navigator
+    building: Building
     next_scan: float = 0.0
+    next_map: float = 0.0
 
     def __post_init__(self) -> None:
         node = self.node
@@ -82,6 +88,8 @@ class RobotNode:
         self._static = node.create_publisher(TFMessage, "tf_static", latched)
         self._odom = node.create_publisher(Odometry, "odom", 10)
         self._scan = node.create_publisher(LaserScan, "scan", qos_profile_sensor_data)
+        self._map = node.create_publisher(OccupancyGrid, "map", latched) if self.spec["slam"] else None
+        self._mapper = Mapper(self.building)
         x, y, yaw = self.spec["mount"]
         roll = pi if self.spec["upside_down"] else 0.0
         mount = self._joint("base_link", "laser", (x, y, radians(yaw)), Time(), roll)
@@ -95,10 +103,15 @@ class RobotNode:
         q.x, q.y, q.z, q.w = quaternion(at[2], roll)
         return told
 
+    def map_frame(self, now: float) -> Pose:
+        """Return where the frame of the robot's map lies in the world."""
+        until, dx, dy, turn = self.spec["lost"]
+        return in_world(self.start, (dx, dy, radians(turn))) if now < until else self.start
+
     def tell(self, now: float, stamp: Time, at: Pose, moving: tuple[float, float], scan: Any) -> None:
         """Publish where the robot is, and now and then what its lidar sees."""
         here = seen_from(self.start, at)
-        drift = self._joint("map", "odom", (0.0, 0.0, 0.0), stamp)
+        drift = self._joint("map", "odom", seen_from(self.map_frame(now), self.start), stamp)
         self._tf.publish(TFMessage(transforms=[drift, self._joint("odom", "base_link", here, stamp)]))
         odometry, prefix = Odometry(), self.spec["prefix"]
         odometry.header.frame_id, odometry.header.stamp = f"{prefix}odom", stamp
@@ -111,6 +124,24 @@ class RobotNode:
         if now >= self.next_scan - 1e-9:
             self.next_scan += 1.0 / self.spec["rate"]
             self._scan.publish(self._sweep(stamp, scan))
+            if self._map is not None:
+                x, y, yaw = self.spec["mount"]
+                self._mapper.look(*in_world(at, (x, y, radians(yaw))), scan)
+        if self._map is not None and now >= self.next_map:
+            self.next_map += MAP_PERIOD
+            self._map.publish(self._own_map(now, stamp))
+
+    def _own_map(self, now: float, stamp: Time) -> OccupancyGrid:
+        told, building = OccupancyGrid(), self.building
+        told.header.frame_id, told.header.stamp = f"{self.spec['prefix']}map", stamp
+        told.info.resolution = building.resolution
+        told.info.height, told.info.width = building.solid.shape
+        x, y, yaw = seen_from(self.map_frame(now), (building.left, building.lower, 0.0))
+        told.info.origin.position.x, told.info.origin.position.y = x, y
+        q = told.info.origin.orientation
+        q.x, q.y, q.z, q.w = quaternion(yaw)
+        told.data = self._mapper.occupancy.ravel().tolist()
+        return told
 
     def _sweep(self, stamp: Time, scan: Mapping[str, Any]) -> LaserScan:
         told = LaserScan()
@@ -144,17 +175,17 @@ class Strangers:
         self.nodes[0].create_timer(STEP / speed, self.step)
 
     def _robot(self, i: int) -> RobotNode:
-        spec, start = self._specs[i], self._starts[i]
+        spec = self._specs[i]
         navigator = Navigator(
             self.nodes[i],
             WayFinder(self.building, spec["radius"]),
             spec["radius"],
             spec["speed"],
             spec["turn_rate"],
-            lambda at: in_world(start, at),
+            lambda at: in_world(self.robots[i].map_frame(self.now), at),
             spec["active_from"],
         )
-        return RobotNode(spec, start, self.nodes[i], navigator)
+        return RobotNode(spec, self._starts[i], self.nodes[i], navigator, self.building)
 
     def _make(self) -> Any:
         rows, cols = self.building.solid.shape

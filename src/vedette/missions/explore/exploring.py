@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.agent.effects import Route
-from vedette.agent.events import Pose, Scan
+from vedette.agent.events import Pose, Scan, Sensed
 from vedette.agent.mates import Mate
 from vedette.domains.mapping.belief import (
     MapBelief,
@@ -37,17 +37,20 @@ from vedette.domains.mapping.views import MOST_STOPS
 from vedette.fusion import Fusion
 from vedette.kernels import distance, frontier, lidar
 from vedette.kernels.tiles import TiledGrid, Tiling
-from vedette.maps import FREE, UNKNOWN, GridFrame
+from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
 from vedette.maps.bounds import Bounds, Extent
 from vedette.maps.disc import cells_under
 from vedette.maps.lattice import Lattice
 from vedette.missions.explore.doubts import Doubts
 from vedette.missions.explore.looking import Looking
+from vedette.missions.explore.own_map import OwnMap
 from vedette.missions.explore.resort import LastResort, hemmed_in
 from vedette.outcome import Outcome
 from vedette.team import Most, PlatformSpec
 
 GAIN_HIT, GAIN_MISS, CLAMP = 4, 2, 20  # log-odds of one observation and of all [0.2 nats]
+TAKEN_OVER = np.zeros(3, np.int8)  # log-odds of a cell's class in the robot's own map
+TAKEN_OVER[[FREE, OCCUPIED]] = -CLAMP, CLAMP
 NUDGE = 0.25  # a return lies in the wall, not on its face: it counts as so much farther [cells] ...
 NUDGE_OF_NOISE = 2.5  # ... or, where noise asks for more, so many of its deviations, ...
 MOST_NUDGE = 0.5  # ... but no more than that [cells]
@@ -116,7 +119,33 @@ class Exploring:
 
     # -- evidence -----------------------------------------------------------------------------------
 
-    def observe(self, scan: Scan, pose: Pose, mates: Sequence[Mate], now: float) -> None:
+    def observe(self, seen: Scan | Sensed, pose: Pose, mates: Sequence[Mate], now: float) -> None:
+        """Take in a scan, or a map that the robot has made itself."""
+        if isinstance(seen, Scan):
+            self._add(seen, pose, mates, now)
+        elif isinstance(seen.data, OwnMap):
+            self._take_over(seen.data, mates)
+
+    def _take_over(self, own_map: OwnMap, mates: Sequence[Mate]) -> None:
+        """Let a map take the place of all that the robot said before; team-mates are not obstacles in it."""
+        bounds = own_map.bounds(self.frame)
+        was = self._seen.extent
+        if was[0].stop > was[0].start:
+            bounds.hold(was[0].start, was[0].stop, was[1].start, was[1].stop)
+        extent = bounds.extent
+        frame = self.frame.window(*extent)
+        before, now = self.log_odds.window(*extent), own_map.laid(frame)
+        for mate in mates:
+            body = cells_under(frame, mate.x, mate.y, mate.radius + MATE_MARGIN)
+            now.flat[body[now.flat[body] == OCCUPIED]] = UNKNOWN
+        evidence = TAKEN_OVER[now]
+        changed = np.flatnonzero(np.sign(before) != np.sign(evidence))
+        row, col = np.divmod(changed, frame.cols)
+        cells = (row + extent[0].start) * self.frame.cols + col + extent[1].start
+        self.log_odds.put(cells, evidence.flat[changed])
+        self._note(cells)
+
+    def _add(self, scan: Scan, pose: Pose, mates: Sequence[Mate], now: float) -> None:
         """Add a scan to the robot's own evidence; returns from team-mates are not obstacles."""
         says = ~np.isnan(scan.ranges)
         angles, told = scan.angles[says], scan.ranges[says]
