@@ -362,12 +362,33 @@ def test_damaged_payloads_raise_value_error_or_decode_to_something_valid(
             assert fusion.digest == robot(0).digest
 
 
-def test_claims_about_a_robots_own_evidence_are_refused() -> None:
-    tiles = np.array([0])
-    mask = np.ones((1, CELLS), dtype=np.bool_)
-    forged = Delta(0, 5, tiles, mask, np.full(CELLS, 2, dtype=np.uint8))
-    with pytest.raises(ValueError, match="never published"):
-        robot(0).receive(1, CODEC.encode(Payload(3, sections=[((0, 7), forged)])), 0.0)
+def forged(version: int) -> bytes:
+    """All occupied, in the name of robot 0."""
+    tiles = np.arange(TILING.count)
+    mask = TILING.inside(tiles)
+    delta = Delta(0, version, tiles, mask, np.full(mask.sum(), 4, dtype=np.uint8), np.full(COUNTS, 9))
+    return CODEC.encode(Payload(3, sections=[((0, 7), delta)]))
+
+
+@pytest.mark.parametrize("version", [30, 70_000, 1 << 32, 1 << 62])
+def test_evidence_forged_in_a_robots_name_is_overtaken_by_its_own_everywhere(version: int) -> None:
+    rng = np.random.default_rng(3)
+    net = Network(robot, 4, [(0, 1), (1, 2), (2, 3)], rng)
+    explore(net, rng, 6)
+    net.run(10)
+    for again in (0, 50):  # while they go on, and where the forger has had the last word
+        net.robots[2].receive(3, forged(version + again), net.now)
+        explore(net, rng, 6)
+        net.run(30)
+        assert_all_agree(net)
+
+
+def test_versions_from_which_a_contributor_could_not_go_on_are_refused() -> None:
+    fusion = robot(1)
+    for version in ((1 << 62) + (1 << 33), (1 << 63) - 1):
+        with pytest.raises(ValueError, match="far beyond"):
+            fusion.receive(2, forged(version), 0.0)
+    assert fusion.contributors() == 0
 
 
 def test_two_sections_of_one_contributor_are_refused() -> None:

@@ -15,6 +15,7 @@ import numpy as np
 from tests.support import misbehaving
 from tests.support.faulty_team import FaultyTeam, Plan
 from tests.support.faulty_world import FRAME, Sites, check
+from tests.support.mutants import Mutant, mutants_of
 from tests.support.overlay_network import random_graph
 from vedette.agent import Agent, NetworkedAgent
 from vedette.outcome import Outcome
@@ -35,21 +36,23 @@ MODES: Mapping[str, Callable[[np.random.Generator], Program]] = {
 }
 
 
-LIES = frozenset({"truncating", "mates"})  # the others cannot tell what is so
+LIES = frozenset({"truncating", "mates", "mutant"})  # the others cannot tell what is so
 
 
 class BadTeam(FaultyTeam):
     """A team some of whose members misbehave; the laws are for the others."""
 
-    def __init__(self, plan: Plan, bad: Mapping[int, Program], suffers: bool, trace: bool = False) -> None:
+    def __init__(
+        self, plan: Plan, bad: Mapping[int, Program], suffers: bool, forged: bool, trace: bool = False
+    ) -> None:
         """Bring the team to life; ``bad``: the programs of those that misbehave."""
-        self.bad, self.suffers = bad, suffers
+        self.bad, self.suffers, self.forged = bad, suffers, forged
         super().__init__(plan, trace)
 
     def _program(self, i: int, agent: Agent, now: float, lease: float) -> NetworkedAgent:
         if i in self.bad:
             return self.bad[i](agent, now, lease=lease)
-        return NetworkedAgent(agent, now, lease=lease)
+        return super()._program(i, agent, now, lease)
 
     @property
     def honest(self) -> list[int]:
@@ -66,19 +69,27 @@ def plan_of(mode: str, seed: int) -> tuple[Plan, dict[int, Program]]:
     places = rng.uniform(0.0, FRAME.cols * FRAME.resolution, (n, 2))
     bad = rng.choice(n, 1 + int(n > 4 and rng.random() < 0.3), replace=False).tolist()
     plan = replace(Plan.of(seed), edges=edges, sites=sites, places=places, lease=3.0, faults=Schedule(()))
+    if mode == "mutant":
+        (case,) = mutants_of([seed])
+        bad = bad[:1]
+        others = [i for i in range(n) if i not in bad]
+        return plan, {bad[0]: partial(Mutant, case=case, another=int(rng.choice(others)))}
     return plan, {i: MODES[mode](rng) for i in bad}
 
 
 def play(mode: str, seed: int, trace: bool = False) -> BadTeam:
     """Play one team to its end; a failure names the command that replays it."""
     plan, bad = plan_of(mode, seed)
-    team = BadTeam(plan, bad, mode in LIES, trace)
+    forged = mode == "mutant" and mutants_of([seed])[0].message == "Evidence"
+    team = BadTeam(plan, bad, mode in LIES, forged, trace)
     try:
         outcome = team.run(lambda: None)
         check(outcome is Outcome.COMPLETE, "the mission does not end", outcome)
         team.check_end()
     except Exception as error:
         replay = f"replay: python -m tests.support.bad_member {mode} {seed} --trace"
+        if mode == "mutant":
+            replay += f"  ({mutants_of([seed])[0]})"
         raise AssertionError(
             f"{replay}\n  {sorted(bad)} of {plan.edges}\nat {team.now:.3f} s: {error}"
         ) from error

@@ -77,6 +77,7 @@ class FaultyTeam(SiteTeam):
     """A toy team; after whatever one of its agents does, all laws are checked."""
 
     suffers = False  # from somebody who says what is not so
+    forged = False  # evidence among it
 
     def __init__(self, plan: Plan, trace: bool = False) -> None:
         """Bring the team to life."""
@@ -100,7 +101,7 @@ class FaultyTeam(SiteTeam):
         )
 
     def _program(self, i: int, agent: Agent, now: float, lease: float) -> NetworkedAgent:
-        return NetworkedAgent(agent, now, lease=lease)
+        return NetworkedAgent(agent, now, lease=lease, admitted=len(self.plan.places))
 
     @property
     def honest(self) -> list[int]:
@@ -128,7 +129,7 @@ class FaultyTeam(SiteTeam):
             if not self.suffers:
                 self.round_law.decided(mission, seen, ended=_turns_in(seen) > turns)
             self._say(f"{i} decides {mission.strategy} in {rounds.stamp}, quiet {agent.quiet}")
-        if self.evidence.check(mission):
+        if not self.forged and self.evidence.check(mission):
             self._say(f"{i} holds {versions_of(mission)}")
         if i in self.honest:
             check_strategy(agent, self.sites)

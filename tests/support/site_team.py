@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from tests.support.faulty_world import FRAME, NEAR, SPEED, Published, SiteMission, Sites
 from tests.support.overlay_network import Edge
-from vedette.agent import Agent, GroundBehaviour, NetworkedAgent
+from vedette.agent import Agent, GroundBehaviour
 from vedette.agent.driving import Driver
 from vedette.agent.effects import Drive, Motion
 from vedette.agent.events import Arrived, Event, Pose, Sensed
@@ -96,7 +96,7 @@ class SiteTeam(Simulation):
         *,
         lease: float,
         published: Published,
-        live: Live = lambda i, agent, now, lease: NetworkedAgent(agent, now, lease=lease),
+        live: Live | None = None,
     ) -> None:
         """Bring the team to life at its places, ``(n, 2)`` [m]."""
         self.sites, self.lease = sites, lease

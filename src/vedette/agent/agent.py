@@ -75,7 +75,7 @@ def _hear(agent: Agent, sender: int, message: messages.Wire, now: float) -> list
     from_parent = sender == agent.rounds.tree.parent
     match message:
         case Beacon():
-            if message.robot == agent.robot or not agent.mates.hear(message, now):
+            if message.robot == agent.robot or not agent.mates.hear(message, now, sender):
                 return []
             return _beacon_to(agent, message, [k for k in agent.rounds.tree.neighbours if k != sender])
         case messages.Evidence(data):

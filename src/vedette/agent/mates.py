@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from vedette.agent.messages import Beacon
 
-MOST_MATES = 1024  # that are kept; each has a path of at most 500 points
+MOST_MATES = 1024  # that are kept at most; each has a path of at most 500 points
 SILENT = 3.0  # a mate not heard for so long stands where it was last [s]
 
 
@@ -36,19 +36,25 @@ class Mate:
 class Mates:
     """The newest beacon of every team-mate."""
 
+    admitted: int = MOST_MATES  # robots of the team are numbered below it
     _newest: dict[int, tuple[int, int]] = field(default_factory=dict)  # boot and sequence
     _mates: dict[int, Mate] = field(default_factory=dict)
 
-    def hear(self, beacon: Beacon, now: float) -> bool:
+    def hear(self, beacon: Beacon, now: float, sender: int) -> bool:
         """Keep a beacon; tell whether it is news.
 
+        Of what comes from itself, or when it has been silent, a mate's beacon is news whatever its number:
+        who passes beacons on could have said higher ones.
+
         Raises:
-            ValueError: of a robot beyond the largest team.
+            ValueError: of a robot that the team cannot have.
         """
-        if beacon.robot not in self._mates and len(self._mates) == MOST_MATES:
-            raise ValueError(f"beacon of robot {beacon.robot}: {MOST_MATES} team-mates are known already")
-        stamp = beacon.boot, beacon.sequence
-        if self._newest.get(beacon.robot, (-1, -1)) >= stamp:
+        known = self._mates.get(beacon.robot)
+        if beacon.robot >= self.admitted or (known is None and len(self._mates) == MOST_MATES):
+            raise ValueError(f"beacon of robot {beacon.robot}: the team has no such robot")
+        stamp, newest = (beacon.boot, beacon.sequence), self._newest.get(beacon.robot, (-1, -1))
+        believed = beacon.robot == sender or known is None or known.silent(now)
+        if newest == stamp or (newest > stamp and not believed):
             return False
         self._newest[beacon.robot] = stamp
         self._mates[beacon.robot] = _mate(beacon, now)

@@ -16,7 +16,8 @@ Notes = Annotated[tuple[Note, ...], Meta(max_length=512)]
 Metre = Annotated[int, Meta(ge=-(2**31), le=2**31)]
 Area = tuple[Metre, Metre, Metre, Metre]  # lowest x, lowest y, highest x, highest y
 Areas = Annotated[tuple[Area, ...], Meta(max_length=8)]
-Robots = Annotated[int, Meta(ge=1, le=2**16)]
+MOST_ROBOTS = MOST_DEPTH = 1 << 16
+Robots = Annotated[int, Meta(ge=1, le=MOST_ROBOTS)]
 Offset = Annotated[int, Meta(ge=-2000, le=2000)]  # from the robot [cm]; its path's next metres are few
 
 
@@ -52,7 +53,7 @@ class Begin(msgspec.Struct, frozen=True, array_like=True, tag=3):
 
     epoch: Count
     sequence: Count
-    depth: Annotated[int, Meta(ge=0, le=2**16)]  # of the receiver: links to the root
+    depth: Annotated[int, Meta(ge=0, le=MOST_DEPTH)]  # of the receiver: links to the root
 
 
 class Flushed(msgspec.Struct, frozen=True, array_like=True, tag=4):

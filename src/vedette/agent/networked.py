@@ -15,6 +15,7 @@ from vedette.agent.acquaintance import Acquaintance
 from vedette.agent.agent import step
 from vedette.agent.effects import Job, Motion, Send, Shun, TrafficKind
 from vedette.agent.events import Event, Message, TreeChanged
+from vedette.agent.mates import MOST_MATES
 from vedette.agent.state import Agent
 from vedette.agent.terms import Terms, fingerprint_of
 from vedette.overlay import Overlay, Place, ReliableLink
@@ -56,6 +57,7 @@ class NetworkedAgent:
         tempo: float = 1.0,
         terms: Terms | None = None,
         time_of_day: Callable[[float], float] = lambda now: now,
+        admitted: int = MOST_MATES,
     ) -> None:
         """Start alone.
 
@@ -66,10 +68,12 @@ class NetworkedAgent:
             mission_time: what the agent's clock shows when the transport's shows ``now`` [s].
             tempo: by how much the agent's clock goes on in a second of the transport's, at most [s].
             terms: what the team has to agree on: no link is used to who differs.
+            admitted: robots of the team are numbered below it, whatever anybody says.
             time_of_day: what the host's clock shows when the transport's shows ``now`` [s].
         """
         self.agent = agent
         agent.rounds.tempo = tempo
+        agent.rounds.admitted = agent.mates.admitted = admitted
         self.overlay = Overlay(agent.robot, agent.boot, now, lease, fingerprint_of(terms or {}))
         self._acquaintance = Acquaintance(terms or {}, time_of_day)
         self.hold = False
@@ -213,8 +217,8 @@ class NetworkedAgent:
             packets = link.poll(now)
             datagrams += [self._datagram(to, PACKET + packet) for packet in packets]
             self.bytes_sent[TrafficKind.OVERLAY] -= link.carried - carried
-            if link.lost:
-                self.overlay.lost(to, now)
+            if link.lost:  # though hellos come: where they do not, the lease is sooner over
+                self.overlay.shun(to, now)
         return datagrams
 
     def _datagram(self, to: int, payload: bytes, carried: int = 0) -> Datagram:

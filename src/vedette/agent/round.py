@@ -12,7 +12,19 @@ from msgspec import structs
 from vedette.agent.effects import Effect, Job, Send, TrafficKind
 from vedette.agent.events import Pose, TreeChanged
 from vedette.agent.mates import Mate
-from vedette.agent.messages import Areas, Begin, Call, Evidence, Flushed, Freeze, Negotiate, Note, encode
+from vedette.agent.messages import (
+    MOST_DEPTH,
+    MOST_ROBOTS,
+    Areas,
+    Begin,
+    Call,
+    Evidence,
+    Flushed,
+    Freeze,
+    Negotiate,
+    Note,
+    encode,
+)
 from vedette.agent.mission import Mission
 from vedette.agent.participant import RoundParticipant
 from vedette.agent.reaches import reaches_to_tell
@@ -79,7 +91,7 @@ class Round:
     @property
     def part(self) -> int:
         """Count the robots from this one on away from the root."""
-        return 1 + sum(self.robots.get(child, 0) for child in self.children)
+        return min(1 + sum(self.robots.get(child, 0) for child in self.children), MOST_ROBOTS)
 
     @property
     def awaited(self) -> set[int]:
@@ -100,7 +112,7 @@ class Round:
     def begin(self, message: Begin, now: float) -> list[Effect]:
         """Hand on that a round begins; without children, flush at once."""
         self.mission.publish(now)
-        onwards = structs.replace(message, depth=message.depth + 1)
+        onwards = structs.replace(message, depth=min(message.depth + 1, MOST_DEPTH))
         return [*(say(child, onwards) for child in self.children), *self.flush(now)]
 
     def hear_flushed(self, sender: int, message: Flushed, now: float) -> list[Effect]:

@@ -25,6 +25,7 @@ from vedette.negotiation import RoundOutcome
 IDLE = 1.0  # a robot that did not look after its rounds for longer did not want any [s of the transport]
 CALL_AGAIN = 1.0  # a call not answered is repeated after so long [s]
 SETTLING = 0.2  # a new tree is left alone for so long before a round [s]
+FARTHEST = 8  # a robot farther from the root, in links, counts as no farther
 AS_LONG = 3.0  # a robot waits for others so many times as long as its own last preparation took, and more
 CLOCKS_APART = 20.0  # that the root's may be from this robot's, where rounds keep to beats [s]
 
@@ -57,6 +58,7 @@ class Rounds:
     decided: Callable[[Decision], None]
     pace: Pace = field(default_factory=Pace)
     tempo: float = 1.0  # of the mission, in seconds a second of the transport's clock
+    admitted: int = 1 << 16  # robots that there can be in the team
     tree: TreeChanged = field(default_factory=lambda: TreeChanged(0, None, (), 1))
     decisions: int = 0
     sweeps: int = 0
@@ -155,7 +157,8 @@ class Rounds:
 
     def _patience(self, depth: int = 0) -> float:
         """Return how long this robot waits for others [s]: the longer, the longer it took itself."""
-        return self.tempo * patience(self.tree.size, depth) + AS_LONG * self._preparation
+        size = min(self.tree.size, self.admitted)
+        return self.tempo * patience(size, depth) + AS_LONG * self._preparation
 
     def _is_lonely(self, now: float) -> bool:
         """Tell whether this robot has decided with nobody for so long that it had better plan alone."""
@@ -168,7 +171,7 @@ class Rounds:
         """
         self._failed += 1
         parent = self.tree.parent
-        if parent is None or self._failed <= min(max(self.tree.distance, 1), self.tree.size):
+        if parent is None or self._failed <= min(max(self.tree.distance, 1), self.tree.size, FARTHEST):
             return []
         self._failed = 0
         return [Shun(parent)]
@@ -242,8 +245,14 @@ class Rounds:
         return self.round.begin(message, now)
 
     def flushed(self, sender: int, message: Flushed, now: float) -> list[Effect]:
-        """Hear that a child's part of the tree has flushed."""
+        """Hear that a child's part of the tree has flushed.
+
+        Raises:
+            ValueError: it speaks for more robots than there can be.
+        """
         round_ = self._of(message.epoch, message.sequence)
+        if message.robots > self.admitted:
+            raise ValueError(f"flushed: {message.robots} robots; the team has {self.admitted} at most")
         return [] if round_ is None else round_.hear_flushed(sender, message, now)
 
     def freeze(self, message: Freeze, now: float) -> list[Effect]:

@@ -8,6 +8,8 @@ from typing import Any, Generic, Protocol, TypeVar
 from vedette.fusion.link import Boots, EvidenceLink, Key, NewsT, Payload, check_boot
 
 MOST_CONTRIBUTORS = 1024
+MOST_STARTS = 64  # of one robot, that others than itself tell of
+HALF, STEP = 1 << 62, 1 << 32  # a version may be raised to the one, and beyond it by the other, at once
 
 News_co = TypeVar("News_co", covariant=True)
 
@@ -22,6 +24,13 @@ class Copy(Protocol[News_co]):
     def since(self, base: int) -> News_co:
         """Return what is new since an earlier version, in one piece or its beginning."""
 
+    def overtake(self, version: int) -> None:
+        """As the writer: go on above a version that somebody has told in its name.
+
+        Raises:
+            ValueError: such evidence cannot be told anew.
+        """
+
 
 CopyT = TypeVar("CopyT", bound=Copy[Any])
 
@@ -32,6 +41,9 @@ class Contributors(Generic[CopyT, NewsT]):
     A contributor is one start of one robot, ``(robot, boot)``; only it adds to its evidence. So loss,
     repetition, reordering, cycles, partition, re-joining and restarts neither lose evidence that any holder
     lives to tell, nor count any twice; a dead robot's evidence survives.
+
+    Whoever passes evidence on could change it: a contributor that is told of more in its name than it has
+    published goes on above that, and tells the whole anew.
     """
 
     def __init__(self, robot: int, boot: int, blank: Callable[[], CopyT], resend_after: float) -> None:
@@ -44,6 +56,7 @@ class Contributors(Generic[CopyT, NewsT]):
         self._links: dict[int, EvidenceLink[NewsT]] = {}
         self._boots = Boots()
         self._resend_after = resend_after
+        self._overtook = -float("inf")  # when [s]
 
     def known(self) -> dict[Key, int]:
         """Return the versions of all copies that are not blank."""
@@ -65,11 +78,19 @@ class Contributors(Generic[CopyT, NewsT]):
         Raises ValueError, and changes nothing, if the payload claims what cannot be.
         """
         keys = {key for key, _ in payload.sections}
-        payload.check(self._key, self.own.version)
+        self._check_versions(payload)
         if len(keys) < len(payload.sections):
             raise ValueError("fusion payload: two sections of one stream")
         if len(self.copies) + len(keys - self.copies.keys()) > MOST_CONTRIBUTORS:
             raise ValueError(f"fusion payload: more than {MOST_CONTRIBUTORS} contributors")
+        for robot, _ in keys - self.copies.keys():
+            starts = sum(robot == other for other, _ in self.copies)
+            if robot != neighbour and starts >= MOST_STARTS:
+                raise ValueError(f"fusion payload: more than {MOST_STARTS} starts of robot {robot}")
+        told = payload.told_of(self._key)
+        if told > self.own.version and now >= self._overtook + self._resend_after:
+            self.own.overtake(told)
+            self._overtook = now
         link = self._links.get(neighbour)
         # evidence is evidence, but what an earlier start of the neighbour held is lost
         if link is not None and not self._boots.is_stale(neighbour, payload.nonce):
@@ -79,3 +100,11 @@ class Contributors(Generic[CopyT, NewsT]):
             if key not in self.copies:
                 self.copies[key] = self._blank()
         return news
+
+    def _check_versions(self, payload: Payload[NewsT]) -> None:
+        """Raise ValueError for versions from which a contributor could not go on for long."""
+        held = self.known()
+        told = [*payload.have.items(), *((key, news.version) for key, news in payload.sections)]
+        for key, version in told:
+            if version > max(held.get(key, 0), HALF) + STEP:
+                raise ValueError(f"fusion payload: version {version} is far beyond any that there can be")

@@ -47,10 +47,14 @@ class Payload(Generic[NewsT]):
     have: dict[Key, int] = field(default_factory=dict)  # versions that the sender holds
     sections: list[tuple[Key, NewsT]] = field(default_factory=list)
 
+    def told_of(self, key: Key) -> int:
+        """Return the latest version of a stream that it tells of; 0: none."""
+        told = [*self.have.items(), *((stream, news.version) for stream, news in self.sections)]
+        return max((version for stream, version in told if stream == key), default=0)
+
     def check(self, key: Key, version: int) -> None:
         """Raise ValueError if it tells more of the receiver's own stream than there is."""
-        told = [*self.have.items(), *((stream, news.version) for stream, news in self.sections)]
-        if any(stream == key and more > version for stream, more in told):
+        if self.told_of(key) > version:
             raise ValueError("fusion payload: claims evidence of this robot that it never published")
 
 

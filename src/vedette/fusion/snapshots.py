@@ -50,11 +50,13 @@ class Snapshot(Generic[ValueT]):
     Every holder's copy equals the writer's own at that version: a difference is applied whole or not at
     all, so "the later version wins" merges copies, and merging is idempotent and commutative. Each cell
     remembers the version that last changed it (from 65535 versions on, that it changed late: differences
-    then repeat some cells). Memory: 3 or 6 bytes a cell of the tiles ever written.
+    then repeat some cells). A difference from version 0 is the whole: what it does not give is blank.
+    Memory: 3 or 6 bytes a cell of the tiles ever written.
     """
 
     def __init__(self, tiling: Tiling, counts_size: int, dtype: type[ValueT]) -> None:
         self.version = 0
+        self._whole_before = 0  # differences from earlier versions are told whole
         self.values: TiledGrid[ValueT] = TiledGrid(tiling, dtype)
         self.counts: NDArray[np.int64] = np.zeros(counts_size, dtype=np.int64)
         self._stamps: TiledGrid[np.uint16] = TiledGrid(tiling, np.uint16)
@@ -81,9 +83,10 @@ class Snapshot(Generic[ValueT]):
 
     def since(self, base: int) -> Delta[ValueT]:
         """Return the difference from version ``base`` to this one."""
+        base = base if base >= self._whole_before else 0
         held = self.values.held
         tiles = np.sort(held[self._versions[1 : 1 + len(held)] > base])
-        mask = self._stamps.read(tiles) > min(base, _LAST_STAMP - 1)
+        mask = self._stamps.read(tiles) > self._stamp(base, _LAST_STAMP - 1)
         counts = self.counts.copy() if self._counts_version > base else None
         return Delta(base, self.version, tiles, mask, self.values.read(tiles)[mask], counts)
 
@@ -91,11 +94,13 @@ class Snapshot(Generic[ValueT]):
         """Advance to ``delta.version``; None if it is old news or does not connect to this version."""
         if not delta.base <= self.version < delta.version:
             return None
+        if delta.base == 0 < self.version:
+            delta = self._blanking(delta)
         before = self.values.read(delta.tiles)
         after = before.copy()
         after[delta.mask] = delta.values
         stamps = self._stamps.read(delta.tiles)
-        stamps[delta.mask] = min(delta.version, _LAST_STAMP)
+        stamps[delta.mask] = self._stamp(delta.version, _LAST_STAMP)
         self.values.write(delta.tiles, after)
         self._stamps.write(delta.tiles, stamps)
         more = len(self.values.blocks) - len(self._versions)
@@ -103,6 +108,29 @@ class Snapshot(Generic[ValueT]):
         self._versions[self.values.slots[delta.tiles]] = delta.version
         self.version = delta.version
         return Change(delta.tiles, before, after, self._replace_counts(delta))
+
+    def overtake(self, version: int) -> None:
+        """As the writer: go on above a version that was told in its name, and tell the whole anew."""
+        self.version = self._whole_before = self._counts_version = version + 1
+        tiles = self.known_tiles
+        self._versions[self.values.slots[tiles]] = self.version
+        self._stamps.write(tiles, np.minimum(self._stamps.read(tiles), 1))
+
+    def _stamp(self, version: int, most: int) -> int:
+        """Return a version as cells remember it, at most ``most``."""
+        return min(max(version - max(self._whole_before - 1, 0), 0), most)
+
+    def _blanking(self, delta: Delta[ValueT]) -> Delta[ValueT]:
+        """Return the whole, with all cells given that are blank in it but are not so here."""
+        tiles = np.union1d(self.known_tiles, delta.tiles)
+        rows = np.searchsorted(tiles, delta.tiles)
+        before = self.values.read(tiles)
+        mask, values = before != 0, np.zeros_like(before)
+        given = np.zeros(mask.shape, np.bool_)
+        given[rows] = delta.mask
+        values[given] = delta.values
+        mask |= given
+        return Delta(0, delta.version, tiles, mask, values[mask], delta.counts)
 
     def _replace_counts(self, delta: Delta[ValueT]) -> NDArray[np.int64]:
         if delta.counts is None:

@@ -63,7 +63,8 @@ def agent_process(
     robot = ROBOTS[config.mission](config, folder, boot_at(now), speed)
     clock = _clock_of(config, robot, speed, shared)
     inbox = Inbox()
-    transport = Transport(access_of(config, folder, now), index, inbox)
+    access = access_of(config, folder, now)
+    transport = Transport(access, index, inbox)
     node = NetworkedAgent(
         robot.agent,
         time.monotonic(),
@@ -72,6 +73,7 @@ def agent_process(
         tempo=speed,
         terms=robot.terms,
         time_of_day=time_of_day,
+        admitted=access.robots,
     )
     witness = Witness(node, robot.body, transport, robot.teller, robot_name(index))
     return AgentProcess(node, robot.body, robot.shown, transport, inbox, witness, clock, say, staged)

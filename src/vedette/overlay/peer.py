@@ -166,9 +166,10 @@ class Peer:
             self.tell(now)
 
     def shun(self, now: float) -> None:
-        """Leave the link alone for a while, however well it works."""
+        """Leave the link alone for a while, however well it works; one that was good for long, anew."""
+        again = now < self._up_since + SETTLED + 2 * self._shun
         self._go_down(now)
-        self._shun = min(2 * self._shun, MOST_SHUN)
+        self._shun = min(2 * self._shun, MOST_SHUN) if again else FIRST_SHUN
         self._trusted = max(self._trusted, now + self._shun)
 
     def forget(self) -> None:

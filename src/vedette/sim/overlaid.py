@@ -65,7 +65,7 @@ class OverlaidNetwork:
         timeline: Timeline | None = None,
         losses: LossesNow | None = None,
         lease: float = 3.0,
-        live: Live = lambda i, agent, now, lease: NetworkedAgent(agent, now, lease=lease),
+        live: Live | None = None,
     ) -> None:
         """Bring the robots of a field to life.
 
@@ -76,11 +76,11 @@ class OverlaidNetwork:
             timeline: of faults.
             losses: the links, which follow the robots; None: as they are.
             lease: after which a silent neighbour is given up [s].
-            live: what runs a robot's agent, a test's double of it among them.
+            live: what runs a robot's agent; None: the program itself, and not a test's double of it.
         """
         self._spawn, self._field, self._datagrams = spawn, field, datagrams
         self._timeline, self._losses, self._lease = timeline, losses, lease
-        self._live = live
+        self._live = live or self._program
         n = len(field.alive)
         self._earlier = {
             kind: ([0] * n, [0] * n) for kind in TrafficKind
@@ -225,6 +225,9 @@ class OverlaidNetwork:
     def _start(self, i: int, boot: int, clock: SkewedClock, now: float) -> _Robot:
         life = self._live(i, self._spawn(i, boot), clock.shows(now), self._lease)
         return _Robot(life, boot, clock)
+
+    def _program(self, i: int, agent: Agent, now: float, lease: float) -> NetworkedAgent:
+        return NetworkedAgent(agent, now, lease=lease, admitted=len(self._field.alive))
 
     def _bury(self, i: int) -> None:
         """Keep the counts of a life that is over."""

@@ -32,6 +32,10 @@ class Log:
         self._data += entry
         self._ends.append(len(self._data))
 
+    def overtake(self, version: int) -> None:
+        """Refuse it: entries are only ever added."""
+        raise ValueError("fusion payload: claims evidence of this robot that it never published")
+
     def since(self, base: int) -> Entries:
         """Return the entries from ``base`` on, as many as one payload takes, but at least one."""
         version = self.version
