@@ -30,6 +30,7 @@ class Outcome(StrEnum):
     TIME_LIMIT = "time_limit", 1, "--max-time, or the time of the scenario, is over"
     TEAM_LOST = "team_lost", 1, "none of the team is alive"
     MAPS_DIFFER = "maps_differ", 1, "all are done, but they hold different maps"
+    UNHEARD = "unheard", 1, "all who are heard are done, but others that run are not heard any more"
     ORDERED = "ordered", 0, "the operator ordered the end"
     INTERRUPTED = "interrupted", 130, "it was interrupted; the files hold what was done until then"
 

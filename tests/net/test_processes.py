@@ -228,10 +228,13 @@ def test_a_robot_freezes_for_a_while(seconds: float, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_robot_that_freezes_for_good_is_not_waited_for(tmp_path: Path) -> None:
+def test_a_robot_that_freezes_for_good_is_not_waited_for_and_the_mission_not_called_complete(
+    tmp_path: Path,
+) -> None:
     mission = run(plan_of(small_maze(), 3), tmp_path, [Fault(0.4, "freeze", freeze(lambda _: 1))])
     tell("SIGSTOP for good", mission, [0, 2])
-    assert mission.report.summary.outcome is Outcome.COMPLETE
+    assert mission.report.summary.outcome is Outcome.UNHEARD
+    assert mission.report.summary.lost == ("robot-2",)
     assert mission.report.summary.coverage >= 0.995
     assert mission.diary.agree([0, 2])
 

@@ -111,6 +111,7 @@ class FaultyTeam(SiteTeam):
     def _spawn(self, robot: int, boot: int) -> Agent:
         agent = super()._spawn(robot, boot)
         self.missions[robot, boot] = mission_of(agent)
+        mission_of(agent).suffers = self.suffers
         return agent
 
     # -- what happens --------------------------------------------------------------------------------

@@ -153,6 +153,7 @@ class SiteMission:
     sites: Sites
     fusion: ReplicatedEvidence
     published: Published  # is told each version of the robot's evidence
+    suffers: bool = False  # from somebody who says what is not so
     stamp: Callable[[], Stamp] = field(init=False)  # of the round going on
     codec: ImpactCodec = field(default_factory=ImpactCodec)
     strategy: int | None = None
@@ -212,6 +213,8 @@ class SiteMission:
     def hear_notes(self, notes: Sequence[Note]) -> None:
         """All notes are of this round, and this robot's own is among them."""
         stamp = self.stamp()
+        if self.suffers:
+            return
         check({(epoch, k) for _, k, epoch in notes} == {stamp}, "notes of another round", notes, stamp)
         told = [robot for robot, _, _ in notes]
         there = self.life[0] in told or len(told) == MOST_NOTES

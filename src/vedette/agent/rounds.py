@@ -25,6 +25,7 @@ from vedette.negotiation import RoundOutcome
 IDLE = 1.0  # a robot that did not look after its rounds for longer did not want any [s of the transport]
 CALL_AGAIN = 1.0  # a call not answered is repeated after so long [s]
 SETTLING = 0.2  # a new tree is left alone for so long before a round [s]
+UNLIKE = 4  # rounds in a row may be planned on another belief than the root's, for each link to it
 FARTHEST = 8  # a robot farther from the root, in links, counts as no farther
 AS_LONG = 3.0  # a robot waits for others so many times as long as its own last preparation took, and more
 CLOCKS_APART = 20.0  # that the root's may be from this robot's, where rounds keep to beats [s]
@@ -79,6 +80,7 @@ class Rounds:
     _together: float = -1e9  # when it last decided as others did, or wanted nothing [s]
     _ticked: float = -1e9
     _failed: int = 0  # rounds in a row that the parent let come to nothing
+    _unlike: int = 0  # rounds in a row in which its belief was not the root's
     _solos: int = 0  # rounds that this robot began for itself alone
 
     @property
@@ -113,7 +115,7 @@ class Rounds:
         if tree.epoch == before.epoch:
             return
         self.round = None
-        self._sequence = self._failed = 0
+        self._sequence = self._failed = self._unlike = 0
         self._called = -1e9
 
     def want(self) -> None:
@@ -149,6 +151,10 @@ class Rounds:
             effects += self._after(round_.cut(silent, now), now)
         if effects or now <= round_.heard + 1.5 * self._patience():
             return effects
+        return self._give_up(round_, now)
+
+    def _give_up(self, round_: Round, now: float) -> list[Effect]:
+        """End a round that came to nothing; alone for long, decide on it alone."""
         if self._is_lonely(now) and round_.participant is not None:
             return [*self._after(round_.go_on_alone(now), now), *self._fail()]
         self._end(now)
@@ -159,6 +165,19 @@ class Rounds:
         """Return how long this robot waits for others [s]: the longer, the longer it took itself."""
         size = min(self.tree.size, self.admitted)
         return self.tempo * patience(size, depth) + AS_LONG * self._preparation
+
+    def _compare(self, round_: Round) -> list[Effect]:
+        """Shun the parent if this robot's belief is never the root's: evidence that passes it is changed."""
+        self._unlike = self._unlike + 1 if round_.approximate else 0
+        if self.tree.parent is None or self._unlike < UNLIKE * self._far:
+            return []
+        self._unlike = 0
+        return [Shun(self.tree.parent)]
+
+    @property
+    def _far(self) -> int:
+        """How far the root is, in links, as patience with the parent counts it."""
+        return min(max(self.tree.distance, 1), self.tree.size, FARTHEST)
 
     def _is_lonely(self, now: float) -> bool:
         """Tell whether this robot has decided with nobody for so long that it had better plan alone."""
@@ -171,7 +190,7 @@ class Rounds:
         """
         self._failed += 1
         parent = self.tree.parent
-        if parent is None or self._failed <= min(max(self.tree.distance, 1), self.tree.size, FARTHEST):
+        if parent is None or self._failed <= self._far:
             return []
         self._failed = 0
         return [Shun(parent)]
@@ -222,7 +241,7 @@ class Rounds:
             self._attendance.attended(round_.children)
         self._end(now)
         self.decided(Decision(now, outcome, round_.approximate or lonely, round_.blocked))
-        return effects
+        return effects if lonely else [*effects, *self._compare(round_)]
 
     def _end(self, now: float) -> None:
         self.round = None
@@ -236,13 +255,14 @@ class Rounds:
         old = self.busy and not (self.round and self.round.is_alone) and message.sequence < self._sequence
         if message.epoch != self.tree.epoch or message.sequence == self._sequence or old:
             return []
+        unfinished = [] if self.round is None or self.round.is_alone else self._give_up(self.round, now)
         self._sequence = message.sequence
         self._began = now
         self._wanted = False
         absent = self._attendance.absent(now) - {self.tree.parent}
         tree = replace(self.tree, neighbours=tuple(k for k in self.tree.neighbours if k not in absent))
         self.round = Round(self.mission, self.scheme, tree, message.sequence, message.depth, now)
-        return self.round.begin(message, now)
+        return [*unfinished, *self.round.begin(message, now)]
 
     def flushed(self, sender: int, message: Flushed, now: float) -> list[Effect]:
         """Hear that a child's part of the tree has flushed.

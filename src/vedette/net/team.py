@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Generic, Protocol, TypeVar
@@ -42,8 +43,11 @@ class Watcher(Protocol[ReportT_co]):
     def finish(self, now: float, alive: Sequence[bool], links: Links) -> None:
         """Measure how it ended."""
 
-    def over(self, now: float, heard: Sequence[Condition]) -> Outcome | None:
-        """Tell how the mission has ended, if it has, by the word of the living that were heard lately."""
+    def over(self, now: float, heard: Sequence[Condition], silent: bool) -> Outcome | None:
+        """Tell how the mission has ended, if it has, by the word of the living that were heard lately.
+
+        ``silent``: others live, but are not heard.
+        """
 
     def report(self, outcome: Outcome, timing: Timing, now: float) -> ReportT_co:
         """Return what the mission leaves."""
@@ -62,6 +66,7 @@ class TeamWatch(Generic[ReportT_co]):
     stopped: bool = False
     malformed: int = 0  # reports that did not make sense
     conditions: dict[int, Condition] = field(default_factory=dict)  # the latest, by robot
+    outcome: Outcome | None = None  # None: it goes on
     complaints: dict[tuple[int, int], str] = field(default_factory=dict)  # by who and of whom; the latest
     _heard: dict[int, float] = field(default_factory=dict)  # when each robot last reported [s]
     _first: tuple[float, float] | None = None  # mission time when it was first known, and when [s]
@@ -86,7 +91,8 @@ class TeamWatch(Generic[ReportT_co]):
             if self._first is not None and self.now >= next_look:
                 watcher.look(self.now, self._alive, self._links())
                 next_look = self.now + watcher.period
-        watcher.finish(self.now, self._alive, self._links())
+        self.outcome = outcome
+        watcher.finish(self.now, [i in self._heard_lately for i in range(self.plan.size)], self._links())
         return watcher.report(outcome, self._timing(time.monotonic() - self._began), self.now)
 
     @property
@@ -138,10 +144,22 @@ class TeamWatch(Generic[ReportT_co]):
             return Outcome.INTERRUPTED
         if self._starting:
             return None
-        late = time.monotonic() - SILENT
-        heard = [self.conditions[i] for i in living if self._heard.get(i, late) > late]
-        outcome = self.watcher.over(self.now, heard)
+        heard = [self.conditions[i] for i in self._heard_lately]
+        outcome = self.watcher.over(self.now, heard, len(heard) < len(living))
         return Outcome.TIME_LIMIT if outcome is None and self.now >= self.max_time else outcome
+
+    @property
+    def _heard_lately(self) -> list[int]:
+        """The robots that run and have reported lately."""
+        late = time.monotonic() - SILENT
+        return [i for i in range(self.plan.size) if self.team.runs(i) and self._heard.get(i, late) > late]
+
+    @property
+    def odd(self) -> list[int]:
+        """The robots that hold another map than most of those who are heard."""
+        held = {i: self.conditions[i].digest for i in self._heard_lately}
+        most = Counter(held.values()).most_common(1)
+        return [i for i, digest in held.items() if digest != most[0][0]]
 
     @property
     def _alive(self) -> list[bool]:

@@ -13,6 +13,7 @@ from tests.support.small_missions import robots, room_with_a_wall, run, two_room
 from vedette.maps import GridFrame
 from vedette.maps.world import World
 from vedette.missions.explore.options import ExploreOptions
+from vedette.net.explore import watch
 from vedette.net.explore.plan import ExplorePlan
 from vedette.net.explore.watch import ExploreWatcher
 from vedette.outcome import Outcome, together
@@ -121,4 +122,20 @@ def test_a_team_ends_as_its_robots_say_in_the_simulator_and_in_the_watch_alike()
             wanted = Outcome.COMPLETE
         assert together(said) is wanted
         heard = [structs.replace(condition, ending=word.value, state="done") for word in said]
-        assert ExploreWatcher(plan, Setting(seed=0)).over(1.0, heard) is wanted
+        assert ExploreWatcher(plan, Setting(seed=0)).over(1.0, heard, silent=False) is wanted
+
+
+def test_a_watch_calls_a_mission_complete_only_if_all_who_live_are_heard_and_hold_one_map(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    plan = ExplorePlan(room_with_a_wall(0.1), robots(2), np.zeros((2, 3)), ExploreOptions(), 0, 1.0)
+    (condition,) = conditions()
+    done = structs.replace(condition, state="done")
+    other = structs.replace(done, digest=7)
+    watcher = ExploreWatcher(plan, Setting(seed=0))
+    assert watcher.over(1.0, [done, condition], silent=False) is None
+    assert watcher.over(1.0, [done], silent=True) is Outcome.UNHEARD
+    assert watcher.over(2.0, [done, other], silent=False) is None  # they may still tell each other
+    assert watcher.over(3.0, [done, done], silent=False) is Outcome.COMPLETE
+    monkeypatch.setattr(watch, "AGREEING", -1.0)
+    assert watcher.over(4.0, [done, other], silent=False) is Outcome.MAPS_DIFFER

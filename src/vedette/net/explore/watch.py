@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from dataclasses import replace
+from math import inf
 
 import numpy as np
 
@@ -21,6 +23,7 @@ from vedette.record.explore.views import GroundFigures, RobotView
 from vedette.record.log import Sink
 from vedette.record.summary import Setting, Timing
 
+AGREEING = 20.0  # for which robots that are done may hold different maps [s]
 MOVED = 0.1  # a team whose way grows by less makes no progress [m]
 
 
@@ -39,6 +42,7 @@ class ExploreWatcher:
             for spec, start in zip(plan.specs, plan.starts.tolist(), strict=True)
         ]
         self._ways: dict[int, float] = {}  # of each robot by now [m]
+        self._done_since = inf  # [s]
         self._moved = (0.0, 0.0)  # way of all robots [m], and when it last grew [s]
 
     @property
@@ -59,14 +63,24 @@ class ExploreWatcher:
         """Measure it as it is in the end."""
         self._observer.finish(now, self._seen(alive), links)
 
-    def over(self, now: float, heard: Sequence[Condition]) -> Outcome | None:
-        """Tell whether all are done, or nobody gets on."""
+    def over(self, now: float, heard: Sequence[Condition], silent: bool) -> Outcome | None:
+        """Tell whether all are done and agree, or nobody gets on."""
         if heard and all(each.state == State.DONE.value for each in heard):
-            return together(each.ending for each in heard)
+            return self._done(heard, silent)
+        self._done_since = inf
         way = sum(self._ways.values())
         if way > self._moved[0] + MOVED:
             self._moved = way, now
         return Outcome.NO_PROGRESS if now > self._moved[1] + NO_PROGRESS else None
+
+    def _done(self, heard: Sequence[Condition], silent: bool) -> Outcome | None:
+        """Tell how it ends once all who are heard are done; they have a while to tell each other the last."""
+        self._done_since = min(self._done_since, time.monotonic())
+        if silent:
+            return Outcome.UNHEARD
+        if len({each.digest for each in heard}) == 1:
+            return together(each.ending for each in heard)
+        return Outcome.MAPS_DIFFER if time.monotonic() > self._done_since + AGREEING else None
 
     def report(self, outcome: Outcome, timing: Timing, now: float) -> ExploreReport:
         """Return what ``vedette explore`` would."""

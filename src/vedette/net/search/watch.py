@@ -66,7 +66,7 @@ class SearchWatcher:
         """Measure how it ended."""
         self._observer.finish(now, self._seen(alive))
 
-    def over(self, now: float, heard: Sequence[Condition]) -> Outcome | None:
+    def over(self, now: float, heard: Sequence[Condition], silent: bool) -> Outcome | None:
         """Tell whether somebody has declared the target found."""
         found = any(view.declared is not None for view in self._views)
         return Outcome.COMPLETE if found else None

@@ -57,7 +57,7 @@ class TrackWatcher:
         """Measure how they are in the end."""
         self._observer.finish(self._seen(alive))
 
-    def over(self, now: float, heard: Sequence[Condition]) -> Outcome | None:
+    def over(self, now: float, heard: Sequence[Condition], silent: bool) -> Outcome | None:
         """Tell whether the scenario's time is up."""
         return Outcome.COMPLETE if now >= self._duration - 1e-9 else None
 
