@@ -1,13 +1,15 @@
-"""One member, or two, that are slow, hang, or say nothing: the others keep the laws, and finish."""
+"""One member, or two, that are slow, hang, say nothing, or what is not so: the others finish all the same."""
 
 from __future__ import annotations
 
 import pytest
 
 from tests.support.bad_member import MODES, play
+from tests.support.mutants import CASES
 
-SEEDS = 6
+SEEDS = 4
 ALL, BATCH = 100, 10
+MUTANTS = 40
 
 
 @pytest.mark.parametrize("mode", MODES)
@@ -22,3 +24,16 @@ def test_no_member_stops_the_others(mode: str) -> None:
 def test_no_member_stops_the_others_in_many_teams(mode: str, first: int) -> None:
     for seed in range(first, first + BATCH):
         play(mode, seed)
+
+
+@pytest.mark.parametrize("first", range(0, MUTANTS, BATCH))
+def test_no_field_of_any_message_stops_the_others(first: int) -> None:
+    for seed in range(first, first + BATCH):
+        play("mutant", seed)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("first", range(MUTANTS, len(CASES), BATCH))
+def test_no_field_of_any_message_stops_the_others_at_any_value(first: int) -> None:
+    for seed in range(first, min(first + BATCH, len(CASES))):
+        play("mutant", seed)

@@ -132,7 +132,7 @@ class FaultyTeam(SiteTeam):
             self._say(f"{i} decides {mission.strategy} in {rounds.stamp}, quiet {agent.quiet}")
         if not self.forged and self.evidence.check(mission):
             self._say(f"{i} holds {versions_of(mission)}")
-        if i in self.honest:
+        if i in self.honest and not self.forged:
             check_strategy(agent, self.sites)
 
     def _tick(self) -> None:

@@ -107,6 +107,12 @@ class Round:
         """What the team has agreed on; None while the round lasts."""
         return None if self.negotiator is None else self.negotiator.finished
 
+    @property
+    def value_seen(self) -> float | None:
+        """What the team's choice is worth as far as this robot holds it; None: not all of it."""
+        whole = all(reach is None for reach in self._told(self.heard).values())
+        return self.negotiator.value_held() if self.negotiator is not None and whole else None
+
     # -- evidence comes together ------------------------------------------------------------------------
 
     def begin(self, message: Begin, now: float) -> list[Effect]:

@@ -20,7 +20,6 @@ from vedette.agent.messages import Begin, Call, Flushed, Freeze, Negotiate
 from vedette.agent.mission import Mission
 from vedette.agent.pace import Pace
 from vedette.agent.round import Round, say, send_news
-from vedette.negotiation import RoundOutcome
 
 IDLE = 1.0  # a robot that did not look after its rounds for longer did not want any [s of the transport]
 CALL_AGAIN = 1.0  # a call not answered is repeated after so long [s]
@@ -45,7 +44,7 @@ class Decision:
     """What a finished round says, besides the strategies themselves."""
 
     time: float
-    outcome: RoundOutcome
+    value: float  # of the team's choice: as this robot sees it, if it sees all of it
     approximate: bool  # this robot's belief was not the root's, or it decided without the team
     blocked: bool  # this robot planned with its mates in the way
 
@@ -240,7 +239,9 @@ class Rounds:
             self._together, self._failed = now, 0
             self._attendance.attended(round_.children)
         self._end(now)
-        self.decided(Decision(now, outcome, round_.approximate or lonely, round_.blocked))
+        seen = round_.value_seen
+        value = outcome.value if seen is None else seen
+        self.decided(Decision(now, value, round_.approximate or lonely, round_.blocked))
         return effects if lonely else [*effects, *self._compare(round_)]
 
     def _end(self, now: float) -> None:

@@ -124,7 +124,7 @@ class Agent:
 
     def _decided(self, decision: Decision) -> None:
         exact = not decision.approximate and not decision.blocked
-        quiet = exact and self.mission.nothing_left(decision.outcome.value, decision.time)
+        quiet = exact and self.mission.nothing_left(decision.value, decision.time)
         self.quiet = self.quiet + 1 if quiet else 0
         self.news = True
 

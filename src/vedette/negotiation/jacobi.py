@@ -103,6 +103,9 @@ class JacobiNode(Generic[ImpactT]):
                     return self._end(message)
         raise InputError(f"message {type(message).__name__} from {sender} is out of turn; drop it")
 
+    def value_held(self) -> None:
+        """Nothing: the round may end with the strategies of an earlier iterate."""
+
     def cut(self, neighbour: int) -> list[Outgoing[ImpactT]]:
         """Go on without a child and all behind it; see `Negotiator`."""
         self._links.check_child(neighbour, self._parent)

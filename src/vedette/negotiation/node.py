@@ -83,6 +83,12 @@ class Negotiator(Protocol[ImpactT]):
     def waiting_for(self) -> frozenset[int]:
         """Neighbours without whose next message nothing goes on here; none once the round is over."""
 
+    def value_held(self) -> float | None:
+        """Return what the impacts held are worth together, own one included; None: they are of no one choice.
+
+        At the end of a round whose messages are whole it is the outcome's value, whatever that says.
+        """
+
     def cut(self, neighbour: int) -> list[Outgoing[ImpactT]]:
         """Go on without a child and all behind it: they count as nothing, what the child says is void.
 

@@ -146,10 +146,11 @@ class TokenNode(Generic[ImpactT]):
         if self._own.strategy is None and len(self._parts) < 2:
             return 0.0
         parts = [self._links.held(child) for child in self._children if child in self._parts]
-        together = self._team_value()
+        together = self.value_held()
         return together - sum(self._own.value(part) for part in parts)
 
-    def _team_value(self) -> float:
+    def value_held(self) -> float:
+        """Return what the impacts held are worth together; see `Negotiator`."""
         return self._own.value(self._own.combine(self._links.others(), self._own.impact))
 
     def _take(self, sender: int, token: Token[ImpactT]) -> list[Outgoing[ImpactT]]:
@@ -179,9 +180,9 @@ class TokenNode(Generic[ImpactT]):
         """Take the parts cut since the token was last here off the tally."""
         while self._lost:
             child = self._lost.pop()
-            with_it = self._team_value()
+            with_it = self.value_held()
             self._links.cut(child)
-            tally = self._parts.pop(child).taken_off(tally, self._own, with_it - self._team_value())
+            tally = self._parts.pop(child).taken_off(tally, self._own, with_it - self.value_held())
         return tally
 
     def _turn(self, tally: Tally) -> list[Outgoing[ImpactT]]:
