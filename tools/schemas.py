@@ -19,6 +19,7 @@ from bench.scale.report import ScaleReport
 from bench.stonesoup.__main__ import StoneSoupReport
 from vedette.net.status import TeamStatus
 from vedette.record.explore.summary import ExploreSummary
+from vedette.record.replay.summary import ReplaySummary
 from vedette.record.search.summary import SearchSummary
 from vedette.record.summary import Timing
 from vedette.record.track.summary import TrackSummary
@@ -28,6 +29,7 @@ KINDS: Mapping[str, type] = {
     "explore-summary": ExploreSummary,
     "track-summary": TrackSummary,
     "search-summary": SearchSummary,
+    "replay-summary": ReplaySummary,
     "timing": Timing,
     "status": TeamStatus,
     "study-run": RunFile,

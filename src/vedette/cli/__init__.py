@@ -23,6 +23,7 @@ COMMANDS = {
     "agent": "Run one robot of a team, with the neighbours that its file names.",
     "explore": "Let a team of robots explore a building in simulation.",
     "keys": "Make the keys of a team.",
+    "replay": "Let recorded lidar data go through a team's agents.",
     "reproduce": "Compute the paper's figures and try its claims.",
     "ros2": "Look at a robot that runs ROS 2.",
     "search": "Let a team of vehicles look for a hidden target in simulation.",

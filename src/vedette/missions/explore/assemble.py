@@ -54,6 +54,7 @@ def assemble(
     robots: int,
     most: Most,
     waits_for: int = 1,
+    explorer: type[Exploring] = Exploring,
 ) -> Agent:
     """Return a fresh agent of a team.
 
@@ -66,12 +67,13 @@ def assemble(
         robots: in the team.
         most: what none of them exceeds.
         waits_for: so many robots, itself included, before it begins; for a while.
+        explorer: its share of the mission.
 
     Raises:
         InputError: the planner or the way of fusing is unknown, or cannot serve such a team.
     """
     check_word("fusion", options.fusion, FUSIONS)
     fusion: Fusion = FUSIONS[options.fusion](robot, boot, lattice.frame.shape, 4 * BINS, mark=lattice.mark)
-    mission = Exploring(lattice, spec, planner(options.planner, robots), fusion, most=most)
+    mission = explorer(lattice, spec, planner(options.planner, robots), fusion, most=most)
     behaviour = GroundBehaviour(mission, Driver(robot, spec), options.return_home, waits_for)
     return Agent(robot, boot, spec, behaviour, options.negotiates_by)

@@ -39,8 +39,7 @@ def logged(log: RecordedLog, resolution: float, reach: float, no_return: str) ->
     Raises:
         InputError: a resolution out of range, more than 8000 cells a side, or nothing free.
     """
-    check_length("resolution of a world", resolution, RESOLUTIONS)
-    frame = _frame(log, resolution, reach)
+    frame = frame_of(log, resolution, reach)
     evidence = TiledGrid(Tiling(*frame.shape), np.int8)
     for scan in log.scans:
         ranges, hits = beams(scan, reach, no_return)
@@ -61,8 +60,13 @@ def beams(scan: RecordedScan, reach: float, no_return: str) -> tuple[NDArray[np.
     return np.where(told, np.minimum(scan.ranges, reach), 0.0), hits
 
 
-def _frame(log: RecordedLog, resolution: float, reach: float) -> GridFrame:
-    """Return the grid that holds all that came back, on whole multiples of its cells."""
+def frame_of(log: RecordedLog, resolution: float, reach: float) -> GridFrame:
+    """Return the grid that holds all that came back from within reach, on whole multiples of its cells.
+
+    Raises:
+        InputError: a resolution out of range, or more than 8000 cells a side.
+    """
+    check_length("resolution of a world", resolution, RESOLUTIONS)
     low, high = np.full(2, math.inf), np.full(2, -math.inf)
     for scan in log.scans:
         ranges, hits = beams(scan, reach, "ignore")

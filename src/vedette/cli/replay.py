@@ -1,0 +1,169 @@
+"""``vedette replay``: let recorded data go through a team's agents."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+import click
+import numpy as np
+from numpy.typing import NDArray
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn
+
+from vedette.cli.ends import telling_what_is_missing
+from vedette.cli.options import FILE, OneOf, Positive, Share
+from vedette.domains.mapping.sightings import empty_counts
+from vedette.errors import InputError
+from vedette.interrupt import ending_on_ctrl_c
+from vedette.logs import RecordedLog, read_carmen
+from vedette.maps import write_map
+from vedette.missions.explore.assemble import FUSIONS
+from vedette.outcome import Outcome
+from vedette.record.folder import OutputFolder
+from vedette.record.replay.summary import Replayed, ReplayedBuilding, ReplaySummary
+from vedette.sim.explore.run import explore, prepare
+from vedette.sim.explore.simulation import ExploreSetup
+from vedette.sim.replay.run import Replay, ReplaySetup
+from vedette.sim.worlds import NO_RETURNS, office
+from vedette.team import PlatformSpec
+
+MOST_ROBOTS = 64
+SIMULATED = "generated office, the same lidar"
+_MISSION = 120.0  # of the simulated robots whose scans are set beside the recorded ones [s]
+
+
+@click.command()
+@click.argument("files", metavar="LOG...", nargs=-1, required=True, type=FILE)
+@click.option(
+    "--robots",
+    type=click.IntRange(1, MOST_ROBOTS),
+    default=1,
+    show_default=True,
+    help="Cut each log into so many shares, one robot each.",
+)
+@click.option("--resolution", type=float, default=0.1, show_default=True, help="Side of a cell [m].")
+@click.option(
+    "--range", "reach", type=Positive("m"), default=20.0, show_default=True, help="How far beams count [m]."
+)
+@click.option(
+    "--no-return",
+    type=OneOf(NO_RETURNS),
+    default="ignore",
+    show_default=True,
+    help="What a beam says that did not come back: nothing, or that the way is free.",
+)
+@click.option(
+    "--fusion",
+    type=OneOf(list(FUSIONS)),
+    default="replicated",
+    show_default=True,
+    help="How the robots share what they see.",
+)
+@click.option("--link-loss", type=Share(0.9), default=0.0, show_default=True, help="Share of messages lost.")
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of lost messages.")
+@click.option(
+    "--out", type=FILE, metavar="DIR", help="Folder for the results.  [default: a new one under runs/]"
+)
+@click.option("--force", is_flag=True, help="Write into DIR although it exists.")
+@click.option("--json", "as_json", is_flag=True, help="Print the summary alone, as JSON.")
+def replay(
+    files: tuple[Path, ...],
+    robots: int,
+    resolution: float,
+    reach: float,
+    no_return: str,
+    fusion: str,
+    link_loss: float,
+    seed: int,
+    out: Path | None,
+    force: bool,
+    as_json: bool,
+) -> None:
+    """Let each LOG, a lidar log in the format of CARMEN, go through one agent, or in shares through several.
+
+    The agents map, fuse and plan as on a robot; where it goes is the log's. Left are each building's map, and
+    what its scans saw of the unknown, against distance, beside simulated ones (the paper's Fig. 3).
+    Exit status: 0 all went through, 2 bad input, 130 interrupted.
+    """
+    setup = ReplaySetup(robots, resolution, reach, no_return, fusion=fusion, link_loss=link_loss, seed=seed)
+    logs = [read_carmen(path) for path in files]
+    _check_names(logs)
+    replays = [Replay(log, setup) for log in logs]
+    maps = [f"{log.name}.{ending}" for log in logs for ending in ("yaml", "pgm", "png")]
+    leaves = ["summary.json", "observation.png", *maps]
+    with OutputFolder.make(out, force, "replay", files) as folder, telling_what_is_missing(folder, leaves):
+        done = _run(replays, Console(stderr=True))
+        summary = ReplaySummary(buildings=tuple(map(ReplayedBuilding.of, done)))
+        summary.write(folder / "summary.json")
+        _draw(done, _simulated(replays[0].specs[0]), folder)
+        click.echo(summary.to_json() if as_json else _closing(summary, folder.path), nl=not as_json)
+    if not all(building.complete for building in summary.buildings) or len(done) < len(replays):
+        raise SystemExit(Outcome.INTERRUPTED.status)
+
+
+def _check_names(logs: list[RecordedLog]) -> None:
+    names = [log.name for log in logs]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"two logs are called {name}; their maps would be one file: replay them apart")
+
+
+def _run(replays: list[Replay], console: Console) -> list[Replayed]:
+    """Replay one after the other; the first Ctrl-C keeps what has come of it."""
+    stopped = False
+
+    def stop() -> None:
+        nonlocal stopped
+        stopped = True
+        for each in replays:
+            each.stop()
+
+    done: list[Replayed] = []
+    columns = TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:>3.0f} %")
+    with ExitStack() as entered:
+        entered.enter_context(ending_on_ctrl_c(stop))
+        bar = entered.enter_context(Progress(*columns, console=console, disable=not console.is_terminal))
+        for each in replays:
+            if stopped:
+                break
+            task = bar.add_task(each.log.name, total=1.0)
+            done.append(each.run(partial(_show, bar, task)))
+    return done
+
+
+def _show(bar: Progress, task: TaskID, share: float) -> None:
+    bar.update(task, completed=share)
+
+
+def _simulated(spec: PlatformSpec) -> NDArray[np.int64]:
+    """Return the counts of three simulated robots with such a lidar in a generated office."""
+    world = office(np.random.default_rng(0))
+    specs = [replace(spec, name=f"robot-{number}") for number in (1, 2, 3)]
+    simulation = prepare(world, specs, ExploreSetup(max_time=_MISSION))
+    explore(simulation)
+    return sum((mission.counts for mission in simulation.missions), empty_counts())
+
+
+def _draw(done: list[Replayed], simulated: NDArray[np.int64], folder: OutputFolder) -> None:
+    # who only asks for help does not wait for matplotlib
+    from vedette.record.replay.pictures import map_png, observation_png
+
+    for each in done:
+        write_map(folder / each.name, each.frame, each.classes)
+        map_png(each, folder / f"{each.name}.png")
+    observation_png(done, {SIMULATED: simulated}, folder / "observation.png")
+
+
+def _closing(summary: ReplaySummary, folder: Path) -> str:
+    lines = []
+    for each in summary.buildings:
+        team = "one robot" if len(each.robots) == 1 else f"{len(each.robots)} robots"
+        agree = "" if len(each.robots) == 1 else ", all of one map" if each.agreed else ", their maps differ"
+        lines.append(
+            f"{each.log}: {each.scans} scans over {each.way_m:.0f} m, {each.known_m2:.0f} m2 known, "
+            f"{each.free_m2:.0f} m2 free, {team}{agree}"
+        )
+    return "\n".join([*lines, f"maps and pictures: {folder}; what scans see: {folder / 'observation.png'}"])

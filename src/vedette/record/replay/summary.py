@@ -1,0 +1,93 @@
+"""What the replay of logs has given, as figures and as a file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.domains.mapping.sightings import BIN
+from vedette.maps import FREE, UNKNOWN, GridFrame
+from vedette.record.summary import Figures
+
+
+@dataclass(frozen=True, eq=False)
+class Replayed:
+    """What a team knows that a log has gone through."""
+
+    name: str  # of the log
+    frame: GridFrame
+    classes: NDArray[np.uint8]  # (R, C) map of who knows most
+    counts: NDArray[np.int64]  # (4, BINS) unknown cells tried and seen, as `count_sightings` counts them
+    times: tuple[float, ...]  # [s]
+    known_m2: tuple[float, ...]  # area that the robot knew then that knew most
+    scans: int  # that were told
+    of_scans: int
+    way_m: float
+    reach_m: float
+    agreed: bool  # all robots hold one map
+    names: tuple[str, ...]  # of the robots
+    ways: tuple[NDArray[np.float64], ...]  # (L, 2) of each robot [m]
+
+    @property
+    def complete(self) -> bool:
+        """Whether the log has gone through whole."""
+        return self.scans == self.of_scans
+
+
+@dataclass(frozen=True)
+class Sighting:
+    """How many unknown cells at a distance scans could have seen, and how many they saw: Fig. 3."""
+
+    distance_m: float  # middle of the bin
+    tried: int
+    seen: int
+
+
+@dataclass(frozen=True)
+class ReplayedBuilding:
+    """The figures of one log."""
+
+    log: str
+    robots: tuple[str, ...]
+    scans: int
+    complete: bool
+    way_m: float
+    time_s: float
+    resolution_m: float
+    reach_m: float
+    free_m2: float
+    known_m2: float
+    agreed: bool
+    observation: tuple[Sighting, ...]  # as far as anything was tried
+
+    @classmethod
+    def of(cls, replayed: Replayed) -> ReplayedBuilding:
+        """Return the figures of a replay."""
+        cell = replayed.frame.resolution**2
+        return cls(
+            replayed.name,
+            replayed.names,
+            replayed.scans,
+            replayed.complete,
+            replayed.way_m,
+            replayed.times[-1],
+            replayed.frame.resolution,
+            replayed.reach_m,
+            float(np.count_nonzero(replayed.classes == FREE)) * cell,
+            float(np.count_nonzero(replayed.classes != UNKNOWN)) * cell,
+            replayed.agreed,
+            tuple(
+                Sighting((k + 0.5) * BIN, int(tried), int(seen))
+                for k, (tried, seen) in enumerate(replayed.counts[:2].T.tolist())
+                if tried
+            ),
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReplaySummary(Figures):
+    """``summary.json`` of ``vedette replay``."""
+
+    buildings: tuple[ReplayedBuilding, ...]

@@ -1,0 +1,77 @@
+"""Robots that have been where a log says, and see what it says; ``vedette.sim.field.Field``."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.agent.effects import Motion
+from vedette.agent.events import Event, Pose, Scan
+from vedette.logs import RecordedScan
+from vedette.outcome import Outcome
+from vedette.sim.worlds.logged import beams
+
+
+class RecordedRobots:
+    """A robot for each share of a log: all begin at once, and stand when theirs is over."""
+
+    def __init__(self, shares: Sequence[Sequence[RecordedScan]], reach: float, no_return: str) -> None:
+        """Take shares of at least one scan each; ``reach`` [m] and ``no_return`` as for `logged`."""
+        self.shares = shares
+        self._times = [[scan.time - share[0].time for scan in share] for share in shares]
+        self._told = [0] * len(shares)  # scans
+        self._reach, self._no_return = reach, no_return
+        self._alive: NDArray[np.bool_] = np.ones(len(shares), np.bool_)
+
+    @property
+    def duration(self) -> float:
+        """Until the longest share is over [s]."""
+        return max(times[-1] for times in self._times)
+
+    @property
+    def scans_told(self) -> int:
+        """How many scans the team has been told by now."""
+        return sum(self._told)
+
+    @property
+    def alive(self) -> NDArray[np.bool_]:
+        """``(n,)``."""
+        return self._alive
+
+    def pose(self, i: int) -> tuple[float, float, float]:
+        """Return x, y [m] and heading [rad] of a robot's lidar, frame of the log."""
+        scan = self.shares[i][max(self._told[i], 1) - 1]
+        return scan.x, scan.y, scan.heading
+
+    def sense(self, i: int, now: float) -> list[Event]:
+        """Return the poses and scans of a robot up to now that it has not been told yet."""
+        until = bisect_right(self._times[i], now + 1e-9)
+        events: list[Event] = [Pose(*self.pose(i))]
+        for scan in self.shares[i][self._told[i] : until]:
+            ranges, hits = beams(scan, self._reach, self._no_return)
+            said = ranges > 0.0
+            events.append(Pose(scan.x, scan.y, scan.heading))
+            events.append(Scan(scan.angles[said], np.where(hits, ranges, np.inf)[said]))
+        self._told[i] = until
+        return events
+
+    def carry_out(self, i: int, motion: Motion, now: float) -> None:
+        """Go where the log says, whatever the agent wants."""
+
+    def advance(self, now: float, dt: float) -> None:
+        """Nothing moves between scans."""
+
+    def kill(self, i: int) -> None:
+        """Let a robot be told nothing any more."""
+        self._alive[i] = False
+
+    def revive(self, i: int, now: float) -> None:
+        """Let a robot go on."""
+        self._alive[i] = True
+
+    def over(self, now: float) -> Outcome | None:
+        """It is not the world that ends a replay."""
+        return None

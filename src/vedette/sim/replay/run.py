@@ -1,0 +1,155 @@
+"""Let a log go through one agent, or in shares through a team of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from vedette.agent import Agent
+from vedette.agent.events import Pose, Scan
+from vedette.agent.mates import Mate
+from vedette.domains.mapping.planners import DEFAULT
+from vedette.domains.mapping.sightings import BINS
+from vedette.errors import InputError
+from vedette.logs import RecordedLog, RecordedScan
+from vedette.maps import UNKNOWN
+from vedette.maps.lattice import Lattice
+from vedette.missions.explore.assemble import assemble
+from vedette.missions.explore.exploring import Exploring
+from vedette.missions.explore.options import ExploreOptions
+from vedette.record.replay.summary import Replayed
+from vedette.sim.explore.simulation import ExploreSetup
+from vedette.sim.replay.field import RecordedRobots
+from vedette.sim.simulation import Simulation
+from vedette.sim.worlds.logged import frame_of
+from vedette.team import Most, PlatformSpec
+
+SETTLING = 15.0  # after its last scan a team has so long to tell each other of it [s]
+LOOK_PERIOD = 1.0  # [s]
+
+
+class Following(Exploring):
+    """Sees what was recorded: no mate was in those scans, and the mission ends with the log."""
+
+    def observe(self, scan: Scan, pose: Pose, mates: Sequence[Mate], now: float) -> None:
+        """Add a scan to the robot's own evidence, whoever is said to stand where now."""
+        super().observe(scan, pose, (), now)
+
+    def nothing_left(self, value: float, now: float) -> bool:
+        """Tell that there is more, to the end."""
+        return False
+
+
+@dataclass(frozen=True)
+class ReplaySetup:
+    """How a log is replayed."""
+
+    robots: int = 1  # shares into which it is cut, one after the other in time
+    resolution: float = 0.1  # [m]
+    reach: float = 20.0  # of the beams [m]
+    no_return: str = "ignore"  # as for `logged`
+    planner: str = DEFAULT
+    scheme: str | None = None  # None: the planner's own
+    fusion: str = "replicated"
+    seed: int = 0  # of what befalls messages
+    link_loss: float = 0.0
+
+    def shares(self, log: RecordedLog) -> list[tuple[RecordedScan, ...]]:
+        """Cut a log into as many pieces of as many scans.
+
+        Raises:
+            InputError: it has too few scans.
+        """
+        if len(log.scans) < 2 * self.robots:
+            raise InputError(f"{log.name} has {len(log.scans)} scans, too few for {self.robots} robots")
+        ends = np.linspace(0, len(log.scans), self.robots + 1).round().astype(int).tolist()
+        return [log.scans[a:b] for a, b in pairwise(ends)]
+
+
+class Replay:
+    """A log on its way through a team of agents."""
+
+    def __init__(self, log: RecordedLog, setup: ReplaySetup) -> None:
+        """Prepare to replay a log.
+
+        Raises:
+            InputError: it cannot be cut so, or covers too much; planner, scheme or fusion are unknown.
+        """
+        self.log, self.setup = log, setup
+        self.frame = frame_of(log, setup.resolution, setup.reach)
+        self.robots = RecordedRobots(setup.shares(log), setup.reach, setup.no_return)
+        self.specs = [_spec(log, setup.reach, number) for number in range(1, setup.robots + 1)]
+        self._options = ExploreOptions(setup.planner, setup.scheme, setup.fusion, False)
+        _ = self._options.negotiates_by
+        links = ExploreSetup(seed=setup.seed, link_loss=setup.link_loss, scheme=setup.scheme)
+        self.simulation = Simulation(self._agent, self.robots, links)
+        self._stopped = False
+
+    def _agent(self, robot: int, boot: int) -> Agent:
+        spec, most = self.specs[robot], Most.of(self.specs)
+        return assemble(
+            Lattice(self.frame, bounded=False), spec, self._options, robot, boot,
+            robots=len(self.specs), most=most, explorer=Following,
+        )  # fmt: skip
+
+    @property
+    def missions(self) -> list[Following]:
+        """Everybody's share of the mission."""
+        found = [agent.mission for agent in self.simulation.agents]
+        assert all(isinstance(mission, Following) for mission in found)
+        return found  # type: ignore[return-value]
+
+    def stop(self) -> None:
+        """End the replay at the end of the present tick; may be called from a signal handler."""
+        self._stopped = True
+
+    def run(self, told: Callable[[float], None] = lambda share: None) -> Replayed:
+        """Replay to the end, or until stopped; ``told`` hears, now and then, which share of it is done."""
+        simulation, end = self.simulation, self.robots.duration + SETTLING
+        times, known, due = [0.0], [0.0], 0.0
+        while simulation.now < end and not self._stopped:
+            simulation.step()
+            if simulation.now >= due:
+                due += LOOK_PERIOD
+                times.append(simulation.now)
+                known.append(self._known())
+                told(min(simulation.now / end, 1.0))
+        return self._replayed(times, known)
+
+    def _known(self) -> float:
+        """Area that the robot knows that knows most [m^2]."""
+        most = max(np.count_nonzero(mission.fusion.classes.blocks != UNKNOWN) for mission in self.missions)
+        return float(most) * self.setup.resolution**2
+
+    def _replayed(self, times: Sequence[float], known: Sequence[float]) -> Replayed:
+        missions = self.missions
+        maps = [mission.fusion.classes.window() for mission in missions]
+        counts = sum((mission.counts for mission in missions), np.zeros((4, BINS), np.int64))
+        return Replayed(
+            name=self.log.name,
+            frame=self.frame,
+            classes=max(maps, key=lambda classes: int(np.count_nonzero(classes))),
+            counts=counts,
+            times=tuple(times),
+            known_m2=tuple(known),
+            scans=self.robots.scans_told,
+            of_scans=len(self.log.scans),
+            way_m=self.log.way,
+            reach_m=self.setup.reach,
+            agreed=len({mission.fusion.digest for mission in missions}) == 1,
+            names=tuple(spec.name for spec in self.specs),
+            ways=tuple(np.array([(scan.x, scan.y) for scan in share]) for share in self.robots.shares),
+        )
+
+
+def _spec(log: RecordedLog, reach: float, number: int) -> PlatformSpec:
+    """Return the robot that a log is of, as far as the log tells."""
+    scan = log.scans[0]
+    count = len(scan.angles)
+    step = float(np.median(np.diff(scan.angles))) if count > 1 else math.radians(1.0)
+    view = min(max(math.degrees(abs(step)) * count, 1.0), 360.0)
+    return PlatformSpec(f"robot-{number}", range=reach, view=view, beams=min(max(count, 8), 4096))
