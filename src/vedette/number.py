@@ -1,4 +1,4 @@
-"""What counts as a number where a caller may give anything."""
+"""Numbers: what counts as one where a caller may give anything, and how many of something are told."""
 
 from __future__ import annotations
 
@@ -20,3 +20,8 @@ def is_number(value: object) -> TypeGuard[float]:
 def is_whole(value: object) -> TypeGuard[int]:
     """Tell whether a value is an integer by type, one of NumPy's or not; True and False are none."""
     return isinstance(value, Integral) and not isinstance(value, bool)
+
+
+def many(count: int, what: str) -> str:
+    """Return ``1 robot``, ``2 robots``; ``what`` takes an s where there are more."""
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"

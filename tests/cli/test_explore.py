@@ -265,7 +265,7 @@ def test_a_start_that_is_cut_off_is_refused_and_the_reachable_area_told(vedette:
         (["--robots", "0"], ["--robots", "at least 1"]),
         (["--robots", "-2"], ["--robots"]),
         (["--robots", "two"], ["two"]),
-        (["--kill", "4@10"], ["no robot 4", "1 to 3"]),
+        (["--kill", "4@10"], ["no robot 4", "in a team of 3"]),
         (["--kill", "0@10"], ["no robot 0"]),
         (["--kill", "2"], ["robot@seconds"]),
         (["--kill", "2@-5"], ["robot@seconds"]),

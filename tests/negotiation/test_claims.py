@@ -229,7 +229,7 @@ def test_a_claim_too_large_is_refused_and_its_sender_can_be_cut(scheme: Any) -> 
     assert node.waiting_for == {1, 2}
     node.receive(1, report(0.25, 2))
     if scheme is TokenNode:
-        with pytest.raises(InputError, match="2 speaks for 2 platforms, at most 1 are behind it"):
+        with pytest.raises(InputError, match="2 speaks for 2 platforms, at most 1 behind it"):
             node.receive(2, report(0.5, 2))
     assert node.waiting_for == {2}
     assert node.cut(2)

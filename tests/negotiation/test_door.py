@@ -60,7 +60,7 @@ LINES: list[tuple[dict[str, Any], str]] = [
     ({"tree": Tree.chain(3)}, "candidates has 2 lists for a tree of 3; give one each"),
     ({"scheme": "tokn"}, "unknown scheme 'tokn'; did you mean 'token'?"),
     ({"scheme": None}, "unknown scheme None; known: token, jacobi"),
-    ({"start": [0]}, "start has 1 indexes for 2 platforms; give one each"),
+    ({"start": [0]}, "start has 1 for 2 platforms; give an index each"),
     ({"start": [0, 2]}, "start[1] = 2, but platform 1 has candidates 0 to 1"),
     ({"start": np.array([-1, 0])}, "start[0] = -1, but platform 0 has candidates 0 to 1"),
     ({"start": [0, 1.0]}, "start[1] = 1.0, but platform 1 has candidates 0 to 1"),
@@ -92,7 +92,7 @@ LINES: list[tuple[dict[str, Any], str]] = [
         {"reach": [(), ()], "scheme": "jacobi"},
         "reach belongs to scheme 'token'; got 'jacobi'; leave reach out",
     ),
-    ({"objective": Strip(), "reach": [()]}, "reach has 1 entries for 2 platforms; give one each"),
+    ({"objective": Strip(), "reach": [()]}, "reach has 1 for 2 platforms; give one each"),
     ({"objective": Strip(), "reach": 4.0}, "reach is 4.0; give a list of boxes for each platform"),
     ({"objective": Strip(), "reach": [(), 4.0]}, "reach[1] is 4.0; give a list of boxes"),
     (

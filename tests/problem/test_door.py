@@ -242,7 +242,7 @@ LINES: list[tuple[Callable[[], object], str]] = [
         "candidates[0][0]: information must have shape (2, 2); got (3, 3)",
     ),
     # bound and slack
-    (lambda: bound(Sum(), None, [[1.0]], [0, 0]), "choice has 2 indexes for 1 platforms; give one each"),
+    (lambda: bound(Sum(), None, [[1.0]], [0, 0]), "choice has 2 for 1 platform; give an index each"),
     (lambda: bound(Sum(), None, [[1.0]], [1]), "choice[0] = 1, but platform 0 has candidates 0 to 0"),
     (
         lambda: bound(Sum(), None, [[1.0, 2.0]], np.array([0.5])),

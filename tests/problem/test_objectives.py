@@ -158,7 +158,7 @@ def test_bad_input_is_one_line_that_names_it() -> None:
         (lambda: exhaustive(Cost(), None, [[0.0] * 10] * 7), "10000000 combinations"),
         (lambda: exhaustive(Broken(), None, [[0.0], [1.0, 3.0]]), r"Broken.values returned nan for own\[1\]"),
         (lambda: values_of(WrongShape(), None, 0.0, [1.0, 2.0]), r"returned shape \(2, 2\) for 2 impacts"),
-        (lambda: bound(Cost(), None, [[1.0]], [0, 0]), "2 indexes for 1 platforms"),
+        (lambda: bound(Cost(), None, [[1.0]], [0, 0]), "choice has 2 for 1 platform;"),
         (lambda: bound(Cost(), None, [[1.0]], [1]), r"choice\[0\] = 1"),
         (lambda: counted(np.array([0.5, 1.5])), r"in \[0, 1\]; got 1.5"),
         (lambda: counted(np.array([np.nan])), "got nan"),

@@ -131,7 +131,7 @@ def test_a_neighbour_is_told_of_everybody_but_those_beyond_it() -> None:
 @pytest.mark.parametrize(
     ("reach", "scheme", "message"),
     [
-        ([()], "token", "reach has 1 entries for 2 platforms"),
+        ([()], "token", "reach has 1 for 2 platforms"),
         ([(), ((1.0, 0.0, 0.0, 1.0),)], "token", r"reach\[1\] has .* a box is lowest x"),
         ([(), ()], "jacobi", "reach belongs to scheme 'token'"),
     ],

@@ -196,7 +196,7 @@ def test_a_seed_gives_its_schedule_and_seeds_give_all_kinds() -> None:
 
 
 MISTAKES = {
-    "at: 1, fault: crash, robot: 4": "faults[1].robot: there is no robot 4; they are 1 to 3",
+    "at: 1, fault: crash, robot: 4": "faults[1].robot: there is no robot 4 in a team of 3",
     "at: 1, fault: crash, robot: 0": "faults[1].robot: must be a whole number >= 1; got 0",
     "at: 1, fault: crahs, robot: 1": "faults[1].fault: unknown fault 'crahs'; did you mean 'crash'?",
     "at: 1, fault: crash, robto: 1": "faults[1]: unknown field 'robto'; did you mean 'robot'?",
@@ -212,12 +212,10 @@ MISTAKES = {
     "at: 1, fault: delay, between: [0.3, 0.1]": (
         "faults[1].between: shortest and longest delay in this order; it is [0.3, 0.1]"
     ),
-    "at: 1, fault: one-way, from: 4, to: 1": "faults[1].from: there is no robot 4; they are 1 to 3",
+    "at: 1, fault: one-way, from: 4, to: 1": "faults[1].from: there is no robot 4 in a team of 3",
     "at: 1, fault: one-way, from: 2, to: 2": "faults[1].to: must be another robot than from; both are 2",
     "at: 1, fault: cut, robots: [3, 3]": "faults[1].robots: must be two robots; both are 3",
-    "at: 1, fault: partition, parts: [[1], [9]]": (
-        "faults[1].parts[1]: there is no robot 9; they are 1 to 3"
-    ),
+    "at: 1, fault: partition, parts: [[1], [9]]": ("faults[1].parts[1]: there is no robot 9 in a team of 3"),
     "at: 1, fault: partition, parts: [[1, 2], [3, 1]]": (
         "faults[1].parts[1]: robot 1 is named twice; a robot is in one part"
     ),

@@ -90,7 +90,7 @@ LINES: list[tuple[Callable[[], object], str]] = [
     ),
     (
         lambda: prepare(small_maze(), robots(2), ExploreSetup(faults=Schedule((Crash(at=1.0, robot=3),)))),
-        "faults: faults[0].robot: there is no robot 3; they are 1 to 2",
+        "faults: faults[0].robot: there is no robot 3 in a team of 2",
     ),
     (
         lambda: prepare(small_maze(), robots(2), ExploreSetup(planner="turs")),

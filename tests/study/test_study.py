@@ -417,9 +417,9 @@ def test_the_report_counts_what_is_missing_and_names_what_broke(tmp_path: Path) 
     found = conducted(all_runs, out, Counting(stop_after=3, breaking="burgard"))
     write_outputs(found, tmp_path / "tiny.yaml", "nearest", out, MADE)
     text = (out / "report.html").read_text()
-    assert "1 runs are missing" in text
+    assert "1 run missing" in text
     assert "ValueError: no way" in text
-    assert "maze 10x10 1, 2 robot(s) apart, seed 0, burgard" in text
+    assert "maze 10x10 1, 2 robots apart, seed 0, burgard" in text
 
 
 def test_a_study_of_one_planner_in_one_world_or_with_nothing_but_failures_has_a_report(
@@ -452,7 +452,7 @@ def test_the_command_tells_where_the_report_is_and_ends_with_0(
     monkeypatch.chdir(tmp_path)
     text = TINY.replace("[1, 2]", "[1]").replace("max_time: 25", "max_time: 3").replace("nearest, ", "")
     arguments = [str(written(tmp_path, text)), "--jobs", "1"]
-    for told in ("1 runs, 0 of them done before", "1 runs, 1 of them done before"):
+    for told in ("1 run, 0 of them done before", "1 run, 1 of them done before"):
         with pytest.raises(SystemExit) as ended:
             study.main(arguments, standalone_mode=False)
         assert ended.value.code == 0

@@ -18,6 +18,7 @@ from vedette.errors import InputError, InputWarning
 from vedette.missions.explore.assemble import FUSIONS
 from vedette.missions.pairs import SCHEME
 from vedette.negotiation import SCHEMES
+from vedette.number import many
 from vedette.record.explore.live import ExploreDisplay
 from vedette.record.explore.mcap import ExploreMcapWriter
 from vedette.record.explore.outputs import write_outputs
@@ -117,7 +118,9 @@ def team_named(team: Path | None, robots: int | None, starts: str | None) -> lis
     else:
         specs = list(team_of(robots or len(places) or ROBOTS))
     if len(places) > len(specs):
-        raise InputError(f"--starts has {len(places)} places for {len(specs)} robots; leave some out")
+        raise InputError(
+            f"--starts has {many(len(places), 'place')} for {many(len(specs), 'robot')}; leave some out"
+        )
     moved = [spec.name for spec, _ in zip(specs, places, strict=False) if spec.start is not None]
     if moved:
         _say(f"--starts replaces the team file's start of {', '.join(moved)}")
@@ -135,7 +138,7 @@ def closing(summary: ExploreSummary, folder: Path) -> list[str]:
     lines = [
         f"{summary.outcome.said}: {100 * summary.coverage:.1f} % of {summary.world} known after "
         f"{summary.time_s:.0f} s (90 % after {t90}), longest way {longest:.0f} m, "
-        f"{summary.collisions} collisions",
+        f"{many(summary.collisions, 'collision')}",
         f"pictures: {folder / 'progress.png'}, {folder / 'curves.png'}; all else beside them",
     ]
     if summary.left_out:

@@ -18,6 +18,7 @@ from rich.text import Text
 from vedette.cli.ends import aborted
 from vedette.cli.options import FILE, seed_option
 from vedette.errors import InputError
+from vedette.number import many
 from vedette.outcome import Outcome
 from vedette.record.folder import OutputFolder
 from vedette.study.provenance import provenance
@@ -73,7 +74,7 @@ def _closing(result: Reproduction) -> str:
     """Say how the claims fared and where the report is."""
     fates = [section.verdict.value for section in result.sections if section.verdict is not None]
     counts = ", ".join(f"{fates.count(fate)} {_PLURAL.get(fate, fate)}" for fate in dict.fromkeys(fates))
-    lines = [f"{len(fates)} claims tried: {counts}" if fates else "no claim was tried"]
+    lines = [f"{many(len(fates), 'claim')} tried: {counts}" if fates else "no claim was tried"]
     if result.missing:
         lines.append(f"interrupted; missing: {', '.join(result.missing)}")
     return "\n".join([*lines, f"report: {result.report}"])

@@ -18,6 +18,7 @@ from vedette.cli.ends import aborted
 from vedette.cli.options import FILE, OneOf, Positive
 from vedette.errors import InputError
 from vedette.maps import map_files
+from vedette.number import many
 from vedette.outcome import Outcome
 from vedette.record.lock import locked
 from vedette.study.backends import BACKENDS, Backend, require
@@ -102,6 +103,6 @@ def _counts(conducted: Conducted) -> str:
     """Say how many runs there are, and how they went."""
     complete = sum(result.figures["completed"] is True for result in conducted.results.values())
     count = len(conducted.results)
-    missing = f", {len(conducted.missing)} runs to go" if conducted.missing else ""
+    missing = f", {many(len(conducted.missing), 'run')} to go" if conducted.missing else ""
     broke = f", {conducted.broken} broke" if conducted.broken else ""
-    return f"{count} runs, {complete} of them complete{broke}{missing}"
+    return f"{many(count, 'run')}, {complete} of them complete{broke}{missing}"

@@ -15,6 +15,7 @@ from vedette.fusion.gaussian import WAYS
 from vedette.missions.pairs import SCHEME
 from vedette.missions.track.options import COORDINATIONS
 from vedette.negotiation import SCHEMES
+from vedette.number import many
 from vedette.record.track.live import track_display
 from vedette.record.track.mcap import TrackMcapWriter
 from vedette.record.track.outputs import write_outputs
@@ -66,7 +67,8 @@ def tracking_options(command: CommandT) -> CommandT:
 def closing(summary: TrackSummary, folder: Path) -> list[str]:
     """Say in a few lines how it went and where the pictures are."""
     lines = [
-        f"{summary.outcome.said}: {summary.vehicles} vehicles followed {summary.targets} targets for "
+        f"{summary.outcome.said}: {many(summary.vehicles, 'vehicle')} followed "
+        f"{many(summary.targets, 'target')} for "
         f"{summary.time_s:.0f} s; entropy {summary.entropy_mean_nat:.1f} nat on average, "
         f"position error {summary.position_rmse_m:.1f} m (rms), NEES {summary.nees:.2f}",
         f"pictures: {folder / 'tracks.png'}, {folder / 'entropy.png'}; all else beside them",

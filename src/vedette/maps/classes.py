@@ -13,6 +13,7 @@ from vedette.errors import InputWarning
 from vedette.maps.frame import FREE, OCCUPIED, UNKNOWN
 from vedette.maps.image import Levels
 from vedette.maps.meta import MapMeta
+from vedette.number import many
 
 _PLAIN_FREE = 128  # a pixel of an image without a .yaml is free from this level on
 _PLAIN_OPAQUE = 128  # and unknown below this alpha
@@ -79,7 +80,7 @@ def _doubtful(light: NDArray[np.uint8], classes: NDArray[np.uint8]) -> dict[int,
 
 def _told(found: dict[int, int], negate: bool = False) -> str:
     return " and ".join(
-        f"grey {255 - level if negate else level} ({count} pixels)" for level, count in found.items()
+        f"grey {255 - level if negate else level} ({many(count, 'pixel')})" for level, count in found.items()
     )
 
 

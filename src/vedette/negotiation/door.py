@@ -10,7 +10,7 @@ import numpy as np
 from vedette.errors import InputError, brief, check_word
 from vedette.negotiation.schemes import SCHEMES
 from vedette.negotiation.tree import Tree
-from vedette.number import is_number, is_whole
+from vedette.number import is_number, is_whole, many
 from vedette.problem.door import check_list
 from vedette.problem.objective import BeliefT, Codec, ImpactT, Invertible, Objective
 from vedette.problem.reach import Box, Clippable, Reach
@@ -78,7 +78,7 @@ def checked_reach(
         raise InputError(f"reach needs {type(objective).__name__}.clip(belief, impact, reach); leave it out")
     check_list(reach, "reach", "a list of boxes for each platform")
     if len(reach) != tree.n:
-        raise InputError(f"reach has {len(reach)} entries for {tree.n} platforms; give one each")
+        raise InputError(f"reach has {len(reach)} for {many(tree.n, 'platform')}; give one each")
     for i, boxes in enumerate(reach):
         check_list(boxes, f"reach[{i}]", "a list of boxes")
     return [tuple(_box(i, box) for box in boxes) for i, boxes in enumerate(reach)]

@@ -9,6 +9,7 @@ from typing import Generic, Protocol
 from vedette.errors import InputError
 from vedette.negotiation.fold import Fold
 from vedette.negotiation.messages import Message, RoundOutcome
+from vedette.number import many
 from vedette.problem.objective import ImpactT
 from vedette.problem.reach import Reach
 
@@ -65,7 +66,9 @@ class Claims(Generic[ImpactT]):
         """Raise ``InputError`` if a neighbour speaks for more platforms than can be behind it."""
         if size > self.platforms[sender]:
             most = self.platforms[sender]
-            raise InputError(f"{sender} speaks for {size} platforms, at most {most} are behind it; drop it")
+            raise InputError(
+                f"{sender} speaks for {many(size, 'platform')}, at most {most} behind it; drop it"
+            )
 
 
 class Negotiator(Protocol[ImpactT]):

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from vedette.errors import InputError, brief
-from vedette.number import is_whole
+from vedette.number import is_whole, many
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Tree:
         _check_whole("n", self.n)
         edges = _pairs(self.edges)
         if len(edges) < self.n - 1:
-            need = f"{self.n} platforms need {self.n - 1} edges to be connected"
+            need = f"{self.n} platforms need {many(self.n - 1, 'edge')} to be connected"
             raise InputError(f"tree: {need}; got {len(edges)}")
         group = list(range(self.n))  # group[i] leads to the least platform that i is joined to
         for a, b in edges:

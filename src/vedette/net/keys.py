@@ -20,6 +20,7 @@ from vedette.errors import InputError
 from vedette.maps.atomic import atomic_path
 from vedette.net.credentials import CA, CERT, KEY, common_name, load_certificate, load_key, read
 from vedette.net.names import MOST_ROBOTS, OPERATOR, check_team, robot_name
+from vedette.number import many
 
 CA_KEY, ISSUED = "ca-key.pem", "issued.txt"
 DAYS, MOST_DAYS = 365, 36500
@@ -88,7 +89,7 @@ def add_robots(team: str, folder: Path | str, robots: int, now: datetime, days: 
     issued = read(folder / ISSUED, most=MOST_ROBOTS * 128).decode(errors="replace")
     first = _last_number(issued, folder / ISSUED)
     if first + robots > MOST_ROBOTS:
-        raise InputError(f"team {team!r} has {first} robots already; at most {MOST_ROBOTS} can be")
+        raise InputError(f"team {team!r} has {many(first, 'robot')} already; at most {MOST_ROBOTS} can be")
     names = [robot_name(robot) for robot in range(first, first + robots)]
     if there := next((folder / name for name in names if (folder / name).exists()), None):
         raise InputError(f"{there} exists, though never issued; nothing was changed; move it away")

@@ -15,6 +15,7 @@ from rich.text import Text
 from vedette.net.names import robot_name
 from vedette.net.report import Condition, LinkReport, read_condition
 from vedette.net.transport import Operator
+from vedette.number import many
 from vedette.record.summary import Figures
 
 ANSWER = 0.5  # for which an agent may think about its answer [s]
@@ -92,7 +93,7 @@ def _row(said: Condition, digest: int) -> list[str]:
         said.state,
         "-" if said.known is None else f"{100 * said.known:.1f} %",
         "same" if said.digest == digest else "differs",
-        f"{robot_name(said.root)}, {said.size} robot{'s' * (said.size != 1)}, {said.age:.0f} s old",
+        f"{robot_name(said.root)}, {many(said.size, 'robot')}, {said.age:.0f} s old",
         parent,
         str(said.rounds) if said.decided is None else f"{said.rounds}, {said.decided:.0f} s ago",
         dropped or "none",

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.errors import InputError, brief
+from vedette.number import many
 from vedette.problem.objective import BeliefT, ImpactT, Objective
 
 MOST = 1e90  # size of a value: sums over any team stay within what messages carry
@@ -50,9 +51,9 @@ def numbers_of(returned: Any, count: int, name: str) -> NDArray[np.float64]:
     except (TypeError, ValueError, OverflowError):
         numeric = False
     if not numeric:
-        raise InputError(f"{name} returned {brief(returned)}; it must return {count} numbers")
+        raise InputError(f"{name} returned {brief(returned)}; it must return {many(count, 'number')}")
     if values.shape != (count,):
-        raise InputError(f"{name} returned shape {values.shape} for {count} impacts; want ({count},)")
+        raise InputError(f"{name} returned shape {values.shape} for {many(count, 'impact')}; want ({count},)")
     good = np.abs(values) <= MOST
     if not good.all():
         k = int(np.argmin(good))

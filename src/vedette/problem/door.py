@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from vedette.errors import InputError, brief
-from vedette.number import is_whole
+from vedette.number import is_whole, many
 from vedette.problem.objective import BeliefT, ImpactT, Objective
 
 
@@ -64,7 +64,9 @@ def check_choice(choice: Sequence[int], candidates: Sequence[Sequence[Any]], nam
     """Return one candidate's index for each platform; ``InputError`` if that is not what is given."""
     check_list(choice, name, "a list of one index for each platform")
     if len(choice) != len(candidates):
-        raise InputError(f"{name} has {len(choice)} indexes for {len(candidates)} platforms; give one each")
+        raise InputError(
+            f"{name} has {len(choice)} for {many(len(candidates), 'platform')}; give an index each"
+        )
     for i, own in enumerate(candidates):
         if not is_whole(choice[i]) or not 0 <= choice[i] < len(own):
             got = choice[i] if is_whole(choice[i]) else brief(choice[i])

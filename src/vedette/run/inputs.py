@@ -113,7 +113,7 @@ def _kill(kill: tuple[int, float], robots: int) -> tuple[int, float]:
         case (int() as robot, time) if 1 <= robot <= robots:
             return robot - 1, time
         case (int() as robot, _):
-            raise InputError(f"kills: there is no robot {robot}; they are 1 to {robots}")
+            raise InputError(f"kills: there is no robot {robot} in a team of {robots}")
     raise InputError(f"kills: must be pairs of a robot's number and a time [s]; got {brief(kill)}")
 
 

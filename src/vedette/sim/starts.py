@@ -211,7 +211,9 @@ def _place(
                 places.keep_clear(place, 2 * radius + gap)
         if len(placed) == len(specs):
             return
-    room = f"only {len(placed)} {'does' if len(placed) == 1 else 'do'}"
+    if len(specs) == 1:
+        raise InputError(f"the robot does not fit in {world.name}; use a smaller one")
+    room = {0: "none does", 1: "only 1 does"}.get(len(placed), f"only {len(placed)} do")
     raise InputError(f"{len(specs)} robots do not fit in {world.name}; {room}: use fewer or smaller ones")
 
 

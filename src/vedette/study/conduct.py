@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from rich.console import Console
 
+from vedette.number import many
 from vedette.study.mission import RunResult
 from vedette.study.progress import StudyProgress
 from vedette.study.run import Run
@@ -53,7 +54,7 @@ def conduct(runs: Sequence[Run], store: Store, workers: Workers, console: Consol
 
 
 def _begin(runs: int, left: int, others: int, console: Console) -> None:
-    text = f"{runs} runs, {runs - left} of them done before, {left} to do"
+    text = f"{many(runs, 'run')}, {runs - left} of them done before, {left} to do"
     if others:
-        text += f" ({others} results of other runs, or of other code, are left alone)"
+        text += f" ({many(others, 'result')} of other runs, or of other code, left alone)"
     console.print(text, markup=False, highlight=False, soft_wrap=True)

@@ -6,6 +6,7 @@ import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from vedette.number import many
 from vedette.study.rows import Row
 from vedette.study.run import OF_PLATFORM, OF_SETUP, Value
 
@@ -75,7 +76,7 @@ def _values(rows: Sequence[Row], column: str) -> list[Value]:
 
 def _words(column: str, value: Value) -> str:
     if column == "robots":
-        return f"{value} robot" + ("s" if value != 1 else "")
+        return many(int(value or 0), "robot")
     if column == "world":
         return str(value)
     return f"{column.replace('_', ' ')} {'none' if value in (None, '') else value}"

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from vedette.number import many
 from vedette.study import page
 from vedette.study.compare import Difference, difference, mean
 from vedette.study.facets import Facet, margins, overview, planners
@@ -64,7 +65,7 @@ def _made(findings: Findings) -> list[str]:
         ("Python", made.python),
         ("runs", f"{len(findings.rows)} of {len(findings.rows) + findings.missing}"),
     ]
-    warning = f"Incomplete: {findings.missing} runs are missing. The same command goes on with them."
+    warning = f"Incomplete: {many(findings.missing, 'run')} missing. The same command goes on with them."
     return [
         page.table(("", ""), lines, left=2),
         *([page.paragraph(warning, warning=True)] if findings.missing else []),
@@ -110,7 +111,8 @@ def _how_far(row: Row) -> tuple[str, str]:
 
 def _name(row: Row) -> str:
     world = str(row["world"]) + ("" if row["world_seed"] is None else f" {row['world_seed']}")
-    return f"{world}, {row['robots']} robot(s) {row['starts']}, seed {row['seed']}, {row['planner']}"
+    team = f"{many(int(row['robots'] or 0), 'robot')} {row['starts']}"
+    return f"{world}, {team}, seed {row['seed']}, {row['planner']}"
 
 
 def _pictures(folder: Path) -> list[str]:

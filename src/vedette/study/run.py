@@ -14,6 +14,7 @@ import numpy as np
 
 from vedette.errors import InputWarning
 from vedette.maps.world import World
+from vedette.number import many
 from vedette.sim.explore.simulation import ExploreSetup
 from vedette.sim.worlds import GENERATORS
 from vedette.team import PlatformSpec
@@ -121,7 +122,7 @@ class Run:
     def __str__(self) -> str:
         """Name the run in a line of progress."""
         world = self.world.name + ("" if self.world.seed is None else f" {self.world.seed}")
-        team = f"{self.robots} robot{'s' if self.robots > 1 else ''} {self.starts}"
+        team = f"{many(self.robots, 'robot')} {self.starts}"
         return f"{world}, {team}, {self.setup.planner}"
 
     def _parameters(self) -> dict[str, Any]:

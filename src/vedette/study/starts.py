@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from vedette.errors import InputError
 from vedette.kernels.distance import distance_field
 from vedette.maps.world import World, standable
+from vedette.number import many
 from vedette.sim.indoors import indoors
 from vedette.team import PlatformSpec
 
@@ -47,7 +48,7 @@ def spread(world: World, specs: Sequence[PlatformSpec], rng: np.random.Generator
         offered = rng.choice(places, _TRIES)
         cell = int(offered[away[offered].argmax()])
         if away[cell] < 2 * radius + _GAP:
-            raise InputError(f"{len(specs)} robots do not fit apart in {world.name}; use fewer")
+            raise InputError(f"{many(len(specs), 'robot')} cannot start apart in {world.name}; use fewer")
         starts.append(_place(world, cell, rng))
         away = np.minimum(away, _distances(world, area, cell))
     return [replace(spec, start=start) for spec, start in zip(specs, starts, strict=True)]

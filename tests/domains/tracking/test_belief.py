@@ -140,8 +140,8 @@ def test_what_is_no_set_of_tracks_is_refused(
 @pytest.mark.parametrize(
     ("changed", "line"),
     [
-        ({"Y": np.ones((2, 4, 4))}, r"Y has shape \(2, 4, 4\); 1 targets need \(1, 4, 4\)"),
-        ({"y": np.ones(4)}, r"y has shape \(4,\); 1 targets need \(1, 4\)"),
+        ({"Y": np.ones((2, 4, 4))}, r"Y has shape \(2, 4, 4\); 1 target would have \(1, 4, 4\)"),
+        ({"y": np.ones(4)}, r"y has shape \(4,\); 1 target would have \(1, 4\)"),
         ({"y": np.full((1, 4), np.inf)}, "y of target 0 is not finite"),
         ({"Y": np.eye(4)[None] + np.eye(4, k=1)}, "target 0 is not symmetric"),
         ({"Y": np.diag([1.0, 1.0, 0.0, 0.0])[None]}, "target 0 is not positive definite"),

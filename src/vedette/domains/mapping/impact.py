@@ -11,6 +11,7 @@ from vedette.kernels.coverage import LAYERS
 from vedette.kernels.misses import CERTAIN, STEPS_PER_NAT, Misses, MissesCodec, SparseMisses
 from vedette.maps import GridFrame
 from vedette.maps.swept import most_cells_swept
+from vedette.number import many
 from vedette.team import Most
 
 # Shares are rounded to eighths: neighbouring cells then mostly agree, and messages deflate well.
@@ -73,10 +74,10 @@ def check_claim(
     seen[-1] = discs
     if np.any(claimed > robots * seen):
         late = int(np.argmax(claimed > robots * seen))
-        limit = f"{robots} robots see {seen[late]:.0f} each"
+        limit = f"{many(robots, 'robot')} with {seen[late]:.0f} at most each"
         raise ValueError(f"impact claims {claimed[late]} cells by {edges[late]:g} s; {limit}")
     if impact.misses.sum(dtype=np.int64) > robots * discs * int(_LEVELS[-1]):
-        raise ValueError(f"impact claims to see more surely than {robots} robots can")
+        raise ValueError(f"impact claims to see more surely than {many(robots, 'robot')} can")
 
 
 class MapImpactCodec(MissesCodec):

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from vedette.kernels.misses import CERTAIN, STEPS_PER_NAT, Misses, MissesCodec, SparseMisses
 from vedette.maps import GridFrame
 from vedette.maps.swept import most_cells_swept
+from vedette.number import many
 from vedette.problem import Reach
 from vedette.team import Most
 
@@ -60,10 +61,12 @@ def check_claim(
     block = (math.sqrt(2.0 * most.range * most.speed * horizon * dt) / side + 1.0) ** 2
     if looked[:horizon].max() > robots * step:
         raise ValueError(
-            f"impact claims {looked[:horizon].max()} cells in a step; {robots} vehicles see fewer"
+            f"impact claims {looked[:horizon].max()} cells in a step, too many for {many(robots, 'vehicle')}"
         )
     if looked[horizon:].sum() > robots * block:
-        raise ValueError(f"impact promises {looked[horizon:].sum()} cells; {robots} vehicles search fewer")
+        raise ValueError(
+            f"impact promises {looked[horizon:].sum()} cells, too many for {many(robots, 'vehicle')}"
+        )
 
 
 class SearchImpactCodec(MissesCodec):

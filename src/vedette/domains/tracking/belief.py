@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from vedette.domains.tracking.models import STATE, TargetModel
 from vedette.errors import InputError
 from vedette.kernels.tracking import ChainMotion
+from vedette.number import many
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +48,9 @@ class Tracks:
             raise InputError(f"tracks: the horizon must be at least 1 step; got {self.horizon}")
         for name, array, shape in (("Y", self.Y, (count, STATE, STATE)), ("y", self.y, (count, STATE))):
             if array.shape != shape:
-                raise InputError(f"tracks: {name} has shape {array.shape}; {count} targets need {shape}")
+                raise InputError(
+                    f"tracks: {name} has shape {array.shape}; {many(count, 'target')} would have {shape}"
+                )
             if not np.isfinite(array).all():
                 raise InputError(f"tracks: {name} of target {_first(~np.isfinite(array))} is not finite")
         skew = np.abs(self.Y - self.Y.swapaxes(1, 2)) > 1e-9 * np.abs(self.Y).max(axis=(1, 2), keepdims=True)

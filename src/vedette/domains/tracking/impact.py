@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.kernels.tracking import Sparse
+from vedette.number import many
 from vedette.problem import Reach
 
 _ROUNDING = 1e-9  # of a sum, as a share of it
@@ -87,7 +88,9 @@ def check_claim(impact: Impact, robots: int, most: float) -> None:
     """
     largest = float(impact.blocks[..., ::2].max(initial=0.0))
     if largest > robots * most * (1.0 + _ROUNDING):
-        raise ValueError(f"impact claims {largest:g} / m^2 in a step; {robots} sensors have {most:g} each")
+        raise ValueError(
+            f"impact claims {largest:g} / m^2 in a step; {many(robots, 'sensor')} with {most:g} each"
+        )
 
 
 @dataclass(frozen=True, eq=False)

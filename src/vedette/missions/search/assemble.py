@@ -14,6 +14,7 @@ from vedette.missions.flying import RoundTimes
 from vedette.missions.search.case import SearchCase
 from vedette.missions.search.options import SearchOptions
 from vedette.missions.search.searching import Searching, SearchPlan
+from vedette.number import many
 from vedette.team import Most
 
 _WINDOW = 30.0  # steps stay open for late evidence, with sums [s]
@@ -33,8 +34,8 @@ class SearchTeam:
         taken = ceil(self.lead / scenario.step) + 1
         if taken >= scenario.horizon:
             raise InputError(
-                f"horizon: a round of {self.size} vehicles takes {self.lead:.1f} s where links delay by "
-                f"{self.times.link_delay:g} s; plan more than {taken} steps of {scenario.step:g} s"
+                f"horizon: a round of {many(self.size, 'vehicle')} takes {self.lead:.1f} s where links delay "
+                f"by {self.times.link_delay:g} s; plan more than {many(taken, 'step')} of {scenario.step:g} s"
             )
 
     @property

@@ -17,6 +17,7 @@ from vedette.missions.flying import RoundTimes
 from vedette.missions.track.options import TrackOptions
 from vedette.missions.track.scenario import TrackScenario
 from vedette.missions.track.tracking import LookBounds, Tracking, TrackPlan
+from vedette.number import many
 
 _EXTENT = 10.0  # evidence holds up to so many times the area's longer side from its corner
 
@@ -34,7 +35,7 @@ class TrackTeam:
         span = self.scenario.horizon * self.scenario.step
         if self.lead >= span:
             raise InputError(
-                f"a round of {self.size} vehicles takes {self.lead:.1f} s with a link delay of "
+                f"a round of {many(self.size, 'vehicle')} takes {self.lead:.1f} s with a link delay of "
                 f"{self.times.link_delay:g} s, but a plan lasts {span:g} s; set a longer horizon or step"
             )
 

@@ -20,6 +20,7 @@ from vedette.domains.tracking.models import STATE, TargetModel, constant_velocit
 from vedette.domains.tracking.sensing import Sensor
 from vedette.domains.tracking.sensors import sensor_of
 from vedette.errors import InputError, InputWarning
+from vedette.number import many
 from vedette.scenario import Metre, Name, as_scenario, load_scenario
 
 Numbers: TypeAlias = tuple[Annotated[float, Meta(ge=-1e12, le=1e12)], ...]
@@ -237,7 +238,7 @@ def _check_target(what: str, target: StaticTarget | MovingTarget) -> None:
     model = "static" if d == 2 else "constant-velocity"
     for name, numbers in (("mean", target.mean), ("sd", target.sd), ("start", target.start)):
         if numbers is not None and len(numbers) != d:
-            raise InputError(f"{what}.{name}: has {len(numbers)} numbers; a {model} target needs {d}")
+            raise InputError(f"{what}.{name}: has {many(len(numbers), 'number')}; a {model} target needs {d}")
     if (target.sd is None) == (target.covariance is None):
         raise InputError(f"{what}: give either sd or covariance")
     if target.sd is not None and not all(LEAST_SD <= each <= 1e6 for each in target.sd):
@@ -245,7 +246,9 @@ def _check_target(what: str, target: StaticTarget | MovingTarget) -> None:
     if target.covariance is not None:
         rows = [len(row) for row in target.covariance]
         if rows != [d] * d:
-            shape = f"{len(rows)} rows of {', '.join(map(str, sorted(set(rows))))}" if rows else "no rows"
+            shape = (
+                f"{many(len(rows), 'row')} of {', '.join(map(str, sorted(set(rows))))}" if rows else "no rows"
+            )
             raise InputError(f"{what}.covariance: has {shape}; a {model} target needs {d} x {d}")
         covariance = np.array(target.covariance)
         if not np.allclose(covariance, covariance.T, rtol=1e-9, atol=0.0):

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter, PercentFormatter
 
+from vedette.number import many
 from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save, tidy
 from vedette.record.explore.log import ExploreLog
@@ -43,7 +44,7 @@ def curves_png(log: ExploreLog, summary: ExploreSummary, path: Path | str) -> No
             tidy(axes, "y")
             axes.tick_params(labelbottom=axes is distance)
         coverage.set_xlim(0, max(1.0, float(log.times[-1])))
-        team = f"{summary.robots} robot" + ("s" if summary.robots > 1 else "")
+        team = many(summary.robots, "robot")
         figure.text(
             0.095, 0.955, f"{summary.world}: {team}, {summary.planner}", fontsize=12, fontweight="bold"
         )

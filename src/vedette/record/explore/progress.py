@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from vedette.maps import UNKNOWN
+from vedette.number import many
 from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save
 from vedette.record.explore.log import ExploreLog, ExploreSnapshot, RobotSample
@@ -38,8 +39,7 @@ def progress_png(log: ExploreLog, path: Path | str) -> None:
         figure = layout.figure()
         for corner, stage in zip(layout.corners, stages, strict=True):
             _panel(figure, corner, layout, log, window, stage)
-        count = len(log.scene.vehicles)
-        layout.head(figure, f"{log.scene.name}: {count} robot" + ("s" if count > 1 else ""))
+        layout.head(figure, f"{log.scene.name}: {many(len(log.scene.vehicles), 'robot')}")
         metres = window.frame.cols * window.frame.resolution
         scale_bar(figure, MARGIN, layout.lowest - 0.16, metres, layout.panel[0])
         _legend(figure, layout, stages[-1])

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import PercentFormatter
 
+from vedette.number import many
 from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save, tidy
 from vedette.record.search.curves import Curves
@@ -64,8 +65,13 @@ def detection_png(curves: Curves, summary: SearchSummary, path: Path | str) -> N
         axes.yaxis.set_major_formatter(PercentFormatter(1.0))
         tidy(axes, "y")
         axes.legend(loc="lower right", framealpha=0.9, edgecolor="none", labelspacing=0.45)
-        count = f"{summary.vehicles} vehicle" + ("s" if summary.vehicles > 1 else "")
-        figure.text(0.085, 0.935, f"{summary.scenario}: {count}", fontsize=12, fontweight="bold")
+        figure.text(
+            0.085,
+            0.935,
+            f"{summary.scenario}: {many(summary.vehicles, 'vehicle')}",
+            fontsize=12,
+            fontweight="bold",
+        )
         figure.text(0.98, 0.935, f"seed {summary.seed}", ha="right", color=FAINT)
         save(figure, path)
 
@@ -101,7 +107,7 @@ def _counted(axes: Axes, curves: Curves, summary: SearchSummary) -> None:
     low, high = (np.clip(share + way * counted.band, 0.0, 1.0) for way in (-1.0, 1.0))
     axes.fill_between(
         curves.times, low, high, color=colour, alpha=0.16, lw=0, zorder=1,
-        label=f"{summary.coordination}, counted over {counted.trials} targets drawn, 95 % band",
+        label=f"{summary.coordination}, counted over {many(counted.trials, 'target')}, 95 % band",
     )  # fmt: skip
 
 

@@ -9,6 +9,7 @@ from matplotlib.colors import PowerNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from vedette.number import many
 from vedette.record import palette
 from vedette.record.canvas import picture, save
 from vedette.record.panels import LINE, MARGIN, TITLE, Panels, marked_lost, name_team, per_row
@@ -60,11 +61,10 @@ def _vehicles_a_row(width: float, scene: SearchScene) -> int:
 
 def _heading(figure: Figure, layout: Panels, log: SearchLog, summary: SearchSummary) -> None:
     """Write over the panels whose search this is and how it ended."""
-    count = len(log.scene.vehicles)
     ended = summary.outcome.said
     if summary.found_by is not None:
         ended = f"found by {summary.found_by} after {summary.found_s:.0f} s"
-    title = f"{log.scene.name}: {count} vehicle" + ("s" if count > 1 else "")
+    title = f"{log.scene.name}: {many(len(log.scene.vehicles), 'vehicle')}"
     layout.head(figure, title, f"{summary.coordination}, {ended}")
 
 

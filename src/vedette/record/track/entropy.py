@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from vedette.number import many
 from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save, tidy
 from vedette.record.track.log import TrackLog
@@ -52,7 +53,7 @@ def entropy_png(logs: Mapping[str, TrackLog], left_out: Mapping[str, str], path:
             axes.tick_params(labelbottom=axes is below)
         above.set_xlim(0.0, max(float(log.times[-1]) for log in logs.values()) or 1.0)
         scene = some.scene
-        counts = f"{len(scene.vehicles)} vehicles, {len(scene.targets)} targets"
+        counts = f"{many(len(scene.vehicles), 'vehicle')}, {many(len(scene.targets), 'target')}"
         figure.text(0.095, 0.945, f"{scene.name}: {counts}", fontsize=12, fontweight="bold")
         figure.align_ylabels()
         save(figure, path)

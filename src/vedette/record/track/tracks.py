@@ -7,6 +7,7 @@ from pathlib import Path
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from vedette.number import many
 from vedette.record import palette
 from vedette.record.canvas import picture, save
 from vedette.record.panels import LINE, MARGIN, STACKED, Panels, name_team, per_row
@@ -26,7 +27,7 @@ def tracks_png(log: TrackLog, path: Path | str) -> None:
         figure = layout.figure()
         for corner, stage in zip(layout.corners, log.stages(_STAGES), strict=True):
             draw(layout.add(figure, *corner, *layout.panel), log, stage, box)
-        counts = f"{len(scene.vehicles)} vehicles, {len(scene.targets)} targets"
+        counts = f"{many(len(scene.vehicles), 'vehicle')}, {many(len(scene.targets), 'target')}"
         layout.head(figure, f"{scene.name}: {counts}", f"tracks as {scene.vehicles[last.holder]} holds them")
         scale_bar(figure, MARGIN, layout.lowest - 0.16, box[2] - box[0], layout.panel[0])
         labels = [

@@ -48,7 +48,7 @@ def _strangers(fault: Fault, robots: int) -> str | None:
     for field, numbers in named.items():
         for number in numbers:
             if number > robots:
-                return f".{field}: there is no robot {number}; they are 1 to {robots}"
+                return f".{field}: there is no robot {number} in a team of {robots}"
     return None
 
 
