@@ -14,7 +14,7 @@ from PIL import Image
 
 from vedette.cli import main
 from vedette.maps import GridFrame, write_map
-from vedette.record.explore.live import ExploreDisplay
+from vedette.record.display import Display
 from vedette.record.explore.log import ExploreSnapshot
 from vedette.record.lock import LOCK, locked
 
@@ -147,14 +147,14 @@ def test_a_mission_whose_folder_vanishes_says_so_and_leaves_all_results_beside_i
 ) -> None:
     removed: list[float] = []
 
-    def update(view: ExploreDisplay, snapshot: ExploreSnapshot) -> None:
+    def update(view: Display[ExploreSnapshot], snapshot: ExploreSnapshot) -> None:
         if snapshot.t >= 2.0 and not removed:
             removed.append(snapshot.t)
             shutil.rmtree(tmp_path / "out")
         if removed and snapshot.t > removed[0]:
             assert (tmp_path / "out-001").is_dir()
 
-    monkeypatch.setattr(ExploreDisplay, "update", update)
+    monkeypatch.setattr(Display, "update", update)
     status, said, error = vedette("explore", "maps/room.yaml", "--robots", 1, "--out", "out")
     assert removed
     assert status == 0

@@ -20,7 +20,8 @@ from vedette.domains.search import prediction
 from vedette.record.summary import Traffic
 
 FIELDS = [
-    "schema_version", "completed", "outcome", "lost", "seed", "scenario", "coordination", "scheme", "fusion",
+    "schema_version", "completed", "outcome", "lost", "left", "seed", "scenario", "coordination", "scheme",
+    "fusion",
     "worth", "radio", "faults", "vehicles", "time_s",
     "found_s", "found_by", "declared_m", "target_m", "error_m",
     "declare", "counted", "detection_then", "outside_then",

@@ -18,6 +18,7 @@ GOLDEN: dict[str, Any] = {
     "completed": True,
     "outcome": "complete",
     "lost": [],
+    "left": [],
     "seed": 7,
     "robots": 2,
     "planner": "tours",

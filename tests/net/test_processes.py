@@ -207,6 +207,8 @@ def test_a_robot_that_is_stopped_says_goodbye(tmp_path: Path) -> None:
     check_finished(mission, 2)
     assert mission.recovery.noticed < SOON
     assert mission.diary.last(1).state == "left"
+    assert (mission.report.summary.lost, mission.report.summary.left) == ((), ("robot-2",))
+    assert mission.report.log.last.robots[1].fate == "left"
 
 
 @pytest.mark.slow

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 
 import pytest
 from msgspec.structs import replace
@@ -43,6 +44,19 @@ def test_agreement_is_told_of_two_that_answered_or_more(
     told: dict[int, Condition | None], verdict: str
 ) -> None:
     assert said(told)[-1].strip() == verdict
+
+
+def test_a_robot_that_said_goodbye_is_told_from_one_that_does_not_answer() -> None:
+    (link,) = FIRST.links
+    knows = replace(FIRST, links=(replace(link, robot=2, role="left"), replace(link, robot=3, role="down")))
+    told = {0: knows, 1: SECOND, 2: None, 3: None}
+    lines = said(told)
+    assert [line.split("│")[2].strip() for line in lines if re.match("│ robot-[34]", line)] == [
+        "left",
+        "no answer",
+    ]
+    assert lines[-1].strip().startswith("2 of 4 answered, 1 left; these are on one tree")
+    assert json.loads(team_status(told).to_json())["left"] == ["robot-3"]
 
 
 def test_a_tree_of_one_robot_is_told_in_the_singular() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -17,7 +18,7 @@ import pytest
 import zenoh
 
 from tests.support.net_team import TEAM, Ports, issue, real_time, wait_until
-from vedette.errors import InputError
+from vedette.errors import InputError, InputWarning
 from vedette.net import (
     Access,
     Inbox,
@@ -31,7 +32,7 @@ from vedette.net import (
 )
 from vedette.net.access import MOST_PAYLOAD, settings
 from vedette.net.credentials import credentials
-from vedette.net.endpoints import Endpoint, free_port, parse_endpoint
+from vedette.net.endpoints import Endpoint, check_connecting, check_listening, free_port, parse_endpoint
 from vedette.net.keys import issue_team
 from vedette.net.names import Names
 
@@ -524,6 +525,32 @@ def test_a_bad_endpoint_is_told_in_one_line(text: str) -> None:
 def test_bad_access_is_refused(bad: dict[str, object]) -> None:
     with pytest.raises(InputError):
         Access(**{"team": TEAM, "insecure": True, **bad})  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("host", ["robot-2.local", "no-such-host.invalid", "robot-2"])
+def test_a_name_that_does_not_resolve_yet_is_told_and_keeps_nobody_from_starting(
+    monkeypatch: pytest.MonkeyPatch, host: str
+) -> None:
+    def nobody(*_: object, **__: object) -> None:
+        raise socket.gaierror(socket.EAI_NONAME, "Name or service not known")
+
+    listen = f"tcp/127.0.0.1:{free_port()}"
+    monkeypatch.setattr(socket, "getaddrinfo", nobody)
+    with pytest.warns(InputWarning, match=f"tcp/{host}:7447: there is no host of that name yet; it is tried"):
+        check_connecting([parse_endpoint(f"tcp/{host}:7447", insecure=True)])
+    with pytest.raises(InputError, match=r"cannot listen on .*: there is no host of that name; correct it"):
+        check_listening([parse_endpoint(listen, insecure=True)])
+
+
+def test_a_robot_whose_mate_has_no_address_yet_starts_and_listens() -> None:
+    access = Access(
+        TEAM, (f"tcp/127.0.0.1:{free_port()}",), ("tcp/no-such-host.invalid:7447",), insecure=True
+    )
+    other = Access(TEAM, connect=access.listen, insecure=True)
+    with pytest.warns(InputWarning, match="no host of that name yet"):
+        a = Transport(access, 0)
+    with a, Transport(other, 1) as b:
+        wait_until(lambda: a.peers == {1} and b.peers == {0})
 
 
 def test_a_free_port_can_be_listened_on() -> None:

@@ -99,11 +99,19 @@ def test_a_crash_that_the_transport_reports_is_repaired_and_counted_within_half_
     assert net.run_until_whole(2.0) < 0.5
 
 
+def role_of(net: Network, robot: int, mate: int) -> str:
+    node = net.nodes[robot]
+    return {link.robot: link.role for link in node.overlay.status(node.clock(net.now)).links}[mate]
+
+
 def test_a_goodbye_is_believed_at_once() -> None:
     net = whole(4, CHAIN)
     net.leave(3)
     assert net.run_until_whole(2.0) < 0.5
     assert {place.size for place in net.places().values()} == {3}
+    net.crash(0)
+    net.run(2 * LEASE)
+    assert (role_of(net, 2, 3), role_of(net, 1, 0)) == ("left", "down")
 
 
 def test_after_a_partition_the_higher_stamp_wins_and_its_side_sees_no_new_epoch() -> None:

@@ -20,7 +20,7 @@ DOCS = ROOT / "docs" / "outputs.md"
 
 def _summary(**changes: object) -> ExploreSummary:
     figures: dict[str, object] = {
-        "completed": True, "outcome": Outcome.COMPLETE, "lost": (), "seed": 3, "robots": 2,
+        "completed": True, "outcome": Outcome.COMPLETE, "lost": (), "left": (), "seed": 3, "robots": 2,
         "planner": "tours",
         "scheme": "token", "fusion": "evidence", "world": "office-3", "radio": "12,3", "faults": None,
         "time_s": 0.1 + 0.2, "t50_s": 10.0,

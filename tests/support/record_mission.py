@@ -71,6 +71,7 @@ def mission(
     at = [(start[0] + 0.7 * i, start[1], 0.0) for i in range(len(specs))]
     plans: list[list[Point]] = [[] for _ in specs]
     reachable = len(_fill(ways, _coarse_cell(at[0], frame))) * _COARSE**2
+    driven = [0.0] * len(specs)
     t = 0.0
     while True:
         dead = {kill[0]} if kill and t >= kill[1] else set()
@@ -93,6 +94,7 @@ def mission(
                 path=np.array([at[i][:2], *plans[i]]) if plans[i] and i not in dead else np.empty((0, 2)),
                 name=spec.name,
                 goal=plans[i][-1] if plans[i] and i not in dead else None,
+                driven=driven[i],
             )
             for i, spec in enumerate(specs)
         )
@@ -104,7 +106,8 @@ def mission(
         t += period
         for i, spec in enumerate(specs):
             if i not in dead:
-                at[i] = _drive(at[i], plans[i], spec.speed * period)
+                came, at[i] = at[i], _drive(at[i], plans[i], spec.speed * period)
+                driven[i] += float(np.hypot(at[i][0] - came[0], at[i][1] - came[1]))
 
 
 def scene(name: str, frame: GridFrame, planning: GridFrame, robots: Sequence[str]) -> ExploreScene:

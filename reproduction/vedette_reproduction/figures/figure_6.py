@@ -158,5 +158,5 @@ def _legend(figure: Figure, mission: ReproducedMission, width: float) -> None:
             label="will be observed by the team (the stronger, the likelier)",
         ),
     ]
-    handles = [*(badge(i, True) for i in range(len(names))), *signs]
+    handles = [*(badge(i) for i in range(len(names))), *signs]
     legend_line(figure, _MARGIN, 0.22, handles, [*names, *(str(sign.get_label()) for sign in signs)])

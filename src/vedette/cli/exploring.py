@@ -19,7 +19,7 @@ from vedette.missions.explore.assemble import FUSIONS
 from vedette.missions.pairs import SCHEME
 from vedette.negotiation import SCHEMES
 from vedette.number import many
-from vedette.record.explore.live import ExploreDisplay
+from vedette.record.explore.live import explore_display
 from vedette.record.explore.mcap import ExploreMcapWriter
 from vedette.record.explore.outputs import write_outputs
 from vedette.record.explore.summary import ExploreSummary
@@ -149,4 +149,4 @@ def closing(summary: ExploreSummary, folder: Path) -> list[str]:
 
 
 LEAVES = (RECORD, "summary.json", "timing.json", "map.yaml", "map.pgm", "progress.png", "curves.png")
-EXPLORING = Kind(ExploreDisplay, ExploreMcapWriter, write_outputs, closing, LEAVES)
+EXPLORING = Kind(explore_display, ExploreMcapWriter, write_outputs, closing, LEAVES)

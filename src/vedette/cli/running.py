@@ -87,7 +87,8 @@ def end(summary: MissionSummary, lines: Sequence[str], as_json: bool) -> NoRetur
     if as_json:
         click.echo(summary.to_json(), nl=False)
     else:
-        lost = [f"lost on the way: {', '.join(summary.lost)}"] if summary.lost else []
+        gone = (("lost", summary.lost), ("left", summary.left))
+        lost = [f"{fate} on the way: {', '.join(names)}" for fate, names in gone if names]
         why = [] if outcome.completed else [f"why it ended: {outcome.meaning}"]
         click.echo("\n".join([*lines, *lost, *why]))
     raise SystemExit(outcome.status)

@@ -6,16 +6,16 @@ import errno
 import ipaddress
 import re
 import socket
+import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from vedette.errors import InputError
+from vedette.errors import InputError, InputWarning
 
 SECURE, INSECURE = "tls", "tcp"
 _FORM = re.compile(r"(?P<protocol>[a-z0-9-]+)/(?P<host>\[[0-9A-Fa-f:.]+\]|[^\s/:\[\]#?]+):(?P<port>[0-9]+)")
 _NAME = re.compile(r"(?!-)[A-Za-z0-9_-]{1,63}(?:\.[A-Za-z0-9_-]{1,63})*\.?")
-_COMES_LATER = ".local"  # names that exist only while their host is up
 
 
 @dataclass(frozen=True)
@@ -76,21 +76,22 @@ def check_listening(endpoints: Iterable[Endpoint]) -> None:
 
 
 def check_connecting(endpoints: Iterable[Endpoint]) -> None:
-    """Make sure that no host is misspelt; one that merely cannot be reached yet is tried for ever.
+    """Look whether each host is known; one that is not, or cannot be reached, is tried again for ever.
 
     Raises:
-        InputError: the name of a host does not exist, or is the address to listen on everywhere.
+        InputError: a host is the address to listen on everywhere.
+
+    Warns:
+        InputWarning: there is no host of that name now; it may be misspelt, or not up yet.
     """
     for endpoint in endpoints:
         if endpoint.host in ("0.0.0.0", "::"):
             raise InputError(f"cannot connect to {endpoint}: name the other robot's host")
-        if endpoint.host.rstrip(".").endswith(_COMES_LATER):
-            continue
         try:
             _resolve(endpoint)
-        except socket.gaierror as error:
-            if error.errno == socket.EAI_NONAME:
-                raise InputError(f"cannot connect to {endpoint}: {_reason(error)}") from error
+        except socket.gaierror:
+            text = f"{endpoint}: there is no host of that name yet; it is tried again until there is"
+            warnings.warn(text, InputWarning, stacklevel=4)
 
 
 def free_port() -> int:

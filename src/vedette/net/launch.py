@@ -137,6 +137,10 @@ class TeamProcesses:
         """Tell whether a robot's process has not ended."""
         return self.processes[robot].poll() is None
 
+    def left(self, robot: int) -> bool:
+        """Tell whether a robot's process has ended in good order."""
+        return self.processes[robot].poll() == 0
+
     def failure(self, robot: int) -> str | None:
         """Return what a process that failed said last; None if it runs, was stopped, or was killed."""
         status = self.processes[robot].poll()

@@ -40,12 +40,20 @@ class TeamStatus(Figures):
     """Everything that was told, by robot's name; None for one that did not answer."""
 
     robots: Mapping[str, Condition | None]
+    left: tuple[str, ...]  # robots that did not answer, and had said goodbye to others
+
+
+def _left(told: Mapping[int, Condition | None]) -> list[int]:
+    """Return who does not answer, but has said goodbye to somebody who does."""
+    goodbyes = {link.robot for said in told.values() if said for link in said.links if link.role == "left"}
+    return [robot for robot, said in told.items() if said is None and robot in goodbyes]
 
 
 def team_status(told: Mapping[int, Condition | None]) -> TeamStatus:
     """Return what ``vedette status --json`` prints: robots by their numbers, which count from 1."""
     return TeamStatus(
-        robots={robot_name(robot): None if said is None else _numbered(said) for robot, said in told.items()}
+        robots={robot_name(robot): None if said is None else _numbered(said) for robot, said in told.items()},
+        left=tuple(map(robot_name, _left(told))),
     )
 
 
@@ -70,8 +78,10 @@ def status_table(told: Mapping[int, Condition | None]) -> RenderableType:
     agents = Table(title="agents", title_justify="left")
     for column in ("robot", "state", "known", "map", "tree", "parent", "rounds", "dropped"):
         agents.add_column(column)
+    gone = _left(told)
     for robot, said in told.items():
-        agents.add_row(robot_name(robot), *(["no answer"] if said is None else _row(said, digest)))
+        silent = "left" if robot in gone else "no answer"
+        agents.add_row(robot_name(robot), *([silent] if said is None else _row(said, digest)))
     links = Table(title="links", title_justify="left")
     for column in ("from", "to", "role", "loss", "round trip", "clock", "last heard"):
         links.add_column(column)
@@ -114,7 +124,8 @@ def _verdict(told: Mapping[int, Condition | None]) -> str:
     answered = [said for said in told.values() if said is not None]
     if not answered:
         return "none answered"
-    count = f"{len(answered)} of {len(told)} answered"
+    gone = _left(told)
+    count = f"{len(answered)} of {len(told)} answered" + (f", {len(gone)} left" if gone else "")
     if len(answered) == 1:  # there is nobody to agree with
         return count
     trees = len({said.number for said in answered})

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Generic, Protocol, TypeVar
 
 from vedette.errors import InputError
@@ -17,14 +17,22 @@ from vedette.net.report import Condition, SpreadReport, read_report
 from vedette.net.transport import Operator, Published
 from vedette.outcome import Outcome
 from vedette.record.links import Link, links_of
+from vedette.record.log import DEAD, LEFT, VehicleSample
 from vedette.record.summary import Spread as Statistics
 from vedette.record.summary import Timing
 
 STARTING = 60.0  # a robot that has not reported after so long is lost [s]
 SILENT = 10.0  # one that reported before and has been silent for so long is not waited for [s]
-DEAD = "dead"
 ReportT_co = TypeVar("ReportT_co", covariant=True)
+SampleT = TypeVar("SampleT", bound=VehicleSample)
 Links = Sequence[Link] | None
+Fates = Sequence[str | None]
+"""By robot: DEAD or LEFT, None while it takes part."""
+
+
+def as_it_is(sample: SampleT, fate: str | None) -> SampleT:
+    """Return what a robot last told of itself, with what has become of it since."""
+    return sample if fate is None else replace(sample, alive=False, state=fate)
 
 
 class Watcher(Protocol[ReportT_co]):
@@ -37,10 +45,10 @@ class Watcher(Protocol[ReportT_co]):
     def take(self, condition: Condition, content: bytes) -> None:
         """Take a robot's report; ValueError if its content makes no sense."""
 
-    def look(self, now: float, alive: Sequence[bool], links: Links) -> None:
+    def look(self, now: float, fates: Fates, links: Links) -> None:
         """Measure the mission; ``links`` None: it is too early to say that one is missing."""
 
-    def finish(self, now: float, alive: Sequence[bool], links: Links) -> None:
+    def finish(self, now: float, fates: Fates, links: Links) -> None:
         """Measure how it ended."""
 
     def over(self, now: float, heard: Sequence[Condition], silent: bool) -> Outcome | None:
@@ -89,10 +97,12 @@ class TeamWatch(Generic[ReportT_co]):
             self.befall(self.team.time)
             outcome = self._over()
             if self._first is not None and self.now >= next_look:
-                watcher.look(self.now, self._alive, self._links())
+                watcher.look(self.now, self._fates, self._links())
                 next_look = self.now + watcher.period
         self.outcome = outcome
-        watcher.finish(self.now, [i in self._heard_lately for i in range(self.plan.size)], self._links())
+        heard = self._heard_lately
+        fates = [fate or (None if i in heard else DEAD) for i, fate in enumerate(self._fates)]
+        watcher.finish(self.now, fates, self._links())
         return watcher.report(outcome, self._timing(time.monotonic() - self._began), self.now)
 
     @property
@@ -162,8 +172,10 @@ class TeamWatch(Generic[ReportT_co]):
         return [i for i, digest in held.items() if digest != most[0][0]]
 
     @property
-    def _alive(self) -> list[bool]:
-        return [self.team.runs(i) for i in range(self.plan.size)]
+    def _fates(self) -> list[str | None]:
+        """What has become of each robot: who ends in good order has said goodbye."""
+        n = range(self.plan.size)
+        return [None if self.team.runs(i) else LEFT if self.team.left(i) else DEAD for i in n]
 
     @property
     def _starting(self) -> bool:

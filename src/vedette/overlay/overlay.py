@@ -253,7 +253,7 @@ class Overlay:
         )
 
     def _link_status(self, peer: Peer, now: float) -> LinkStatus:
-        role = "other" if peer.usable else "down"
+        role = "other" if peer.usable else "left" if peer.said_goodbye else "down"
         if peer.robot in self.place.neighbours:
             role = "parent" if peer.robot == self.place.parent else "child"
         silent = None if peer.hello is None else max(now - peer.greeted, 0.0)

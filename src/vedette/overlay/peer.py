@@ -139,6 +139,11 @@ class Peer:
         return COSTS[self._level][2]
 
     @property
+    def said_goodbye(self) -> bool:
+        """Tell whether the latest it said is that it leaves."""
+        return self.hello is not None and bool(self.hello.flags & BYE)
+
+    @property
     def usable(self) -> bool:
         """Tell whether both ends would use the link."""
         return self.up and self.hello is not None and bool(self.hello.flags & UP)

@@ -24,7 +24,7 @@ class LinkStatus:
     """A neighbour and the link to it, for people."""
 
     robot: int
-    role: str  # "parent", "child", "other" or "down"
+    role: str  # "parent", "child", "other", "down", or "left" after its goodbye
     loss: float  # share of hellos from it that do not arrive
     offset: float | None  # its clock minus ours [s]
     round_trip: float | None  # [s]

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from vedette.agent.effects import TrafficKind as Kind
 from vedette.agent.rounds import Rounds
+from vedette.record.log import VehicleSample
 from vedette.record.summary import Traffic
 
 
@@ -40,7 +41,8 @@ class RobotFigures:
 class TeamFigures:
     """The same of a team, as summaries hold them."""
 
-    lost: tuple[str, ...]  # robots that were not alive in the end
+    lost: tuple[str, ...]  # robots that were lost on the way
+    left: tuple[str, ...]  # robots that said goodbye before the end
     path_m: Mapping[str, float]
     rounds: int  # that the robot with the most of them has ended with a decision
     sweeps: int  # in these
@@ -49,14 +51,17 @@ class TeamFigures:
     bytes: Mapping[str, Traffic]
 
     @classmethod
-    def of(cls, names: Sequence[str], figures: Sequence[RobotFigures], alive: Sequence[bool]) -> TeamFigures:
-        """Return the figures of a team from those of its robots, and which of them live."""
+    def of(
+        cls, names: Sequence[str], figures: Sequence[RobotFigures], samples: Sequence[VehicleSample]
+    ) -> TeamFigures:
+        """Return the figures of a team from those of its robots, and how these are in the end."""
         team = dict(zip(names, figures, strict=True))
         rounds = [each.rounds for each in figures]
         leader = max(rounds, key=lambda each: each.rounds)
         bounded = sum(each.bounded for each in rounds)
         return cls(
-            lost=tuple(name for name, lives in zip(team, alive, strict=True) if not lives),
+            lost=tuple(name for name, each in zip(team, samples, strict=True) if each.fate == "lost"),
+            left=tuple(name for name, each in zip(team, samples, strict=True) if each.fate == "left"),
             path_m={name: each.travelled_m for name, each in team.items()},
             rounds=leader.rounds,
             sweeps=leader.sweeps,

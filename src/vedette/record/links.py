@@ -43,7 +43,7 @@ def links_of(statuses: Sequence[Status | None]) -> tuple[Link, ...]:
         for i, status in enumerate(statuses)
         if status is not None
         for link in status.links
-        if link.role != "down"
+        if link.role not in ("down", "left")
     }
     return tuple(_link(a, b, told[a, b], told[b, a]) for a, b in sorted(told) if a < b and (b, a) in told)
 

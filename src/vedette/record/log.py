@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats: TypeAlias = NDArray[np.float64]
+DEAD, LEFT = "dead", "left"  # states of robots that are no longer of the team
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,9 +27,19 @@ class VehicleSample:
     x: float  # [m], team frame
     y: float
     heading: float  # [rad]
-    state: str  # the agent's word for what it does; "dead" for one that was lost
-    alive: bool
+    state: str  # the agent's word for what it does; DEAD: it was lost, LEFT: it said goodbye
+    alive: bool  # neither
     path: Floats  # (k, 2) where its present plan takes it [m], team frame; k may be 0
+
+    @property
+    def left(self) -> bool:
+        """It said goodbye and is no longer of the team."""
+        return not self.alive and self.state == LEFT
+
+    @property
+    def fate(self) -> str:
+        """What became of it: ``lost``, ``left``, or nothing while it takes part."""
+        return "" if self.alive else "left" if self.left else "lost"
 
 
 class Timed(Protocol):

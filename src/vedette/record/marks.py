@@ -9,14 +9,17 @@ from rich.color import Color
 from rich.style import Style
 
 from vedette.record import palette
+from vedette.record.log import VehicleSample
 
-_SIGNS = "123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ"
-LOST = "×"
+_SIGNS = "123456789ABCDEFGHIJKLMNOPQRSTUVWXYZαβγδεζηθικλμνξπρστφχψω"
+LOST, LEFT = "×", "○"
 
 
-def sign(index: int, alive: bool) -> str:
-    """Return a robot's sign, one character."""
-    return _SIGNS[index % len(_SIGNS)] if alive else LOST
+def sign(index: int, vehicle: VehicleSample | None = None) -> str:
+    """Return a robot's sign, one character; None: it takes part."""
+    if vehicle is None or vehicle.alive:
+        return _SIGNS[index % len(_SIGNS)]
+    return LEFT if vehicle.left else LOST
 
 
 def badge(index: int) -> Style:
@@ -29,7 +32,7 @@ def together(parts: Sequence[Sequence[int]]) -> str:
     """Say whether a team is together, or which robots are, by their signs: ``apart: {1,2} {3}``."""
     if len(parts) < 2:
         return "together"
-    return "apart: " + " ".join("{" + ",".join(sign(i, True) for i in part) + "}" for part in parts)
+    return "apart: " + " ".join("{" + ",".join(sign(i) for i in part) + "}" for part in parts)
 
 
 @lru_cache(maxsize=4096)

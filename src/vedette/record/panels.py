@@ -1,19 +1,19 @@
-"""Pictures of several stages: panels, a heading over them, and a legend that names the team under them."""
+"""Pictures of several stages: panels, and a heading over them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from vedette.record.canvas import DPI
-from vedette.record.log import VehicleSample
-from vedette.record.signs import FAINT, badge, legend_line
+from vedette.record.lettering import shortened, text_width
+from vedette.record.signs import FAINT
 
 GAP, MARGIN, TOP = 0.14, 0.2, 0.72  # between panels, at the sides, over the panels [inch]
-LINE, TITLE = 0.25, 0.3  # height of a line of the legend, and of a panel's title [inch]
+TITLE = 0.3  # height of a panel's title [inch]
 STACKED = 2.2  # panels of an aspect above that stand one above the other
 
 
@@ -71,29 +71,9 @@ class Panels:
 
     def head(self, figure: Figure, title: str, beside: str = "") -> None:
         """Write a title over the panels, and at the right what else there is to say."""
-        left, y = MARGIN / self.width, 1 - 0.2 / self.height
-        figure.text(left, y, title, fontsize=12, fontweight="bold", va="top")
+        left, y, room = MARGIN / self.width, 1 - 0.2 / self.height, self.width - 2 * MARGIN
         if beside:
+            beside = shortened(beside, 0.6 * room)
             figure.text(1 - left, y, beside, ha="right", va="top", color=FAINT)
-
-
-def per_row(width: float, longest: int, letter: float = 0.075) -> int:
-    """Return how many vehicles a line of the legend names: the longest name so long, a letter so wide."""
-    return max(1, int((width - 2 * MARGIN) / (0.5 + letter * longest)))
-
-
-def name_team(
-    figure: Figure, y: float, labels: Sequence[str], vehicles: Sequence[VehicleSample], row: int
-) -> float:
-    """Write lines of a legend that name the vehicles, so many in a row; return where the next one goes."""
-    badges = [badge(i, vehicle.alive) for i, vehicle in enumerate(vehicles)]
-    for first in range(0, len(badges), row):
-        some = slice(first, first + row)
-        legend_line(figure, MARGIN, y, badges[some], labels[some])
-        y -= LINE
-    return y
-
-
-def marked_lost(names: Sequence[str], vehicles: Sequence[VehicleSample]) -> list[str]:
-    """Return the vehicles' names, those of lost ones marked."""
-    return [name + ("" if each.alive else " (lost)") for name, each in zip(names, vehicles, strict=True)]
+            room -= text_width(beside) + GAP
+        figure.text(left, y, shortened(title, room, 12, True), fontsize=12, fontweight="bold", va="top")

@@ -35,23 +35,34 @@ class Disc(NamedTuple):
     ahead: float  # of the disc's middle: the nose
     font: float
 
+    def among(self, team: int) -> Disc:
+        """Return the sizes in a team of so many: smaller ones where many would cover each other."""
+        scale = min(1.0, (8 / team) ** 0.25)
+        return Disc(*(scale * size for size in self))
+
 
 VEHICLE, ROBOT = Disc(10, 6.5, 6.6, 6.5), Disc(11, 7, 7.2, 7)
 
 
-def draw_vehicle(axes: Axes, index: int, vehicle: VehicleSample) -> None:
-    """Draw a numbered disc with a nose, and the plan ahead of it; a cross if it is lost."""
+def draw_vehicle(axes: Axes, index: int, vehicle: VehicleSample, disc: Disc = VEHICLE) -> None:
+    """Draw a numbered disc with a nose, and the plan ahead of it; another sign if it is gone."""
     if vehicle.alive:
         axes.plot(*vehicle.path.T, color="white", lw=2.4, alpha=0.8, zorder=5)
         colour = palette.unit(palette.robot_colour(index))
         axes.plot(*vehicle.path.T, color=colour, lw=1.4, ls=DASHES, zorder=5)
-    draw_disc(axes, index, vehicle, VEHICLE)
+    draw_disc(axes, index, vehicle, disc)
 
 
 def draw_disc(axes: Axes, index: int, vehicle: VehicleSample, disc: Disc) -> None:
-    """Draw a numbered disc with a nose that points where the vehicle looks; a cross if it is lost."""
+    """Draw a numbered disc with a nose that points where the vehicle looks.
+
+    A cross if it is lost, a ring if it has left.
+    """
     rgb = palette.robot_colour(index)
     colour, at = palette.unit(rgb), (vehicle.x, vehicle.y)
+    if vehicle.left:
+        axes.plot(*at, "o", color="white", mec=colour, mew=1.6, ms=0.8 * disc.size, zorder=6)
+        return
     if not vehicle.alive:
         axes.plot(*at, "X", color=colour, mec="white", mew=0.8, ms=disc.size, zorder=6)
         return
@@ -94,9 +105,12 @@ def map_signs() -> list[Line2D | Patch]:
     ]
 
 
-def badge(index: int, alive: bool) -> tuple[Line2D, ...]:
-    """Return a vehicle's sign in a legend."""
+def badge(index: int, vehicle: VehicleSample | None = None) -> tuple[Line2D, ...]:
+    """Return a vehicle's sign in a legend; None: it takes part."""
     rgb = palette.robot_colour(index)
+    if vehicle is not None and vehicle.left:
+        return (Line2D((), (), ls="", marker="o", ms=8, color="white", mec=palette.unit(rgb), mew=1.6),)
+    alive = vehicle is None or vehicle.alive
     disc = Line2D((), (), ls="", marker="o" if alive else "X", ms=10, mec="white", color=palette.unit(rgb))
     if not alive:
         return (disc,)

@@ -38,7 +38,8 @@ class MissionSummary(Figures):
 
     completed: bool
     outcome: Outcome
-    lost: tuple[str, ...]  # robots that were not alive in the end
+    lost: tuple[str, ...]  # robots that were lost on the way
+    left: tuple[str, ...]  # robots that said goodbye before the end
     seed: int
 
 

@@ -9,11 +9,11 @@ import numpy as np
 from vedette.agent import FlightBehaviour
 from vedette.agent.flight import Itinerary
 from vedette.record.figures import RobotFigures, RoundFigures, traffic_of
+from vedette.record.log import DEAD
 from vedette.record.summary import Setting
 from vedette.sim.setup import Setup
 from vedette.sim.simulation import Simulation
 
-DEAD = "dead"
 NOWHERE = np.empty((0, 2))  # the path of one that goes nowhere
 
 

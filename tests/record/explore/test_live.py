@@ -11,9 +11,9 @@ import pytest
 from rich.console import Console
 
 from tests.support.record_mission import frames, mission, rooms, scene
-from vedette.record.explore.live import ExploreDisplay
+from vedette.record.explore.live import explore_display
 from vedette.record.explore.log import ExploreSnapshot
-from vedette.record.explore.screen import screen
+from vedette.record.explore.screen import HalfBlocks, screen
 from vedette.record.links import Link
 from vedette.record.marks import together
 from vedette.team import PlatformSpec
@@ -43,7 +43,7 @@ def _text(console: Console) -> str:
 
 
 def _picture(console: Console, snapshot: ExploreSnapshot) -> list[str]:
-    console.print(screen(console, SCENE, snapshot, [1.5, 2.5]))
+    console.print(screen(SCENE, console, snapshot))
     return _text(console).splitlines()
 
 
@@ -51,7 +51,7 @@ def test_without_a_terminal_there_is_a_line_every_ten_seconds_and_at_last(
     snapshots: list[ExploreSnapshot],
 ) -> None:
     console = Console(file=io.StringIO(), width=40)
-    with ExploreDisplay(SCENE, console=console) as view:
+    with explore_display(SCENE, console=console) as view:
         for snapshot in snapshots:
             view.update(snapshot)
     lines = _text(console).splitlines()
@@ -79,7 +79,7 @@ def test_the_view_says_whether_the_team_is_together_where_links_are_simulated(
     linked, beside = (_with_links(snapshots[0], Link(0, 1, on_tree, 0.0)) for on_tree in (True, False))
     for snapshot, team in ((ideal, None), (linked, "together"), (beside, "apart"), (alone, "apart")):
         console = _terminal() if terminal else Console(file=io.StringIO(), width=200)
-        with ExploreDisplay(SCENE, console=console) as view:
+        with explore_display(SCENE, console=console) as view:
             view.update(snapshot)
         said = re.findall(r"together|apart: \{1\} \{2\}|apart", _text(console))
         assert set(said) == ({team.replace("apart", "apart: {1} {2}")} if team else set())
@@ -88,7 +88,7 @@ def test_the_view_says_whether_the_team_is_together_where_links_are_simulated(
 @pytest.mark.parametrize("terminal", [True, False])
 def test_a_quiet_view_prints_nothing(snapshots: list[ExploreSnapshot], terminal: bool) -> None:
     console = Console(file=io.StringIO(), force_terminal=terminal)
-    with ExploreDisplay(SCENE, quiet=True, console=console) as view:
+    with explore_display(SCENE, quiet=True, console=console) as view:
         for snapshot in snapshots:
             view.update(snapshot)
     assert _text(console) == ""
@@ -99,7 +99,7 @@ def test_a_terminal_gets_at_most_ten_pictures_a_second_and_the_last(
 ) -> None:
     console = _terminal()
     ticks = itertools.count()
-    with ExploreDisplay(SCENE, console=console, clock=lambda: next(ticks) / 1000) as view:
+    with explore_display(SCENE, console=console, clock=lambda: next(ticks) / 1000) as view:
         for snapshot in snapshots:  # 24 snapshots in less than 0.1 s
             view.update(snapshot)
     pictures = _text(console).count("covered")
@@ -111,7 +111,7 @@ def test_an_interruption_leaves_the_last_picture_and_the_cursor(snapshots: list[
     console = _terminal()
 
     def interrupted() -> None:
-        with ExploreDisplay(SCENE, console=console) as view:
+        with explore_display(SCENE, console=console) as view:
             view.update(snapshots[3])
             raise KeyboardInterrupt
 
@@ -130,7 +130,8 @@ def test_the_picture_never_exceeds_the_terminal_width_and_shows_every_robot(
     assert max(len(line) for line in lines) <= size[0]
     if size[0] >= 60:
         text = "\n".join(lines)
-        for word in ("ada", "driving", "bob", "dead", "1.5", "2.5"):
+        ways = [f"{robot.driven:.1f}" for robot in snapshots[-1].robots]
+        for word in ("ada", "driving", "bob", "dead", *ways):
             assert word in text
     if size[1] >= 24:
         assert len(lines) <= size[1]
@@ -143,9 +144,11 @@ def test_without_colours_walls_and_robots_are_drawn_with_characters(snapshots: l
 
 
 def test_the_map_has_the_building_the_right_way_up(snapshots: list[ExploreSnapshot]) -> None:
-    lines = _picture(_terminal(130, 40, colours=False), snapshots[0])
-    building = [line[2:72] for line in lines[3:-1]]
+    console = _terminal(130, 40, colours=False)
+    console.print(HalfBlocks.of(console, SCENE, snapshots[0], (24, 70)))
+    building = _text(console).splitlines()
     robot = snapshots[0].robots[0]
     row = next(i for i, line in enumerate(building) if "1" in line)
+    assert (len(building), len(building[0])) == (24, 70)
     assert row == pytest.approx((1 - robot.y / 8.0) * len(building), abs=1)
     assert building[row].index("1") == pytest.approx(robot.x / 12.0 * 70, abs=1)

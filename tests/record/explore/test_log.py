@@ -71,6 +71,7 @@ def test_curves_and_path_lengths_hold_every_snapshot(snapshots: list[ExploreSnap
     total = 0.0
     for before, after in pairwise(snapshots):
         total += np.hypot(after.robots[1].x - before.robots[1].x, after.robots[1].y - before.robots[1].y)
+    assert log.path_length.tolist() == [[robot.driven for robot in s.robots] for s in snapshots]
     assert log.path_length[0].tolist() == [0.0, 0.0]
     assert log.path_length[-1, 1] == pytest.approx(total)
 

@@ -33,8 +33,8 @@ def _summary(log: ExploreLog, **changes: object) -> ExploreSummary:
     names = list(log.scene.vehicles)
     traffic = {name: Traffic() for name in names}
     figures: dict[str, object] = {
-        "completed": True, "outcome": Outcome.COMPLETE, "lost": (), "seed": 3, "robots": len(names),
-        "planner": "tours",
+        "completed": True, "outcome": Outcome.COMPLETE, "lost": (), "left": (), "seed": 3,
+        "robots": len(names), "planner": "tours",
         "scheme": "token", "fusion": "evidence", "world": log.scene.name, "radio": None, "faults": None,
         "apart_s": 0.0, "time_s": float(log.times[-1]),
         "t50_s": 5.0, "t90_s": 12.0, "t95_s": 15.0, "t99_s": None, "auc_s": 12.0, "coverage": 0.98,

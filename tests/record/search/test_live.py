@@ -9,6 +9,7 @@ import pytest
 from rich.console import Console
 
 from tests.support.search_missions import case
+from vedette.record.board import fitted
 from vedette.record.search.live import line, screen
 from vedette.record.search.log import SearchSample, SearchScene, SearchSnapshot
 
@@ -39,15 +40,19 @@ def test_a_picture_fits_its_terminal(size: tuple[int, int]) -> None:
     shown = lines(*size)
     assert max(map(len, shown)) <= size[0]
     assert len(shown) <= max(size[1], 9)
+    assert any("Ctrl-C" in row for row in shown)
 
 
 def test_the_picture_has_north_up_and_the_likeliest_darkest() -> None:
     shown = lines(100, 40)
     text = "\n".join(shown)
     assert all(said in text for said in ("12.0 s", "3.20 nat", "25.0 %", "vehicle-1", "flying", "1100, 700"))
-    area = [row[2:-2].rstrip() for row in shown[3:-5]]
-    assert {row[60:] for row in area[:6]} == {"█" * 12}  # a sixth of 72 columns, a quarter of 24 lines
-    assert not any("█" in row for row in area[6:])
+    x0, x1, y0, y1 = SCENE.frame.extent
+    height, width = fitted((x0, y0, x1, y1), (29, 96))
+    area = [row[2:-2].rstrip() for row in shown[3 : 3 + height]]
+    edge = width - width // 6  # a sixth of the columns, a quarter of the lines
+    assert {row[edge:] for row in area[: height // 4]} == {"█" * (width // 6)}
+    assert not any("█" in row for row in area[height // 4 + 1 :])
     assert [k for k, row in enumerate(area) if "×" in row] == [len(area) - 1]
     row, column = next((k, row.index("1")) for k, row in enumerate(area) if "1" in row)
     assert row == pytest.approx(len(area) / 2, abs=1)

@@ -15,7 +15,7 @@ from vedette.maps import GridFrame
 from vedette.net.explore.content import view_of
 from vedette.net.explore.plan import ExplorePlan
 from vedette.net.report import Condition
-from vedette.net.team import DEAD, Links
+from vedette.net.team import Fates, Links, as_it_is
 from vedette.outcome import NO_PROGRESS, Outcome, together
 from vedette.record.explore.log import ExploreSnapshot, RobotSample
 from vedette.record.explore.observer import ExploreObserver, ExploreReport
@@ -55,13 +55,13 @@ class ExploreWatcher:
         self._views[condition.robot] = view_of(condition, content, self._frame, self._codec)
         self._ways[condition.robot] = condition.travelled
 
-    def look(self, now: float, alive: Sequence[bool], links: Links) -> None:
+    def look(self, now: float, fates: Fates, links: Links) -> None:
         """Measure the team's map."""
-        self._observer.look(now, self._seen(alive), links)
+        self._observer.look(now, self._seen(fates), links)
 
-    def finish(self, now: float, alive: Sequence[bool], links: Links) -> None:
+    def finish(self, now: float, fates: Fates, links: Links) -> None:
         """Measure it as it is in the end."""
-        self._observer.finish(now, self._seen(alive), links)
+        self._observer.finish(now, self._seen(fates), links)
 
     def over(self, now: float, heard: Sequence[Condition], silent: bool) -> Outcome | None:
         """Tell whether all are done and agree, or nobody gets on."""
@@ -86,10 +86,10 @@ class ExploreWatcher:
         """Return what ``vedette explore`` would."""
         return self._observer.report(outcome, timing)
 
-    def _seen(self, alive: Sequence[bool]) -> list[RobotView]:
+    def _seen(self, fates: Fates) -> list[RobotView]:
         return [
-            view if lives else replace(view, sample=replace(view.sample, alive=False, state=DEAD))
-            for view, lives in zip(self._views, alive, strict=True)
+            replace(view, sample=as_it_is(view.sample, fate))
+            for view, fate in zip(self._views, fates, strict=True)
         ]
 
 

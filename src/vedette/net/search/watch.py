@@ -10,7 +10,7 @@ import numpy as np
 from vedette.missions.search.assemble import SearchTeam
 from vedette.net.report import Condition
 from vedette.net.search.content import view_of
-from vedette.net.team import DEAD, Links
+from vedette.net.team import Fates, Links, as_it_is
 from vedette.outcome import Outcome
 from vedette.record.figures import RobotFigures
 from vedette.record.log import Floats, Sink
@@ -57,14 +57,14 @@ class SearchWatcher:
         self._views[condition.robot] = view
         self._looks[condition.robot].update(looks)
 
-    def look(self, now: float, alive: Sequence[bool], links: Links) -> None:
+    def look(self, now: float, fates: Fates, links: Links) -> None:
         """Measure the search, once a step; steps that nobody told of in time are measured late."""
         while self._observer.log.due(now):
-            self._observer.look(self._seen(alive))
+            self._observer.look(self._seen(fates))
 
-    def finish(self, now: float, alive: Sequence[bool], links: Links) -> None:
+    def finish(self, now: float, fates: Fates, links: Links) -> None:
         """Measure how it ended."""
-        self._observer.finish(now, self._seen(alive))
+        self._observer.finish(now, self._seen(fates))
 
     def over(self, now: float, heard: Sequence[Condition], silent: bool) -> Outcome | None:
         """Tell whether somebody has declared the target found."""
@@ -75,8 +75,8 @@ class SearchWatcher:
         """Return what ``vedette search`` would."""
         return self._observer.report(outcome, timing, now, self._curves)
 
-    def _seen(self, alive: Sequence[bool]) -> list[SearchView]:
+    def _seen(self, fates: Fates) -> list[SearchView]:
         return [
-            view if lives else replace(view, sample=replace(view.sample, alive=False, state=DEAD))
-            for view, lives in zip(self._views, alive, strict=True)
+            replace(view, sample=as_it_is(view.sample, fate))
+            for view, fate in zip(self._views, fates, strict=True)
         ]

@@ -9,7 +9,7 @@ import numpy as np
 
 from vedette.missions.track.assemble import TrackTeam
 from vedette.net.report import Condition
-from vedette.net.team import DEAD, Links
+from vedette.net.team import Fates, Links, as_it_is
 from vedette.net.track.content import view_of
 from vedette.outcome import Outcome
 from vedette.record.figures import RobotFigures
@@ -48,14 +48,14 @@ class TrackWatcher:
         """Take a vehicle's tracks."""
         self._views[condition.robot] = view_of(condition, content, self._prior)
 
-    def look(self, now: float, alive: Sequence[bool], links: Links) -> None:
+    def look(self, now: float, fates: Fates, links: Links) -> None:
         """Measure the tracks, once a step; steps that nobody told of in time are measured late."""
         while self._observer.log.due(now):
-            self._observer.look(self._seen(alive))
+            self._observer.look(self._seen(fates))
 
-    def finish(self, now: float, alive: Sequence[bool], links: Links) -> None:
+    def finish(self, now: float, fates: Fates, links: Links) -> None:
         """Measure how they are in the end."""
-        self._observer.finish(self._seen(alive))
+        self._observer.finish(self._seen(fates))
 
     def over(self, now: float, heard: Sequence[Condition], silent: bool) -> Outcome | None:
         """Tell whether the scenario's time is up."""
@@ -65,8 +65,8 @@ class TrackWatcher:
         """Return what ``vedette track`` would."""
         return self._observer.report(outcome, timing, now)
 
-    def _seen(self, alive: Sequence[bool]) -> list[TrackView]:
+    def _seen(self, fates: Fates) -> list[TrackView]:
         return [
-            view if lives else replace(view, sample=replace(view.sample, alive=False, state=DEAD))
-            for view, lives in zip(self._views, alive, strict=True)
+            replace(view, sample=as_it_is(view.sample, fate))
+            for view, fate in zip(self._views, fates, strict=True)
         ]

@@ -2,48 +2,32 @@
 
 from __future__ import annotations
 
-import math
 import time
 from collections.abc import Callable
+from functools import partial
 
-from rich.console import Console, RenderableType
+from rich.console import Console
 
 from vedette.record.display import Display
 from vedette.record.explore.log import ExploreScene, ExploreSnapshot
 from vedette.record.explore.screen import screen
 from vedette.record.marks import together
+from vedette.record.view import states
 
 
-class ExploreDisplay(Display[ExploreSnapshot]):
-    """Show each snapshot while the mission runs: a context manager, and a ``Sink``."""
-
-    def __init__(
-        self,
-        scene: ExploreScene,
-        quiet: bool = False,
-        console: Console | None = None,
-        clock: Callable[[], float] = time.monotonic,
-    ) -> None:
-        """Prepare a view of a mission; the ``clock`` [s] only limits the pictures a second."""
-        travelled = self._travelled = list[float]()
-
-        def picture(console: Console, snapshot: ExploreSnapshot) -> RenderableType:
-            return screen(console, scene, snapshot, travelled)
-
-        super().__init__(picture, _line, quiet, console, clock)
-
-    def update(self, snapshot: ExploreSnapshot) -> None:
-        """Add up what each robot travelled, and show the snapshot, or not if one was shown just before."""
-        before = snapshot if self._last is None else self._last
-        self._travelled += [0.0] * (len(snapshot.robots) - len(self._travelled))
-        for i, (then, now) in enumerate(zip(before.robots, snapshot.robots, strict=True)):
-            self._travelled[i] += math.hypot(now.x - then.x, now.y - then.y)
-        super().update(snapshot)
+def explore_display(
+    scene: ExploreScene,
+    quiet: bool = False,
+    console: Console | None = None,
+    clock: Callable[[], float] = time.monotonic,
+) -> Display[ExploreSnapshot]:
+    """Return the live view of a mission; the ``clock`` [s] only limits the pictures a second."""
+    return Display(partial(screen, scene), partial(line, scene), quiet, console, clock)
 
 
-def _line(snapshot: ExploreSnapshot) -> str:
+def line(scene: ExploreScene, snapshot: ExploreSnapshot) -> str:
     """Return a snapshot in one line."""
-    robots = "  ".join(f"{robot.name} {robot.state}" for robot in snapshot.robots)
+    robots = states(scene.vehicles, snapshot.robots)
     known, covered = 100 * snapshot.known_fraction, 100 * snapshot.coverage
     entropy = f"entropy {snapshot.entropy:.0f} nat"
     team = "" if snapshot.links is None else f"  {together(snapshot.parts)}"

@@ -38,6 +38,7 @@ class RobotSample(VehicleSample):
 
     name: str
     goal: tuple[float, float] | None  # where it is going [m], team frame
+    driven: float = 0.0  # the way that it has come [m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,6 +95,7 @@ class ExploreLog:
         self._budget = budget
         self._curves: list[tuple[float, float, float, float, float]] = []
         self._poses: list[list[tuple[float, float, float]]] = []
+        self._driven: list[list[float]] = []
         self._stored: list[_Packed] = []  # every `_stride`-th snapshot
         self._stored_bytes = 0
         self._stride = 1
@@ -119,6 +121,7 @@ class ExploreLog:
             )
         )
         self._poses.append([(robot.x, robot.y, robot.heading) for robot in snapshot.robots])
+        self._driven.append([robot.driven for robot in snapshot.robots])
         for sink in self._sinks:
             sink.update(snapshot)
 
@@ -158,10 +161,8 @@ class ExploreLog:
 
     @property
     def path_length(self) -> NDArray[np.float64]:
-        """``(T, n)`` distance that each robot has travelled, along straight lines between snapshots [m]."""
-        position = self.poses[:, :, :2]
-        steps = np.diff(position, axis=0, prepend=position[:1])
-        return np.asarray(np.cumsum(np.hypot(steps[..., 0], steps[..., 1]), axis=0))
+        """``(T, n)`` way that each robot has come [m]."""
+        return np.array(self._driven, dtype=np.float64).reshape(len(self), len(self.scene.vehicles))
 
     def snapshots(self) -> Iterator[ExploreSnapshot]:
         """Yield the stored snapshots in order, the last one added included; impacts to within 1/510."""

@@ -106,7 +106,7 @@ class ExploreObserver:
         unknown = int(np.count_nonzero(classes == UNKNOWN))
         return ExploreSnapshot(
             t=now,
-            robots=tuple(view.sample for view in self._views),
+            robots=tuple(replace(view.sample, driven=view.figures.travelled_m) for view in self._views),
             coverage=share,
             known_fraction=1.0 - unknown / classes.size,
             entropy=unknown * LN2,
@@ -138,7 +138,7 @@ class ExploreObserver:
     def summary(self, outcome: Outcome) -> ExploreSummary:
         """Return the figures of the mission, in simulated time; not before the first look."""
         progress, views = self._progress, self._views
-        team, alive = zip(*((view.figures, view.sample.alive) for view in views), strict=True)
+        team, samples = zip(*((view.figures, view.sample) for view in views), strict=True)
         time = progress.times[-1]
         wrong, known = map_errors(self._world, self.delivered_map())
         return ExploreSummary(
@@ -164,7 +164,7 @@ class ExploreObserver:
             apart_s=self.apart_s,
             left_out=self._left_out(),
             **vars(self._setting),
-            **vars(TeamFigures.of(self.log.scene.vehicles, team, alive)),
+            **vars(TeamFigures.of(self.log.scene.vehicles, team, samples)),
         )
 
     def _left_out(self) -> tuple[LeftOut, ...]:

@@ -15,7 +15,8 @@ from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save
 from vedette.record.explore.log import ExploreLog, ExploreSnapshot, RobotSample
 from vedette.record.explore.raster import Window, enlarge, known_window, paint
-from vedette.record.panels import LINE, MARGIN, STACKED, Panels, marked_lost, name_team, per_row
+from vedette.record.key import LINE, Key, badges, with_fate
+from vedette.record.panels import MARGIN, STACKED, Panels
 from vedette.record.signs import (
     DASHES,
     ROBOT,
@@ -80,8 +81,9 @@ def _panel(
     for i, robot in enumerate(stage.robots):
         _ways(axes, palette.unit(palette.robot_colour(i)), trails[:, i], robot)
     draw_links(axes, stage.robots, stage.links or ())
+    disc = ROBOT.among(len(stage.robots))
     for i, robot in enumerate(stage.robots):
-        draw_disc(axes, i, robot, ROBOT)
+        draw_disc(axes, i, robot, disc)
 
 
 def _ways(
@@ -101,7 +103,8 @@ def _ways(
 
 def _legend(figure: Figure, layout: Panels, last: ExploreSnapshot) -> None:
     """Explain robots, links, ways, cell classes and the impact's colour under the panels."""
-    y = name_team(figure, layout.lowest - 0.42, _labels(last), last.robots, _robots_a_row(layout.width, last))
+    team = _team(layout.width, last)
+    y = team.write(figure, MARGIN, layout.lowest - 0.42, badges(last.robots))
     if last.links is not None:
         explain(figure, MARGIN, y, link_signs())
         y -= LINE
@@ -109,18 +112,13 @@ def _legend(figure: Figure, layout: Panels, last: ExploreSnapshot) -> None:
     _impact_ramp(figure, layout, y if layout.width >= _WIDE else y - LINE)
 
 
-def _labels(last: ExploreSnapshot) -> list[str]:
-    return marked_lost([robot.name for robot in last.robots], last.robots)
+def _team(width: float, last: ExploreSnapshot) -> Key:
+    return Key.of(with_fate([robot.name for robot in last.robots], last.robots), width - 2 * MARGIN)
 
 
 def _lines(width: float, last: ExploreSnapshot) -> int:
     """Count the lines of the legend: robots, links if they are simulated, all else."""
-    robots = -(-len(last.robots) // _robots_a_row(width, last))
-    return robots + (last.links is not None) + (1 if width >= _WIDE else 2)
-
-
-def _robots_a_row(width: float, last: ExploreSnapshot) -> int:
-    return per_row(width, max(map(len, _labels(last))), letter=0.07)
+    return _team(width, last).lines + (last.links is not None) + (1 if width >= _WIDE else 2)
 
 
 def _impact_ramp(figure: Figure, layout: Panels, y: float) -> None:

@@ -3,74 +3,69 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
+from rich.color import Color
 from rich.console import Console, ConsoleOptions, RenderableType, RenderResult
 from rich.measure import Measurement
 from rich.segment import Segment
 from rich.style import Style
-from rich.table import Table
 from rich.text import Text
 
-from vedette.maps import FREE, OCCUPIED, GridFrame
+from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
 from vedette.record import palette
-from vedette.record.board import figures_line, framed, share_bar, team_table
 from vedette.record.explore.log import ExploreScene, ExploreSnapshot, RobotSample
-from vedette.record.explore.raster import Window, fit, paint, pool
+from vedette.record.explore.raster import Window, paint, pool
 from vedette.record.marks import badge, sign, together, two_colours
+from vedette.record.view import Size, TeamTable, arranged, explained, figure, flowing, share_bar
 
-_MAP = 24, 70  # most lines and columns of the map
-_TABLE = 50  # columns of the table beside the map
+_MARKS = (
+    *(
+        ("██", Style(color=Color.from_rgb(*palette.SCREEN[kind].tolist())), meaning)
+        for kind, meaning in ((FREE, "free"), (OCCUPIED, "wall"), (UNKNOWN, "unknown"))
+    ),
+    ("██", Style(color=Color.from_rgb(*palette.IMPACT)), "about to be seen"),
+    (" × ", Style(bold=True), "lost"),
+)
+_GLYPHS = (("·", "", "free"), ("█", "", "wall"), ("×", "", "lost"))
 
 
-def screen(
-    console: Console, scene: ExploreScene, snapshot: ExploreSnapshot, travelled: Sequence[float]
-) -> RenderableType:
-    """Return the picture of a snapshot, fitted to the console; ``travelled`` by robot [m].
-
-    The table of robots goes below the map or beside it, whichever leaves the map more room.
-    """
-    known = 100 * snapshot.known_fraction
-    figures = figures_line(
-        ("time", f"{snapshot.t:6.1f} s"),
-        ("known", f"{known:5.1f} %"),
-        ("entropy", f"{snapshot.entropy:,.0f} nat"),
-    )
-    head: list[RenderableType] = [figures, share_bar("covered", snapshot.coverage)]
+def screen(scene: ExploreScene, console: Console, snapshot: ExploreSnapshot) -> RenderableType:
+    """Return the picture of a snapshot, fitted to the console."""
+    figures = [
+        figure("time", f"{snapshot.t:.1f} s"),
+        figure("known", f"{100 * snapshot.known_fraction:.1f} %"),
+        figure("entropy", f"{snapshot.entropy:,.0f} nat"),
+    ]
     if snapshot.links is not None:
-        head.append(_team(snapshot))
-    below = console.height - 6 - len(head) - len(snapshot.robots), console.width - 4
-    left = console.height - 4 - len(head), console.width - 4 - _TABLE
-    rooms = [(min(_MAP[0], lines), min(_MAP[1], columns)) for lines, columns in (below, left)]
-    sizes = [_size(scene.frame, room) if min(room) >= 4 else (0, 0) for room in rooms]
-    table = _robots(scene, snapshot.robots, travelled)
-    if sizes[1][0] and sizes[1] >= sizes[0]:
-        body = Table.grid(padding=(0, 3))
-        body.add_row(HalfBlocks.of(console, scene, snapshot, sizes[1]), table)
-        return framed(scene, *head, body)
-    if sizes[0][0]:
-        return framed(scene, *head, HalfBlocks.of(console, scene, snapshot, sizes[0]), Text(""), table)
-    return framed(scene, *head, table)
-
-
-def _size(frame: GridFrame, room: tuple[int, int]) -> tuple[int, int]:
-    """Return the map's rows and columns [pixel] in a room of so many lines and columns."""
-    return fit(frame.shape, (2 * room[0], room[1]))
-
-
-def _team(snapshot: ExploreSnapshot) -> Text:
-    style = "bold" if len(snapshot.parts) < 2 else "bold yellow"
-    return Text.assemble(
-        ("team    ", "dim"), (together(snapshot.parts), style), no_wrap=True, overflow="ellipsis"
+        style = "bold" if len(snapshot.parts) < 2 else "bold yellow"
+        figures += [Text.assemble(("team ", "dim"), (together(snapshot.parts), style))]
+    robots = snapshot.robots
+    goals = ["" if robot.goal is None else f"{robot.goal[0]:.1f}, {robot.goal[1]:.1f}" for robot in robots]
+    columns = [("driven (m)", [f"{robot.driven:.1f}" for robot in robots]), ("goal (m)", goals)]
+    width = console.width - 4
+    return arranged(
+        console,
+        scene,
+        [flowing(figures, width), share_bar("covered", snapshot.coverage, width)],
+        partial(HalfBlocks.of, console, scene, snapshot),
+        lambda room: (-(-_size(scene.frame, room)[0] // 2), _size(scene.frame, room)[1]),
+        TeamTable("robot", scene, robots, columns),
+        explained(_MARKS if _coloured(console) else _GLYPHS, width),
     )
 
 
-def _robots(scene: ExploreScene, robots: Sequence[RobotSample], travelled: Sequence[float]) -> Table:
-    goals = ["" if robot.goal is None else f"{robot.goal[0]:.1f}, {robot.goal[1]:.1f}" for robot in robots]
-    driven = [f"{metres:.1f}" for metres in travelled]
-    return team_table("robot", scene, robots, [("goal (m)", goals), ("driven (m)", driven)])
+def _size(frame: GridFrame, room: Size) -> tuple[int, int]:
+    """Return the map's rows and columns [pixel] in a room of so many lines and columns."""
+    scale = min(2 * room[0] / frame.rows, room[1] / frame.cols)
+    return max(1, round(frame.rows * scale)), max(1, round(frame.cols * scale))
+
+
+def _coloured(console: Console) -> bool:
+    return console.color_system is not None and not console.no_color
 
 
 class HalfBlocks:
@@ -91,14 +86,15 @@ class HalfBlocks:
     ) -> HalfBlocks:
         """Draw a snapshot in at most ``room`` lines and columns; without colours as walls alone."""
         frame = scene.frame
-        rows, cols = fit(frame.shape, (2 * room[0], room[1]))
+        rows, cols = _size(frame, room)
         whole = Window(slice(0, frame.rows), slice(0, frame.cols), frame)
         signs = dict(_signs(snapshot.robots, frame, rows, cols))
-        if console.color_system is None or console.no_color:
-            glyphs = _glyphs(_paired(pool(snapshot.classes, rows, cols)[::-1]))
+        if not _coloured(console):
+            glyphs = _glyphs(_paired(_stretched(pool(snapshot.classes, rows, cols), rows, cols)[::-1]))
             return cls([_plain_line(line, i, signs) for i, line in enumerate(glyphs)])
-        colours = paint(snapshot, scene.planning, whole, (rows, cols), palette.SCREEN)[::-1]
-        return cls([_line(pair, i, signs) for i, pair in enumerate(_paired(colours))])
+        colours = paint(snapshot, scene.planning, whole, (rows, cols), palette.SCREEN)
+        pairs = _paired(_stretched(colours, rows, cols)[::-1])
+        return cls([_line(pair, i, signs) for i, pair in enumerate(pairs)])
 
     def __rich_measure__(self, console: Console, options: ConsoleOptions) -> Measurement:
         """Tell rich that the map neither shrinks nor grows."""
@@ -120,7 +116,14 @@ def _signs(
         row = int((y_max - robot.y) / (y_max - y_min) * rows)
         col = int((robot.x - x_min) / (x_max - x_min) * cols)
         if 0 <= row < rows and 0 <= col < cols:
-            yield (row // 2, col), (sign(i, robot.alive), badge(i))
+            yield (row // 2, col), (sign(i, robot), badge(i))
+
+
+def _stretched(pixels: NDArray[np.uint8], rows: int, cols: int) -> NDArray[np.uint8]:
+    """Return pixels repeated where there are fewer of them than rows and columns."""
+    row, col = (np.arange(n) * have // n for n, have in zip((rows, cols), pixels.shape, strict=False))
+    stretched: NDArray[np.uint8] = pixels[row][:, col]
+    return stretched
 
 
 def _paired(pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:

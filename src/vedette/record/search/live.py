@@ -8,15 +8,29 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console, RenderableType
 from rich.style import Style
-from rich.text import Text
 
-from vedette.record.board import board, figures_line, framed, share_bar, states, team_table
+from vedette.record.board import Board, fitted
 from vedette.record.display import Display
 from vedette.record.search.log import SearchScene, SearchSnapshot
+from vedette.record.view import (
+    Size,
+    TeamTable,
+    arranged,
+    explained,
+    figure,
+    flowing,
+    share_bar,
+    states,
+)
 
 _SHADES = " ·░▒▓█"
 _POWER = 0.6  # of the shades, as in the pictures
 _GROUND = Style(color="grey82", bgcolor="grey11")
+_MARKS = (
+    ("░▒▓█", _GROUND, "the target is there: the brighter, the likelier"),
+    ("∙∙∙", Style(bold=True), "planned"),
+    (" × ", Style(bold=True), "lost"),
+)
 
 
 def search_display(
@@ -28,31 +42,36 @@ def search_display(
 
 def line(scene: SearchScene, snapshot: SearchSnapshot) -> str:
     """Return a snapshot in one line."""
-    team = states(scene, snapshot.vehicles)
+    team = states(scene.vehicles, snapshot.vehicles)
     detection = f"{_detection(scene)} {100 * snapshot.detection:5.1f} %"
     left = "" if snapshot.outside is None else f"  has left {100 * snapshot.outside:5.1f} %"
     return f"{snapshot.t:7.1f} s  {detection}{left}  entropy {snapshot.entropy:5.2f} nat  {team}"
 
 
 def screen(scene: SearchScene, console: Console, snapshot: SearchSnapshot) -> RenderableType:
-    """Return the picture of a snapshot, fitted to the console: the darker, the likelier."""
-    figures = figures_line(("time", f"{snapshot.t:6.1f} s"), ("entropy", f"{snapshot.entropy:.2f} nat"))
-    head: list[RenderableType] = [figures, share_bar(_detection(scene), snapshot.detection)]
-    if snapshot.outside is not None:
-        head.append(share_bar("has left", snapshot.outside))
+    """Return the picture of a snapshot, fitted to the console: the brighter, the likelier."""
+    figures = figure("time", f"{snapshot.t:.1f} s"), figure("entropy", f"{snapshot.entropy:.2f} nat")
     goals = [
         "" if vehicle.goal is None else f"{vehicle.goal[0]:.0f}, {vehicle.goal[1]:.0f}"
         for vehicle in snapshot.vehicles
     ]
-    table = team_table("vehicle", scene, snapshot.vehicles, [("afterwards to (m)", goals)])
     x0, x1, y0, y1 = scene.frame.extent
-    picture = board(console, scene, (x0, y0, x1, y1), _GROUND, head)
-    if picture is None:
-        return framed(scene, *head, table)
-    shades = _shades(snapshot.mass, picture.lines, picture.columns)
-    picture.fill(["".join(_SHADES[k] for k in row) for row in shades[::-1].tolist()])
-    picture.put_vehicles(snapshot.vehicles)
-    return framed(scene, *head, picture.text(), Text(""), table)
+    area = x0, y0, x1, y1
+
+    def picture(room: Size) -> RenderableType:
+        drawn = Board(area, *room, _GROUND)
+        shades = _shades(snapshot.mass, drawn.lines, drawn.columns)
+        drawn.fill(["".join(_SHADES[k] for k in row) for row in shades[::-1].tolist()])
+        drawn.put_vehicles(snapshot.vehicles)
+        return drawn.text()
+
+    width = console.width - 4
+    detected = share_bar(_detection(scene), snapshot.detection, width)
+    head: list[RenderableType] = [flowing(figures, width), detected]
+    if snapshot.outside is not None:
+        head.append(share_bar("has left", snapshot.outside, width))
+    team = TeamTable("vehicle", scene, snapshot.vehicles, [("afterwards to (m)", goals)])
+    return arranged(console, scene, head, picture, partial(fitted, area), team, explained(_MARKS, width))
 
 
 def _detection(scene: SearchScene) -> str:

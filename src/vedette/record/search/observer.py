@@ -109,7 +109,7 @@ class SearchObserver:
         ended = ended_as(outcome, place, plan, self._truth.place)
         found = place is not None and ended is Outcome.FOUND
         at = None if place is None else (place.x, place.y)
-        figures, alive = zip(*((view.figures, view.sample.alive) for view in self._views), strict=True)
+        figures, samples = zip(*((view.figures, view.sample) for view in self._views), strict=True)
         return SearchSummary(
             completed=ended.completed,
             outcome=ended,
@@ -130,7 +130,7 @@ class SearchObserver:
             koopman=IdealSearch.of(curves.times, curves.koopman),
             **vars(self._setting),
             **structs.asdict(structs.replace(self._team.options, scheme=self._team.options.negotiates_by)),
-            **vars(TeamFigures.of(scene.vehicles, figures, alive)),
+            **vars(TeamFigures.of(scene.vehicles, figures, samples)),
         )
 
 

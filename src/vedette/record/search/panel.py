@@ -12,12 +12,12 @@ from matplotlib.colors import Colormap, ListedColormap, PowerNorm
 from vedette.record import palette
 from vedette.record.film import flight_gif
 from vedette.record.search.log import SearchLog, SearchSnapshot
-from vedette.record.signs import INK, draw_vehicle
+from vedette.record.signs import INK, VEHICLE, draw_vehicle
 
 TRUTH = palette.unit((0, 190, 200))
-_BRIGHTEST = 0.999  # share of the first pdf's cells that the scale of colours must hold
-_ROOM = 1.5  # the darkest colour is so much above that: what is not searched grows likelier
-_POWER = 0.6  # of the colour scale: what is left after a while is faint
+_ROOM = 1.5  # the darkest colour is so much above the first pdf at least: what is not searched grows likelier
+_POWER, _LEAST = 0.6, 0.15  # of the colour scale: what is left after a while is faint
+_FIRST = 0.45  # of the colours, at least so far up is the first pdf's most where a later one is concentrated
 _COLOURS = 200  # of the film
 _SWATH = 0.2  # opacity of what a plan sweeps
 
@@ -30,9 +30,16 @@ def colours() -> Colormap:
 
 
 def scale(log: SearchLog) -> PowerNorm:
-    """Return the scale of probability a cell that all pictures of a search share."""
-    first = log.drawn()[0].mass
-    return PowerNorm(_POWER, 0.0, _ROOM * float(np.quantile(first, _BRIGHTEST)) or 1.0, clip=True)
+    """Return the scale of probability a cell that all pictures of a search share.
+
+    It holds the likeliest cell of all of them; the more that is above the first pdf, the more of the colours
+    go to what is faint.
+    """
+    drawn = log.drawn()
+    first = float(drawn[0].mass.max()) or 1.0
+    most = max(_ROOM * first, *(float(snapshot.mass.max()) for snapshot in drawn))
+    power = np.clip(np.log(_FIRST) / np.log(first / most), _LEAST, _POWER)
+    return PowerNorm(float(power), 0.0, most, clip=True)
 
 
 def draw(axes: Axes, log: SearchLog, snapshot: SearchSnapshot, norm: PowerNorm, last: bool) -> None:
@@ -63,8 +70,9 @@ def draw(axes: Axes, log: SearchLog, snapshot: SearchSnapshot, norm: PowerNorm, 
     if last:
         axes.plot(*log.targets(snapshot.t).T, color=TRUTH, lw=1.4, zorder=4)
         axes.plot(*snapshot.target, "*", color=TRUTH, mec=INK, mew=0.8, ms=13, zorder=9)
+    disc = VEHICLE.among(len(snapshot.vehicles))
     for i, vehicle in enumerate(snapshot.vehicles):
-        draw_vehicle(axes, i, vehicle)
+        draw_vehicle(axes, i, vehicle, disc)
 
 
 def search_gif(log: SearchLog, path: Path | str, frames: int = 150) -> None:

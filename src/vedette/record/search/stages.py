@@ -12,8 +12,9 @@ from matplotlib.lines import Line2D
 from vedette.number import many
 from vedette.record import palette
 from vedette.record.canvas import picture, save
-from vedette.record.panels import LINE, MARGIN, TITLE, Panels, marked_lost, name_team, per_row
-from vedette.record.search.log import SearchLog, SearchScene
+from vedette.record.key import LINE, Key, badges, with_fate
+from vedette.record.panels import MARGIN, TITLE, Panels
+from vedette.record.search.log import SearchLog
 from vedette.record.search.panel import TRUTH, colours, draw, scale
 from vedette.record.search.summary import SearchSummary
 from vedette.record.signs import DASHES, FAINT, INK, explain, scale_bar
@@ -26,7 +27,7 @@ _RAMP = 1.3  # width of the colour scale [inch]
 def pdf_png(log: SearchLog, summary: SearchSummary, path: Path | str) -> None:
     """Draw pdf, vehicles, ways and plans at stages of a log that is not empty; the target in the last."""
     stages = log.stages()
-    layout, norm = _layout(log.scene, len(stages)), scale(log)
+    layout, norm = _layout(log, len(stages)), scale(log)
     with picture():
         figure = layout.figure()
         for corner, stage in zip(layout.corners, stages, strict=True):
@@ -38,15 +39,15 @@ def pdf_png(log: SearchLog, summary: SearchSummary, path: Path | str) -> None:
         save(figure, path)
 
 
-def _layout(scene: SearchScene, count: int) -> Panels:
+def _layout(log: SearchLog, count: int) -> Panels:
     """Two panels side by side, or one above the other where the area is far wider than high."""
-    aspect = scene.frame.cols / scene.frame.rows
+    aspect = log.scene.frame.cols / log.scene.frame.rows
     across = 1 if aspect > 3.0 else min(2, count)
     wide = 9.0 if across == 1 else 4.7
     panel = (wide, wide / aspect) if wide / aspect < 6.5 else (max(0.5, 6.5 * aspect), 6.5)
     width = max(_LEAST, across * panel[0] + (across - 1) * _GAP + 2 * MARGIN)
     rows = -(-count // across)
-    below = 0.62 + LINE * (-(-len(scene.vehicles) // _vehicles_a_row(width, scene)) + 1)
+    below = 0.62 + LINE * (_team(log, width).lines + 1)
     step = panel[1] + TITLE
     corners = tuple(
         (MARGIN + (k % across) * (panel[0] + _GAP), below + (rows - 1 - k // across) * step)
@@ -55,8 +56,8 @@ def _layout(scene: SearchScene, count: int) -> Panels:
     return Panels(width, below + rows * step + _TOP - TITLE, panel, corners)
 
 
-def _vehicles_a_row(width: float, scene: SearchScene) -> int:
-    return per_row(width, max(map(len, scene.vehicles)) + len(" (lost)"))
+def _team(log: SearchLog, width: float) -> Key:
+    return Key.of(with_fate(log.scene.vehicles, log.snapshots[-1].vehicles), width - 2 * MARGIN)
 
 
 def _heading(figure: Figure, layout: Panels, log: SearchLog, summary: SearchSummary) -> None:
@@ -70,9 +71,8 @@ def _heading(figure: Figure, layout: Panels, log: SearchLog, summary: SearchSumm
 
 def _legend(figure: Figure, layout: Panels, log: SearchLog, norm: PowerNorm) -> None:
     """Name the vehicles, explain the signs and the colours."""
-    team, scene = log.snapshots[-1].vehicles, log.scene
-    row = _vehicles_a_row(layout.width, scene)
-    y = name_team(figure, layout.lowest - 0.5, marked_lost(scene.vehicles, team), team, row)
+    team = _team(log, layout.width)
+    y = team.write(figure, MARGIN, layout.lowest - 0.5, badges(log.snapshots[-1].vehicles))
     signs = [
         Line2D((), (), color=FAINT, lw=1.2, label="flown"),
         Line2D((), (), color=FAINT, lw=1.4, ls=DASHES, label="planned"),
@@ -87,12 +87,12 @@ def _ramp(figure: Figure, layout: Panels, log: SearchLog, norm: PowerNorm) -> No
     """Show the colours, as probability a hectare, right under the panels."""
     hectare = 1e4 / log.scene.frame.resolution**2
     most = float(norm.vmax or 0.0)
+    half = most * 0.5 ** (1.0 / norm.gamma)
     x, y = layout.width - MARGIN - _RAMP, layout.lowest - 0.24
     axes = layout.add(figure, x, y, _RAMP, 0.12)
-    values = np.linspace(0.0, most, 200)[None]
-    axes.imshow(values, cmap=colours(), norm=norm, aspect="auto", extent=(0, 1, 0, 1))
+    axes.imshow(np.linspace(0.0, 1.0, 200)[None], cmap=colours(), aspect="auto", extent=(0, 1, 0, 1))
     axes.set(xticks=(), yticks=())
     axes.spines[:].set(color=palette.unit((200, 203, 207)), lw=0.5)
     axes.text(-0.04, 0.5, "probability a hectare   0", ha="right", va="center_baseline", fontsize=8)
-    text = f"{100 * most * hectare:.2g} %"
-    axes.text(1.0, -0.35, text, ha="right", va="top", fontsize=8)
+    for at, value, align in ((0.5, half, "center"), (1.0, most, "right")):
+        axes.text(at, -0.35, f"{100 * value * hectare:.2g} %", ha=align, va="top", fontsize=8)

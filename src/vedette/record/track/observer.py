@@ -109,7 +109,7 @@ class TrackObserver:
             objective=team.options.objective or team.scenario.objective,
             scheme=team.options.negotiates_by,
         )
-        figures, alive = zip(*((view.figures, view.sample.alive) for view in self._views), strict=True)
+        figures, samples = zip(*((view.figures, view.sample) for view in self._views), strict=True)
         quality, band = TrackQuality.of(log), nees_band(dimensions(scene))
         return TrackSummary(
             completed=outcome.completed,
@@ -126,7 +126,7 @@ class TrackObserver:
             **vars(self._setting),
             **structs.asdict(options),
             **quality.of_team(),
-            **vars(TeamFigures.of(scene.vehicles, figures, alive)),
+            **vars(TeamFigures.of(scene.vehicles, figures, samples)),
         )
 
 

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Ellipse, Wedge
-from numpy.typing import NDArray
 
 from vedette.record import palette
 from vedette.record.film import flight_gif
-from vedette.record.log import evenly
-from vedette.record.signs import draw_vehicle
+from vedette.record.lettering import write_labels
+from vedette.record.log import Floats, evenly
+from vedette.record.signs import VEHICLE, draw_vehicle
 from vedette.record.track.ellipse import ellipse_axes
-from vedette.record.track.log import TrackLog, TrackSample, TrackSnapshot
+from vedette.record.track.letters import letter
+from vedette.record.track.log import TrackLog, TrackSample, TrackScene, TrackSnapshot
 
 INK = palette.unit(palette.INK)
 TRUTH = palette.unit((150, 153, 157))
@@ -23,6 +25,8 @@ KNOWN = palette.unit((255, 183, 0))  # of an ellipse's inside
 RECENT = 20.0  # a vehicle's way of so long stands out from the rest of it [s]
 _MARGIN = 0.02  # of the larger side
 _COLOURS = 128  # of the film
+_VIEW = 0.06  # opacity of a view
+_NAMED, _SHORT, _LETTERED = 8, 12, 52  # targets with names, letters of these, targets with a letter; at most
 
 Box = tuple[float, float, float, float]  # lowest x, lowest y, highest x, highest y [m]
 
@@ -47,18 +51,30 @@ def draw(axes: Axes, log: TrackLog, snapshot: TrackSnapshot, box: Box) -> None:
     title = f"{snapshot.t:.0f} s    entropy {snapshot.entropy:.1f} nat"
     axes.set_title(title, fontsize=10, loc="left", pad=5)
     trails, truths = log.trails(snapshot.t), log.truths(snapshot.t)
+    opacity = _opacity(log, snapshot, box)
     for i, vehicle in enumerate(snapshot.vehicles):
-        _view(axes, log, i, vehicle)
+        _view(axes, log, i, vehicle, opacity)
         colour = palette.unit(palette.robot_colour(i))
         late = trails[log.times[: len(trails)] >= snapshot.t - RECENT, i]
         axes.plot(*trails[:, i].T, color=colour, lw=0.9, alpha=0.22, solid_joinstyle="round", zorder=3)
         axes.plot(*late.T, color=colour, lw=1.4, alpha=0.85, solid_joinstyle="round", zorder=3)
-    for t, name in enumerate(log.scene.targets):
+    for t in range(len(log.scene.targets)):
         axes.plot(*truths[:, t].T, color=TRUTH, lw=0.9, zorder=2)
         axes.plot(*truths[-1, t], "x", color=TRUTH, ms=5, mew=1.2, zorder=5)
-        _track(axes, name, snapshot.means[t], snapshot.covariances[t])
+        _track(axes, snapshot.means[t], snapshot.covariances[t])
+    disc = VEHICLE.among(len(snapshot.vehicles))
     for i, vehicle in enumerate(snapshot.vehicles):
-        draw_vehicle(axes, i, vehicle)
+        draw_vehicle(axes, i, vehicle, disc)
+    if labels := labels_of(log.scene):
+        discs = np.array([(vehicle.x, vehicle.y) for vehicle in snapshot.vehicles])
+        write_labels(axes, snapshot.means[:, :2], labels, discs, disc.size / 2.0 + 1.0)
+
+
+def labels_of(scene: TrackScene) -> Sequence[str]:
+    """Return how targets are called in a picture: names where few and short, else letters, else not."""
+    if len(scene.targets) <= _NAMED and max(map(len, scene.targets)) <= _SHORT:
+        return scene.targets
+    return [letter(t) for t in range(len(scene.targets))] if len(scene.targets) <= _LETTERED else []
 
 
 def track_gif(log: TrackLog, path: Path | str, frames: int = 150) -> None:
@@ -69,24 +85,30 @@ def track_gif(log: TrackLog, path: Path | str, frames: int = 150) -> None:
     flight_gif(stages, lambda axes, stage: draw(axes, log, stage, box), aspect, _COLOURS, path)
 
 
-def _view(axes: Axes, log: TrackLog, i: int, vehicle: TrackSample) -> None:
+def _opacity(log: TrackLog, snapshot: TrackSnapshot, box: Box) -> float:
+    """Return the opacity of a view: less where views together would grey the picture."""
+    ranges, views = np.array(log.scene.ranges), np.radians(log.scene.views)
+    alive = np.array([vehicle.alive for vehicle in snapshot.vehicles])
+    area = (box[2] - box[0]) * (box[3] - box[1])
+    shares = np.minimum(ranges**2 * views / 2.0 / area, 1.0)
+    return _VIEW / max(1.0, float(shares[alive].sum()))
+
+
+def _view(axes: Axes, log: TrackLog, i: int, vehicle: TrackSample, opacity: float) -> None:
     """Shade what a living vehicle's sensor views."""
     if not vehicle.alive:
         return
     half, facing = log.scene.views[i] / 2.0, math.degrees(vehicle.heading)
     colour = palette.unit(palette.robot_colour(i))
     at, reach = (vehicle.x, vehicle.y), log.scene.ranges[i]
-    for fill, ink, width in (((*colour, 0.06), "none", 0.0), ("none", (*colour, 0.35), 0.6)):
+    for fill, ink, width in (((*colour, opacity), "none", 0.0), ("none", (*colour, 0.35), 0.6)):
         axes.add_patch(Wedge(at, reach, facing - half, facing + half, fc=fill, ec=ink, lw=width))
 
 
-def _track(axes: Axes, name: str, mean: NDArray[np.float64], covariance: NDArray[np.float64]) -> None:
-    """Draw the estimate of a target with its 95 % ellipse and its name."""
+def _track(axes: Axes, mean: Floats, covariance: Floats) -> None:
+    """Draw the estimate of a target with its 95 % ellipse."""
     width, height, angle = ellipse_axes(covariance)
     at = float(mean[0]), float(mean[1])
     ellipse = Ellipse(at, width, height, angle=angle, fc=(*KNOWN, 0.28), ec=INK, lw=0.9, zorder=4)
     axes.add_patch(ellipse)
     axes.plot(*at, "o", color=INK, ms=2.2, zorder=5)
-    axes.annotate(
-        name, at, (5, 4), textcoords="offset points", fontsize=7, color=INK, zorder=8, annotation_clip=True
-    )

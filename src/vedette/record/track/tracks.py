@@ -10,10 +10,12 @@ from matplotlib.patches import Patch
 from vedette.number import many
 from vedette.record import palette
 from vedette.record.canvas import picture, save
-from vedette.record.panels import LINE, MARGIN, STACKED, Panels, name_team, per_row
+from vedette.record.key import LINE, Key, badges
+from vedette.record.panels import MARGIN, STACKED, Panels
 from vedette.record.signs import DASHES, explain, scale_bar
+from vedette.record.track.letters import letter
 from vedette.record.track.log import TrackLog, TrackScene
-from vedette.record.track.panel import INK, KNOWN, TRUTH, Box, draw, window
+from vedette.record.track.panel import INK, KNOWN, TRUTH, Box, draw, labels_of, window
 
 _STAGES = 0.1, 0.5, 1.0  # shares of the time: while targets are being found, and two while they are kept
 _LEAST = 8.2  # width of the figure, for the signs in one line [inch]
@@ -22,7 +24,7 @@ _LEAST = 8.2  # width of the figure, for the signs in one line [inch]
 def tracks_png(log: TrackLog, path: Path | str) -> None:
     """Draw vehicles, views, plans, true and estimated targets at three stages of a log that is not empty."""
     box, scene, last = window(log), log.scene, log.snapshots[-1]
-    layout = _layout(box, scene)
+    layout = _layout(box, log)
     with picture():
         figure = layout.figure()
         for corner, stage in zip(layout.corners, log.stages(_STAGES), strict=True):
@@ -30,33 +32,40 @@ def tracks_png(log: TrackLog, path: Path | str) -> None:
         counts = f"{many(len(scene.vehicles), 'vehicle')}, {many(len(scene.targets), 'target')}"
         layout.head(figure, f"{scene.name}: {counts}", f"tracks as {scene.vehicles[last.holder]} holds them")
         scale_bar(figure, MARGIN, layout.lowest - 0.16, box[2] - box[0], layout.panel[0])
-        labels = [
-            f"{name} ({sensor}{'' if vehicle.alive else ', lost'})"
-            for name, sensor, vehicle in zip(scene.vehicles, scene.sensors, last.vehicles, strict=True)
-        ]
-        row = _vehicles_a_row(layout.width, scene)
-        y = name_team(figure, layout.lowest - 0.46, labels, last.vehicles, row)
+        vehicles, targets = _team(log, layout.width), _targets(scene, layout.width)
+        y = vehicles.write(figure, MARGIN, layout.lowest - 0.46, badges(last.vehicles))
+        y = targets.write(figure, MARGIN, y, [letter(t) for t in range(len(targets.labels))])
         explain(figure, MARGIN, y, _signs())
         save(figure, path)
 
 
-def _layout(box: Box, scene: TrackScene) -> Panels:
+def _layout(box: Box, log: TrackLog) -> Panels:
     """Fit the panels: side by side, or one above the other where the area is far wider than high."""
     aspect = (box[2] - box[0]) / (box[3] - box[1])
     stacked = aspect > STACKED
     width = 9.0 if stacked else max(1.5, min(4.2, 6.0 * aspect))
     panel = width, min(9.0, max(0.5, width / aspect))
-    team = len(scene.vehicles)
 
     def below(width: float) -> float:
-        return 0.5 + LINE * (-(-team // _vehicles_a_row(width, scene)) + 1)
+        return 0.5 + LINE * (_team(log, width).lines + _targets(log.scene, width).lines + 1)
 
     return Panels.in_a_row(panel, len(_STAGES), stacked, _LEAST, below)
 
 
-def _vehicles_a_row(width: float, scene: TrackScene) -> int:
-    names = (f"{name} ({sensor})" for name, sensor in zip(scene.vehicles, scene.sensors, strict=True))
-    return per_row(width, max(map(len, names)))
+def _team(log: TrackLog, width: float) -> Key:
+    """Name the vehicles, their sensors, and what became of them."""
+    scene, last = log.scene, log.snapshots[-1]
+    labels = [
+        f"{name} ({sensor}{f', {vehicle.fate}' if vehicle.fate else ''})"
+        for name, sensor, vehicle in zip(scene.vehicles, scene.sensors, last.vehicles, strict=True)
+    ]
+    return Key.of(labels, width - 2 * MARGIN)
+
+
+def _targets(scene: TrackScene, width: float) -> Key:
+    """Name the targets that the panels call by letters."""
+    by_letter = labels_of(scene) not in ([], scene.targets)
+    return Key.of(scene.targets if by_letter else (), width - 2 * MARGIN)
 
 
 def _signs() -> list[Line2D | Patch]:
