@@ -114,7 +114,7 @@ def test_a_study_is_not_left_where_its_maps_are_but_goes_on_from_its_own_copy_of
     copy = (tmp_path / "results" / "spec.yaml").read_bytes()
     status, said, error = vedette("study", "results/spec.yaml", "--out", "results", "--jobs", 1)
     assert (status, error) == (0, "")
-    assert "1 runs" in said
+    assert "1 run, 1 of them done" in said
     assert (tmp_path / "results" / "spec.yaml").read_bytes() == copy
     assert not (tmp_path / "results" / LOCK).exists()
 

@@ -19,6 +19,7 @@ from vedette.record.marks import badge, sign
 HINT = "Ctrl-C saves and stops"
 _FRAME = 4, 2  # columns and lines that the frame takes
 _LEAST = 4, 8  # lines and columns of a picture worth showing
+_SCARCE = 10  # lines for picture and team; where there are fewer, signs are not explained
 _GAP = 3  # between two tables, and between picture and table
 _PAD = 2  # between columns of a table
 
@@ -162,7 +163,10 @@ def arranged(
     """
     width = console.width - _FRAME[0]
     above = sum(_lines_of(console, part, width) for part in head)
-    left = console.height - _FRAME[1] - above - _lines_of(console, foot, width) - 1  # the cursor's line
+    left = console.height - _FRAME[1] - above - 1  # the cursor's line
+    if left - _lines_of(console, foot, width) < _SCARCE:
+        foot = Text(HINT, "dim", no_wrap=True)
+    left -= _lines_of(console, foot, width)
     below = team.fitted(max(2, left // 2), width)
     beside = team.fitted(left, 3 * width // 5)
     rooms = (left - below.lines - 1, width), (left, width - beside.columns - _GAP)
