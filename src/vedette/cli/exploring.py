@@ -15,6 +15,7 @@ from vedette.cli.options import FILE, OneOf, Positive, seed_option, with_options
 from vedette.cli.running import Kind
 from vedette.domains.mapping.planners import DEFAULT, PLANNERS
 from vedette.errors import InputError, InputWarning
+from vedette.maps.area import Area
 from vedette.missions.explore.assemble import FUSIONS
 from vedette.missions.pairs import SCHEME
 from vedette.negotiation import SCHEMES
@@ -29,6 +30,25 @@ from vedette.sim.starts import parse_starts
 from vedette.team import PlatformSpec, load_team
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
+
+
+class Corners(click.ParamType[Any]):
+    """Corners of a polygon, ``"x,y;x,y;x,y"`` [m]."""
+
+    name = "corners"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[tuple[float, float], ...]:
+        """Return the corners; InputError if they make no area."""
+        corners = []
+        for entry in str(value).strip().strip(";").split(";"):
+            x, _, y = entry.partition(",")
+            try:
+                corners.append((float(x), float(y)))
+            except ValueError:
+                raise InputError(f"--area: {entry.strip()!r} must be x,y in m") from None
+        return Area.of(corners).corners
 
 
 def exploring_options(command: CommandT) -> CommandT:
@@ -82,6 +102,13 @@ def exploring_options(command: CommandT) -> CommandT:
             show_default=True,
             help="Simulated time limit [s].",
         ),
+        click.option(
+            "--area",
+            type=Corners(),
+            metavar='"x,y;x,y;x,y"',
+            help="Corners of the ground that is the team's [m]: it leaves all else alone.  [default: all]",
+        ),
+        click.option("--unbounded", is_flag=True, help="The robots are not told how far their ground goes."),
         click.option("--return-home", is_flag=True, help="The robots drive back to their starts in the end."),
     )
 

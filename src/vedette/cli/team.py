@@ -100,6 +100,8 @@ def explore(
     fusion: str,
     max_time: float,
     return_home: bool,
+    area: tuple[tuple[float, float], ...] | None,
+    unbounded: bool,
     speed: float,
     lease: float,
     faults: str | None,
@@ -115,8 +117,11 @@ def explore(
     agreed = scheme_of(planner, scheme)
     world, specs = world_of(world_named(map_path, resolution), seed), team_named(team, robots, starts)
     tell_unheeded(planner, len(specs), scheme, fusion=fusion, lease=lease)
-    places = choose_starts(world, specs, np.random.default_rng([seed, 1]))
-    options = ExploreOptions(planner, agreed, fusion, return_home)
+    if ros2 and unbounded:
+        raise InputError("--unbounded: robots that run ROS 2 are never told how far it goes; leave it out")
+    options = ExploreOptions(planner, agreed, fusion, return_home, area, unbounded)
+    area_of = options.lattice_on(world.frame).area
+    places = choose_starts(world, specs, np.random.default_rng([seed, 1]), area_of)
     kind = Ros2Plan if ros2 else ExplorePlan
     plan = kind(world, specs, places, options, seed, speed, lease)
     run = _Processes(plan, max_time, schedule_of(faults, plan.size, clocks=False))

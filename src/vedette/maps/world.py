@@ -13,6 +13,7 @@ from vedette.errors import InputError
 from vedette.kernels.distance import distance_field
 from vedette.kernels.frontier import traversable
 from vedette.maps import FREE, OCCUPIED, GridFrame, read_map, write_map
+from vedette.maps.area import Area
 from vedette.maps.atomic import atomic_path
 
 
@@ -41,6 +42,12 @@ class World:
     def classes(self) -> NDArray[np.uint8]:
         """Return the true map: FREE or OCCUPIED for each cell."""
         return np.where(self.solid, OCCUPIED, FREE).astype(np.uint8)
+
+    def within(self, area: Area | None) -> World:
+        """Return the world that is left of it to a team: solid wherever the ground is not the team's."""
+        if area is None:
+            return self
+        return World(self.frame, self.solid | ~area.holds(self.frame), self.name)
 
     def save(self, folder: Path | str) -> Path:
         """Write ``map.yaml``, ``map.pgm`` and ``preview.png`` into an existing folder; return the ``.yaml``.

@@ -164,6 +164,7 @@ def _check_explore(config: AgentConfig) -> None:
     _check_word("explore.fusion", options.fusion, list(FUSIONS))
     planner(options.planner, config.robots)
     _ = options.negotiates_by
+    _check_ground(config.body, options)
     real = config.body.ros2
     if real is not None and real.evidence == "map" and options.fusion == "channel":
         raise InputError(
@@ -186,6 +187,15 @@ def _check_explore(config: AgentConfig) -> None:
         raise InputError("links.delay: is for vehicles, which reckon with it; leave it out")
     if config.faults is not None and config.begins is None:
         raise InputError("begins: missing; faults need the time at which the mission begins")
+
+
+def _check_ground(body: BodySettings, options: ExploreOptions) -> None:
+    try:
+        options.lattice(body.resolution or 1.0)
+    except InputError as error:
+        raise InputError(f"explore.{error}") from error
+    if options.unbounded and body.ros2 is not None:
+        raise InputError("explore.unbounded: no real robot is told how far its ground goes; leave it out")
 
 
 def _check_flight(config: AgentConfig) -> None:

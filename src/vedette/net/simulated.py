@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from vedette.maps.area import Area
 from vedette.maps.world import World
 from vedette.missions.search.case import SearchCase
 from vedette.missions.track.assemble import TrackTeam
@@ -25,7 +26,7 @@ from vedette.sim.track.targets import Targets, trackers
 MOST_BODIES = 64  # of others that a simulated robot can see
 
 
-def simulated_robot(config: AgentConfig, world: World) -> OwnBody:
+def simulated_robot(config: AgentConfig, world: World, area: Area | None) -> OwnBody:
     """Return the disc robot that a file describes, at its start in a world.
 
     Raises:
@@ -33,7 +34,7 @@ def simulated_robot(config: AgentConfig, world: World) -> OwnBody:
     """
     robot = config.robot - 1
     spec = config.body.spec(robot_name(robot))
-    start = choose_starts(world, [spec], np.random.default_rng(0))[0]
+    start = choose_starts(world, [spec], np.random.default_rng(0), area)[0]
     rng = np.random.default_rng([config.body.seed, robot])
     return OwnBody.put(world, spec, start, robot, max(MOST_BODIES, robot + 1), rng)
 

@@ -29,7 +29,6 @@ class Ros2Settings(Struct, forbid_unknown_fields=True, frozen=True):
     use_sim_time: bool = False  # the mission goes by /clock
     evidence: Literal["scan", "map"] = "scan"  # what the robot's evidence is made of
     no_return: Literal["ignore", "free"] = "ignore"  # what a beam says that nothing came back from
-    area: tuple[float, float, float, float] = (-50.0, -50.0, 50.0, 50.0)  # left, lower, right, upper [m]
     wait: Annotated[float, Meta(ge=0.0, le=86400.0)] = 60.0  # for what the agent needs to begin [s]
     start: tuple[float, float, float] = (0.0, 0.0, 0.0)  # of the map frame: x, y, yaw [m, m, deg], team frame
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias, Unpack
@@ -14,6 +14,7 @@ from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.planners import DEFAULT
 from vedette.domains.mapping.platform import Tour
 from vedette.maps import GridFrame
+from vedette.maps.area import Area
 from vedette.missions.pairs import tell_unheeded
 from vedette.record.explore.log import ExploreLog, ExploreScene, ExploreSnapshot
 from vedette.record.explore.mcap import ExploreMcapWriter
@@ -80,6 +81,8 @@ class Explore(_Mission):
         fusion: str = "replicated",
         max_time: float = 3600.0,
         return_home: bool = False,
+        area: Sequence[Sequence[float]] | None = None,
+        unbounded: bool = False,
         record: str | Path | None = None,
         **conditions: Unpack[Conditions],
     ) -> None:
@@ -93,6 +96,8 @@ class Explore(_Mission):
             planner, scheme, fusion: how the team decides, negotiates and shares what it sees.
             max_time: simulated time limit [s].
             return_home: whether the robots drive back to their starts in the end.
+            area: corners x, y [m] of the ground that is the team's; None: all of the world.
+            unbounded: whether the robots are not told how far their ground goes.
             record: a folder for the run record, ``run.mcap``.
             conditions: see `vedette.run.inputs.Conditions`.
 
@@ -107,6 +112,8 @@ class Explore(_Mission):
             planner=planner,
             fusion=fusion,
             return_home=return_home,
+            area=None if area is None else Area.of(area).corners,
+            unbounded=unbounded,
         )
         tell_unheeded(setup.planner, len(specs), **links_of(setup))
         self.world = world_of(world, setup.seed)

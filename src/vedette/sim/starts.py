@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from vedette.errors import InputError
 from vedette.kernels.distance import distance_field, lengths_to
+from vedette.maps.area import Area
 from vedette.maps.world import World, reachable_poses, standable
 from vedette.sim.indoors import indoors
 from vedette.team import PlatformSpec
@@ -42,7 +43,7 @@ def parse_starts(text: str) -> list[tuple[float, ...]]:
 
 
 def choose_starts(
-    world: World, specs: Sequence[PlatformSpec], rng: np.random.Generator
+    world: World, specs: Sequence[PlatformSpec], rng: np.random.Generator, area: Area | None = None
 ) -> NDArray[np.float64]:
     """Return ``f64[n, 3]`` start poses x, y, heading [m, m, rad], team frame.
 
@@ -50,13 +51,15 @@ def choose_starts(
     too much), near the first given start or else at a random spot indoors (`vedette.sim.indoors`).
 
     Raises:
-        InputError: a given start is outside, in or too near a wall, too near another, or cut off from the
-            first; or the robots do not all fit.
+        InputError: a given start is outside, in or too near a wall, beside the team's area, too near another,
+            or cut off from the first; or the robots do not all fit.
     """
+    everything, world = world, world.within(area)
     starts = np.zeros((len(specs), 3))
     given = [i for i, spec in enumerate(specs) if spec.start is not None]
     for i in given:
-        starts[i] = _checked(world, specs[i])
+        starts[i] = _checked(everything, specs[i])
+        _check_inside(world, specs[i])
         _check_apart(specs, starts, i, [j for j in given if j < i])
     if given:
         _check_together(world, specs, starts, given[0], given)
@@ -86,6 +89,17 @@ def _checked(world: World, spec: PlatformSpec) -> tuple[float, float, float]:
             f"{_free_spot(world, spec, x, y)}"
         )
     return x, y, math.radians(heading[0]) if heading else 0.0
+
+
+def _check_inside(world: World, spec: PlatformSpec) -> None:
+    """Raise InputError for a start, free in the whole world, that is not in the team's part of it."""
+    assert spec.start is not None
+    x, y, *_ = spec.start
+    if clearance(world, x, y, spec.radius + world.frame.resolution) < spec.radius - _TOUCH:
+        raise InputError(
+            f"{spec.name}: start {_told(x)},{_told(y)} is not all within the area; "
+            f"{_free_spot(world, spec, x, y)}"
+        )
 
 
 def _told(metres: float) -> str:

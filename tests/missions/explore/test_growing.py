@@ -6,6 +6,7 @@ import tracemalloc
 
 import numpy as np
 import pytest
+from matplotlib.path import Path
 from numpy.typing import NDArray
 
 from tests.support.explorers import exchange, scan_from
@@ -15,15 +16,17 @@ from vedette.agent.events import Pose, Scan
 from vedette.domains.mapping.impact import NOTHING, moved
 from vedette.domains.mapping.planners import planner
 from vedette.domains.mapping.sightings import BINS
+from vedette.errors import InputError
 from vedette.fusion import ReplicatedEvidence
 from vedette.maps import UNKNOWN, GridFrame
 from vedette.maps.area import Area
 from vedette.maps.laid import laid
 from vedette.maps.lattice import Lattice
+from vedette.maps.world import World
 from vedette.missions.explore.exploring import Exploring
 from vedette.sim.explore.run import explore, prepare
 from vedette.sim.explore.simulation import ExploreSetup
-from vedette.team import Most
+from vedette.team import Most, PlatformSpec
 
 POSES = [Pose(-0.53, 7.12, 0.0), Pose(2.97, 7.08, 0.4), Pose(-0.61, 4.03, 1.0), Pose(10.02, 7.93, 2.0)]
 MARGIN = 100  # cells that the whole frame has beyond the building: no robot sees so far
@@ -149,12 +152,35 @@ def test_nothing_outside_the_area_is_anybodys() -> None:
 
 def test_a_team_that_does_not_know_how_large_its_world_is_explores_all_of_it() -> None:
     world = small_office(seed=1)
-    simulation = prepare(world, robots(2), ExploreSetup(seed=7, lattice=Lattice.open(world.frame.resolution)))
+    simulation = prepare(world, robots(2), ExploreSetup(seed=7, unbounded=True))
     report = explore(simulation)
     assert report.summary.completed
     assert report.summary.coverage >= 0.995
     assert report.summary.map_errors == 0
     assert report.summary.collisions == 0
+
+
+HALF_THE_OFFICE = ((0.0, 0.0), (6.5, 0.0), (5.5, 10.0), (0.0, 10.0))
+
+
+@pytest.mark.parametrize("unbounded", [False, True])
+def test_a_team_explores_its_area_and_never_leaves_it(unbounded: bool) -> None:
+    setup = ExploreSetup(seed=7, area=HALF_THE_OFFICE, unbounded=unbounded)
+    simulation = prepare(small_office(seed=1), robots(2), setup)
+    report = explore(simulation)
+    assert report.summary.completed
+    assert report.summary.coverage >= 0.99
+    yard = Path(HALF_THE_OFFICE)
+    places = report.log.poses[..., :2].reshape(-1, 2)
+    assert yard.contains_points(places).all()
+    assert all(yard.contains_points([(spot.x, spot.y)])[0] for spot in report.summary.left_out)
+
+
+def test_a_start_beside_the_area_is_refused_in_one_line() -> None:
+    specs = [PlatformSpec(name="far", start=(9.0, 1.5))]
+    hall = World(GridFrame(0.1, 100, 120), np.zeros((100, 120), np.bool_), "hall")
+    with pytest.raises(InputError, match=r"far: start 9,1\.5 is not all within the area"):
+        prepare(hall, specs, ExploreSetup(area=HALF_THE_OFFICE))
 
 
 def memory_and_tiles(team: list[Exploring], places: NDArray[np.float64], seed: int) -> tuple[int, int]:

@@ -5,6 +5,9 @@ from __future__ import annotations
 from msgspec import Struct
 
 from vedette.domains.mapping.planners import DEFAULT
+from vedette.maps import GridFrame
+from vedette.maps.area import Area
+from vedette.maps.lattice import Lattice
 from vedette.missions.pairs import scheme_of
 
 
@@ -15,8 +18,28 @@ class ExploreOptions(Struct, forbid_unknown_fields=True, frozen=True):
     scheme: str | None = None  # of negotiation; None: the planner's own, or token
     fusion: str = "replicated"  # a name of ``vedette.missions.explore.assemble.FUSIONS``
     return_home: bool = False  # robots drive back to their starts in the end
+    area: tuple[tuple[float, float], ...] | None = None  # corners, x, y [m]: all outside is nobody's ground
+    unbounded: bool = False  # robots with a map of their world are not told how far it goes
 
     @property
     def negotiates_by(self) -> str:
         """The scheme; InputError if it is not the one that is part of the planner."""
         return scheme_of(self.planner, self.scheme)
+
+    def lattice(self, resolution: float, origin: tuple[float, float] = (0.0, 0.0)) -> Lattice:
+        """Return the lattice of a team that knows of its ground no more than the area.
+
+        Raises:
+            InputError: the area is none, or too large.
+        """
+        return Lattice.open(resolution, origin, self._area)
+
+    def lattice_on(self, frame: GridFrame) -> Lattice:
+        """Return the lattice of a team on a map; InputError if the area is none, or too large."""
+        if self.unbounded:
+            return self.lattice(frame.resolution, (frame.origin_x, frame.origin_y))
+        return Lattice(frame, self._area)
+
+    @property
+    def _area(self) -> Area | None:
+        return None if self.area is None else Area.of(self.area)

@@ -11,6 +11,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.maps.lattice import Lattice
 from vedette.maps.world import World
 from vedette.missions.explore.options import ExploreOptions
 from vedette.net.config import OF_BODY
@@ -29,6 +30,11 @@ class ExplorePlan:
     speed: float  # times real time
     lease: float = 3.0  # [s]
     shared_clock = False  # robots begin when they have found each other
+
+    @property
+    def lattice(self) -> Lattice:
+        """That the robots agree on."""
+        return self.options.lattice_on(self.world.frame)
 
     @property
     def size(self) -> int:

@@ -16,7 +16,7 @@ from vedette.missions.explore.assemble import assemble, terms_of
 from vedette.missions.explore.options import ExploreOptions
 from vedette.net.config import AgentConfig
 from vedette.net.explore.content import ExploreTeller
-from vedette.net.real import real_frame, real_robot
+from vedette.net.real import RESOLUTION, real_robot
 from vedette.net.robot import Robot
 from vedette.net.simulated import simulated_robot
 from vedette.team import Most, PlatformSpec
@@ -39,8 +39,9 @@ def explorer(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robo
     Raises:
         InputError: the map or the start cannot be used, or the robot does not tell what is needed.
     """
-    place = _simulated(config, folder) if config.body.ros2 is None else _real(config)
     best, options = config.best, config.explore or ExploreOptions()
+    real = config.body.ros2 is not None
+    place = _real(config, options) if real else _simulated(config, folder, options)
     agent = assemble(
         place.lattice,
         place.hull,
@@ -55,16 +56,18 @@ def explorer(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robo
     return Robot(agent, place.body, place.shown, ExploreTeller(agent), terms, place.time)
 
 
-def _simulated(config: AgentConfig, folder: Path) -> _Place:
+def _simulated(config: AgentConfig, folder: Path, options: ExploreOptions) -> _Place:
     assert config.body.map is not None
     world = World.from_map(folder / config.body.map, config.body.resolution)
-    body = simulated_robot(config, world)
-    return _Place(Lattice(world.frame), body.hull, body, body, {"map.content": _fingerprint(world)})
+    lattice = options.lattice_on(world.frame)
+    body = simulated_robot(config, world, lattice.area)
+    return _Place(lattice, body.hull, body, body, {"map.content": _fingerprint(world)})
 
 
-def _real(config: AgentConfig) -> _Place:
+def _real(config: AgentConfig, options: ExploreOptions) -> _Place:
+    lattice = options.lattice(config.body.resolution or RESOLUTION)
     body = real_robot(config)
-    return _Place(Lattice(real_frame(config)), body.hull, body, None, {}, body.time)
+    return _Place(lattice, body.hull, body, None, {}, body.time)
 
 
 def _fingerprint(world: World) -> str:

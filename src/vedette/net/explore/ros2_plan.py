@@ -16,6 +16,7 @@ import msgspec
 import numpy as np
 
 from vedette.errors import InputError
+from vedette.maps.lattice import Lattice
 from vedette.net.explore.plan import ExplorePlan
 from vedette.net.names import robot_name
 from vedette.record.files import write_text
@@ -32,6 +33,11 @@ DOMAINS = 100  # of ROS that every host has
 class Ros2Plan(ExplorePlan):
     """``vedette.net.launch.TeamPlan``; a robot's own map begins where the robot starts."""
 
+    @property
+    def lattice(self) -> Lattice:
+        """That the robots agree on; nobody tells them how large the building is."""
+        return self.options.lattice(self.world.frame.resolution)
+
     def write(self, folder: Path) -> None:
         """Write the building, and the robots' file for those who simulate them."""
         super().write(folder)
@@ -43,17 +49,17 @@ class Ros2Plan(ExplorePlan):
 
     def config(self, i: int, pose: Sequence[float] | None) -> dict[str, Any]:
         """Return what a robot's file says of its mission; the robot itself says where it is."""
-        told, spec, frame = super().config(i, None), self.specs[i], self.world.frame
-        left, right, lower, upper = frame.extent
+        told, spec = super().config(i, None), self.specs[i]
         ros2 = {
             "namespace": _namespace(i),
             "use_sim_time": True,  # a host that is too slow for them slows the mission down
             "no_return": "free",  # what simulated lidars do not see is not there
             "start": self._start(i),
-            "area": [left, lower, right, upper],
         }
         body = {"radius": spec.radius, "speed": spec.speed, "turn_rate": spec.turn_rate, "ros2": ros2}
-        return told | {"body": {**body, "resolution": frame.resolution, "range_noise": spec.range_noise}}
+        return told | {
+            "body": {**body, "resolution": self.world.frame.resolution, "range_noise": spec.range_noise}
+        }
 
     def _start(self, i: int) -> list[float]:
         x, y, heading = self.starts[i].tolist()

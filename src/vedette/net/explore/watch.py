@@ -10,6 +10,7 @@ from math import inf
 import numpy as np
 
 from vedette.agent.state import State
+from vedette.domains.mapping.belief import planning_factor
 from vedette.domains.mapping.impact import MapImpactCodec
 from vedette.maps import GridFrame
 from vedette.net.explore.content import view_of
@@ -34,9 +35,11 @@ class ExploreWatcher:
         self, plan: ExplorePlan, setting: Setting, sinks: Sequence[Sink[ExploreSnapshot]] = ()
     ) -> None:
         """Prepare to watch; the ``sinks`` follow the mission."""
-        self._observer = ExploreObserver(plan.world, plan.specs, plan.starts, plan.options, setting, sinks)
-        self._frame = plan.world.frame
-        self._codec = MapImpactCodec(self._observer.log.scene.planning.size)
+        self._observer = ExploreObserver(
+            plan.world, plan.specs, plan.starts, plan.options, setting, sinks, plan.lattice
+        )
+        self._frame = plan.lattice.frame
+        self._codec = MapImpactCodec(self._frame.coarse(planning_factor(self._frame.resolution)).size)
         self._views = [
             _unheard(spec.name, start, self._frame)
             for spec, start in zip(plan.specs, plan.starts.tolist(), strict=True)

@@ -61,10 +61,11 @@ class ExploreObserver:
 
         The ``sinks`` follow the mission while it goes on. ``lattice``: the team's; None: the world's map.
         """
-        ground = world.frame if lattice is None else lattice.frame
+        lattice = lattice or Lattice(world.frame)
+        ground = lattice.frame
         self._planning = ground.coarse(planning_factor(ground.resolution))  # of the robots' impacts
         self._world, self._options, self._setting = world, options, setting
-        self._reference = Reference(world, specs, starts)
+        self._reference = Reference(world.within(lattice.area), specs, starts)
         self._progress = CoverageProgress()
         self.period = LOOK_PERIOD if world.frame.size <= LARGE else LOOK_PERIOD_IF_LARGE  # of looking [s]
         self.log = ExploreLog(ExploreScene.of(world, [spec.name for spec in specs]), sinks)

@@ -29,7 +29,8 @@ def prepare(world: World, specs: Sequence[PlatformSpec], setup: ExploreSetup) ->
     """
     specs = check_team(specs)
     setup.check_team(len(specs))
-    starts = choose_starts(world, specs, np.random.default_rng([setup.seed, 1]))
+    area = setup.options.lattice_on(world.frame).area
+    starts = choose_starts(world, specs, np.random.default_rng([setup.seed, 1]), area)
     return ExploreSimulation(world, specs, starts, setup)
 
 
@@ -65,15 +66,8 @@ def observer_of(
 ) -> ExploreObserver:
     """Return an observer of a simulated mission that has not begun."""
     setup = simulation.setup
-    return ExploreObserver(
-        simulation.world,
-        simulation.specs,
-        simulation.starts,
-        setup.options,
-        setting(setup),
-        sinks,
-        setup.lattice,
-    )
+    team = simulation.world, simulation.specs, simulation.starts
+    return ExploreObserver(*team, setup.options, setting(setup), sinks, simulation.lattice)
 
 
 def views(simulation: ExploreSimulation) -> list[RobotView]:

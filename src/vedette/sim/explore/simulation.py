@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from vedette.agent import Agent, GroundBehaviour
 from vedette.agent.driving import Driver
 from vedette.domains.mapping.planners import DEFAULT
-from vedette.maps.lattice import Lattice
 from vedette.maps.world import World
 from vedette.missions.explore.assemble import assemble
 from vedette.missions.explore.exploring import Exploring
@@ -30,12 +29,15 @@ class ExploreSetup(Setup):
     planner: str = DEFAULT
     fusion: str = "replicated"
     return_home: bool = False
-    lattice: Lattice | None = None  # that the team agrees on; None: that of the world's map
+    area: tuple[tuple[float, float], ...] | None = None  # corners [m], as in ``ExploreOptions``
+    unbounded: bool = False
 
     @property
     def options(self) -> ExploreOptions:
         """How the team explores."""
-        return ExploreOptions(self.planner, self.scheme, self.fusion, self.return_home)
+        return ExploreOptions(
+            self.planner, self.scheme, self.fusion, self.return_home, self.area, self.unbounded
+        )
 
 
 class ExploreSimulation(Simulation):
@@ -56,6 +58,7 @@ class ExploreSimulation(Simulation):
             InputError: the planner is unknown, or negotiates otherwise.
         """
         _ = setup.options.negotiates_by
+        self.lattice = setup.options.lattice_on(world.frame)
         self.setup = setup
         self.world, self.specs, self.starts = world, tuple(specs), starts
         self.robots = Robots(world, self.specs, starts, random_streams(setup.seed, len(specs)))
@@ -63,9 +66,8 @@ class ExploreSimulation(Simulation):
 
     def _explorer(self, robot: int, boot: int) -> Agent:
         specs = self.specs
-        lattice = self.setup.lattice or Lattice(self.world.frame)
         options, most = self.setup.options, Most.of(specs)
-        return assemble(lattice, specs[robot], options, robot, boot, robots=len(specs), most=most)
+        return assemble(self.lattice, specs[robot], options, robot, boot, robots=len(specs), most=most)
 
     @property
     def missions(self) -> list[Exploring]:
