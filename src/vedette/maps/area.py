@@ -13,7 +13,7 @@ from vedette.errors import InputError
 from vedette.maps.frame import OCCUPIED, GridFrame
 
 MOST_CORNERS = 1000
-MOST_METRES = 1e6  # from the team frame's origin
+MOST_METRES = 2.1e7  # from the team frame's origin, as far as UTM's coordinates reach
 
 
 @dataclass(frozen=True)
