@@ -17,6 +17,7 @@ from tests.support.commands import FILES, Command, check_files, refused, start
 from tests.support.places import ROOT
 from tests.support.search_missions import EYE, SMALL
 from vedette.domains.search import prediction
+from vedette.missions.search.case import read_case
 from vedette.record.summary import Traffic
 
 FIELDS = [
@@ -207,15 +208,63 @@ def test_the_record_has_the_pdf_the_vehicles_and_the_truth(vedette: Command) -> 
         [{"type": "polygon", "corners": [[100, 100], [900, 150], [500, 700]]}],
         [{"type": "image", "file": "heat.png"}, {"type": "uniform", "weight": 0.2}],
         [{"type": "gaussian", "mean": [500, 400], "covariance": [[9000, 3000], [3000, 6000]]}],
+        [{"type": "image", "file": "heat.npy", "extent": [200, 100, 900, 700]}],
+        [{"type": "rings", "centre": [600, 400], "distances": [150, 300], "within": [0.5, 0.95]}],
     ],
 )
 def test_priors_of_every_kind_can_be_searched(vedette: Command, prior: list[dict[str, Any]]) -> None:
     shade = np.zeros((30, 40), np.uint8)
     shade[10:20, 5:25] = 200
     Image.fromarray(shade).save("heat.png")
+    np.save("heat.npy", shade / 7.0)
     ran = vedette("search", scenario(prior=prior), "--max-time", 4, "--out", "out", *QUICK)
     assert ran.status in (0, 1), ran.err
     check_run(Path("out"))
+
+
+def test_nobody_takes_the_target_to_be_in_a_no_go_area_and_searched_tracks_are_thinned(
+    vedette: Command,
+) -> None:
+    known = {
+        "prior": [{"type": "uniform"}],
+        "searched": [{"path": [[100, 220], [1100, 220]], "width": 40, "detection": 0.75}],
+        "no_go": [[[400, 400], [800, 400], [800, 600], [400, 600]]],
+    }
+    mass = read_case(scenario(**known)).pdf.mass
+    assert mass[10:15, 10:20].max() == 0.0
+    assert mass[5, 10] == pytest.approx(0.25 * mass[2, 10])
+    assert mass.sum() == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("name", ["search", "hiker"])
+def test_the_examples_can_be_searched(vedette: Command, name: str) -> None:
+    path = ROOT / "examples" / "scenarios" / f"{name}.yaml"
+    ran = vedette("search", path, "--max-time", 6, "--out", "out", "--json", *QUICK)
+    assert (ran.status, json.loads(ran.out)["scenario"]) == (1, name)
+    check_run(Path("out"))
+
+
+def test_a_search_in_utm_coordinates_is_that_at_the_origin_moved(vedette: Command) -> None:
+    x, y = 500_000.0, 5_000_000.0
+
+    def moved(place: list[float]) -> list[float]:
+        return [place[0] + x, place[1] + y, *place[2:]]
+
+    away = {
+        "area": [x, y, x + 1200, y + 800],
+        "prior": [part | {"mean": moved(part["mean"])} for part in SMALL["prior"]],
+        "vehicles": [each | {"start": moved(each["start"])} for each in SMALL["vehicles"]],
+    }
+    summaries = []
+    for changes in ({}, away):
+        arguments = ("--seed", 1, "--json", "--out", "out", "--force", *QUICK)
+        ran = vedette("search", scenario(**changes), *arguments)
+        assert (ran.status, ran.err) == (0, "")
+        summaries.append(json.loads(ran.out))
+    here, there = summaries
+    assert there["target_m"] == pytest.approx(moved(here["target_m"]), abs=1e-5)
+    for name in ("found_s", "detection", "mean_time_s", "path_m", "rounds"):
+        assert there[name] == pytest.approx(here[name], rel=1e-6), name
 
 
 def test_the_example_is_the_search_without_a_file(vedette: Command) -> None:
@@ -294,6 +343,7 @@ def test_a_drift_that_stays_within_the_area_is_not_told(vedette: Command) -> Non
 
 ONE = SMALL["vehicles"][0]
 GAUSSIAN = SMALL["prior"][0]
+RINGS = {"type": "rings", "centre": [600, 400], "distances": [150, 300], "within": [0.5, 0.95]}
 
 
 @pytest.mark.parametrize(
@@ -320,6 +370,24 @@ GAUSSIAN = SMALL["prior"][0]
         ),
         ({"prior": [{"type": "image", "file": "missing.png"}]}, ["prior[0]", "missing.png"]),
         ({"prior": [{"type": "image", "file": "black.png"}]}, ["prior[0]", "no mass"]),
+        (
+            {"prior": [{"type": "image", "file": "jet.png"}]},
+            ["prior[0]", "heat map jet.png has colours", "grey"],
+        ),
+        (
+            {"prior": [{"type": "image", "file": "black.png", "extent": [5000, 0, 6000, 800]}]},
+            ["prior[0]", "beside the area"],
+        ),
+        ({"prior": [RINGS | {"within": [0.5]}]}, ["prior[0]", "a share for each of 2 distances"]),
+        ({"prior": [RINGS | {"distances": [300, 200]}]}, ["prior[0]", "distances must rise"]),
+        ({"prior": [RINGS | {"centre": [90000, 0]}]}, ["prior[0]", "rings", "no mass"]),
+        ({"searched": [{"path": [[0, 0]], "width": 9, "detection": 0.5}]}, ["searched[0].path"]),
+        (
+            {"searched": [{"path": [[9000, 0], [9900, 0]], "width": 9, "detection": 0.5}]},
+            ["searched[0]", "nothing of the track"],
+        ),
+        ({"no_go": [[[9000, 0], [9900, 0], [9000, 9]]]}, ["no_go[0]", "nothing of the polygon"]),
+        ({"no_go": [[[0, 0], [1200, 0], [1200, 800], [0, 800]]]}, ["prior, less", "no mass"]),
         ({"prior": [GAUSSIAN | {"weight": 0}]}, ["prior[0].weight", "0"]),
         ({"detector": {"type": "definit"}}, ["detector", "definit", "'definite'"]),
         ({"detector": {"type": "definite", "rnage": 4}}, ["detector", "rnage", "'range'"]),
@@ -356,6 +424,7 @@ def test_scenarios_that_make_no_sense_are_refused(
     vedette: Command, changes: dict[str, Any], words: list[str]
 ) -> None:
     Image.new("L", (8, 8), 0).save("black.png")
+    Image.new("RGB", (8, 8), (200, 30, 30)).save("jet.png")
     ran = vedette("search", scenario(**changes), "--out", "out")
     refused(ran, *words)
 

@@ -16,7 +16,7 @@ from vedette.domains.search import priors, worth
 from vedette.domains.search.belief import TargetPdf, freeze
 from vedette.domains.search.motion import TargetMotion, moves
 from vedette.domains.search.priors import GaussianPart
-from vedette.errors import InputError
+from vedette.errors import InputError, InputWarning
 from vedette.maps import GridFrame
 
 UNIT = GridFrame(1.0, 8, 10)
@@ -148,6 +148,20 @@ def test_a_heat_map_keeps_the_share_of_every_quarter(tmp_path: Path, size: tuple
     assert mass.sum() == pytest.approx(1.0)
     assert mass[:4, :5].sum() == pytest.approx(fine[:rows, :cols].sum(), abs=1e-6)
     assert mass[4:, :5].sum() == pytest.approx(fine[rows:, :cols].sum(), abs=1e-6)
+
+
+def test_a_heat_map_with_a_place_of_its_own_lies_there(tmp_path: Path) -> None:
+    """Of an area of 10 m by 8 m the map covers x 4 to 12 and y -2 to 6, in pixels of 0.5 m and 2 m."""
+    values = np.random.default_rng(3).random((4, 16))
+    np.save(tmp_path / "heat.npy", values)
+    with pytest.warns(InputWarning, match=r"\d\d% of it is outside the area"):
+        mass = priors.heat_map(UNIT, tmp_path / "heat.npy", (4.0, -2.0, 12.0, 6.0))
+    fine = np.kron(values, np.ones((4, 1)))[4:, :12]  # of 0.5 m, inside the area
+    expected = np.zeros((8, 10))
+    expected[:6, 4:] = fine.reshape(6, 2, 6, 2).sum(axis=(1, 3))
+    np.testing.assert_allclose(mass, expected / expected.sum(), atol=1e-12)
+    with pytest.raises(InputError, match="beside the area"):
+        priors.heat_map(UNIT, tmp_path / "heat.npy", (10.0, 0.0, 20.0, 8.0))
 
 
 def test_a_mixture_weighs_its_parts() -> None:

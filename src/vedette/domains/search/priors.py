@@ -1,8 +1,9 @@
-"""Where a target is taken to be at first: uniform, Gaussians, a polygon, or an image."""
+"""Where a target is taken to be at first: uniform, Gaussians, a polygon, or a heat map."""
 
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,9 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from vedette.domains.search.belief import normalised
-from vedette.errors import InputError
+from vedette.errors import InputError, InputWarning
 from vedette.maps import GridFrame
-from vedette.maps.image import read_levels
+from vedette.maps.raster import Extent, read_raster
 
 LEAST_INSIDE = 0.01  # of a Gaussian's mass, in the area
 _FINE = 4  # points along each side of a cell that a polygon is tested at
@@ -79,7 +80,13 @@ def _covariance(field: str, given: object) -> NDArray[np.float64]:
 
 
 def polygon(frame: GridFrame, corners: ArrayLike) -> NDArray[np.float64]:
-    """Uniform inside a polygon (even-odd rule), cells at its edge by the share of them that is inside.
+    """Uniform inside a polygon, cells at its edge by the share of them that is inside; as `polygon_share`."""
+    share = polygon_share(frame, corners)
+    return np.asarray(share / share.sum())
+
+
+def polygon_share(frame: GridFrame, corners: ArrayLike) -> NDArray[np.float64]:
+    """Return the share of each cell that is inside a polygon (even-odd rule), ``(R, C)``.
 
     Args:
         frame: the grid.
@@ -101,35 +108,57 @@ def polygon(frame: GridFrame, corners: ArrayLike) -> NDArray[np.float64]:
         crossed = np.flatnonzero((y1 <= y) != (y2 <= y))
         where = x1 + (y[crossed] - y1) / (y2 - y1) * (x2 - x1) if len(crossed) else crossed
         inside[crossed] ^= x < where[:, None]
-    share = inside.reshape(frame.rows, _FINE, frame.cols, _FINE).mean(axis=(1, 3))
+    share: NDArray[np.float64] = inside.reshape(frame.rows, _FINE, frame.cols, _FINE).mean(axis=(1, 3))
     if not share.any():
         raise InputError("prior: nothing of the polygon is in the area; check its corners, in m, team frame")
-    return np.asarray(share / share.sum())
+    return share
 
 
-def heat_map(frame: GridFrame, path: Path) -> NDArray[np.float64]:
-    """Probabilities in proportion to the grey levels of an image stretched over the area, black is 0.
+def heat_map(frame: GridFrame, path: Path, extent: Extent | None = None) -> NDArray[np.float64]:
+    """Probabilities in proportion to the numbers of a raster where it lies, or stretched over the area.
 
-    Each cell takes the mean of what covers it; transparent pixels count as black.
+    Each cell takes what covers it. The raster's own place is less than ``extent``, lowest x, lowest y,
+    highest x, highest y [m].
 
     Raises:
-        InputError: an image that cannot be read, or is black all over.
+        InputError: a raster that cannot be read, in colours, 0 all over, or beside the area.
+        InputWarning: some of it is outside the area.
     """
-    levels = read_levels(path)
-    grey = levels.grey.astype(np.float32)
-    if levels.alpha is not None:
-        grey *= levels.alpha / np.float32(255.0)
-    rows, cols = (_overlap(n, size) for n, size in zip(frame.shape, grey.shape, strict=True))
-    return normalised(frame, np.asarray(rows @ grey @ cols.T, np.float64), f"prior: image {path}")
+    raster = read_raster(path, "heat map")
+    x0, x1, y0, y1 = frame.extent
+    left, low, right, high = extent or raster.extent or (x0, y0, x1, y1)
+    if left >= x1 or right <= x0 or low >= y1 or high <= y0:
+        raise InputError(
+            f"heat map {path}: it lies at x {left:.10g} to {right:.10g} m, y {low:.10g} to {high:.10g} m, "
+            f"beside the area of x {x0:.10g} to {x1:.10g} m, y {y0:.10g} to {y1:.10g} m"
+        )
+    values = raster.values / (raster.values.max() or 1.0)
+    rows = _overlap(frame.rows, frame.resolution / (high - low), (y0 - low) / (high - low), len(values))
+    cols = _overlap(
+        frame.cols, frame.resolution / (right - left), (x0 - left) / (right - left), values.shape[1]
+    )
+    mass = np.asarray(rows @ values @ cols.T, np.float64)
+    told = normalised(frame, mass, f"heat map {path}")
+    tell_outside(f"heat map {path}", 1.0 - float(mass.sum()) / float(values.sum()))
+    return told
 
 
-def _overlap(cells: int, pixels: int) -> NDArray[np.float32]:
-    """``(cells, pixels)`` share of each cell that each pixel covers, both along the same side."""
-    edges = np.arange(cells + 1) * (pixels / cells)
+def _overlap(cells: int, side: float, start: float, pixels: int) -> NDArray[np.float64]:
+    """``(cells, pixels)`` share of each pixel that each cell covers, along one side of the raster.
+
+    Cells of ``side`` begin at ``start``, both as shares of the raster's length.
+    """
+    edges = (start + np.arange(cells + 1) * side) * pixels
     first = np.arange(pixels)
     covered = np.minimum(edges[1:, None], first + 1) - np.maximum(edges[:-1, None], first)
-    share: NDArray[np.float32] = (np.maximum(covered, 0.0) * (cells / pixels)).astype(np.float32)
-    return share
+    return np.asarray(np.maximum(covered, 0.0))
+
+
+def tell_outside(what: str, share: float) -> None:
+    """Say that a share of a part of the prior lies outside the area, if that is more than 1 %."""
+    if share > LEAST_INSIDE:
+        line = f"{what}: {share:.0%} of it is outside the area; what is inside counts as all"
+        warnings.warn(line, InputWarning, stacklevel=5)
 
 
 def mixture(frame: GridFrame, parts: Sequence[tuple[float, NDArray[np.float64]]]) -> NDArray[np.float64]:

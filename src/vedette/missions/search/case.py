@@ -8,19 +8,17 @@ from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
 
-import numpy as np
 import yaml
-from numpy.typing import NDArray
 
 from vedette.agent.body import TICK
 from vedette.domains.search.belief import TargetPdf
 from vedette.domains.search.detectors import Detector, detector_from
 from vedette.domains.search.motion import TargetMotion
 from vedette.domains.search.platform import SearchPlatform
-from vedette.domains.search.priors import GaussianPart, gaussians, heat_map, mixture, polygon, uniform
 from vedette.errors import InputError
 from vedette.maps import GridFrame
-from vedette.missions.search.scenario import Gaussian, Heat, Polygon, Prior, SearchScenario, Uniform
+from vedette.missions.search.prior import parts_of, prior_of
+from vedette.missions.search.scenario import SearchScenario
 from vedette.missions.search.suits import MOST_CELLS, check_cells, check_drift
 from vedette.scenario import as_scenario, load_scenario
 
@@ -99,13 +97,13 @@ def made(scenario: SearchScenario, path: Path) -> SearchCase:
         frame, target = scenario.frame, scenario.target
         if target.start is not None:
             _check_inside("target.start", target.start, frame)
-        parts = [(part.weight, _part(i, part, frame, path.parent)) for i, part in enumerate(scenario.prior)]
+        parts = parts_of(scenario, path.parent)
         motion = TargetMotion(target.drift, target.diffusion, target.border == "leave")
-        pdf = TargetPdf(frame, mixture(frame, parts), motion, scenario.step)
+        pdf = TargetPdf(frame, prior_of(scenario, parts), motion, scenario.step)
         _ = pdf.stencil
         detectors = tuple(_detectors(scenario))
         check_cells(pdf, detectors, scenario.vehicle_names)
-        means = {f"the mean of prior[{i}]": frame.mean(part) for i, (_, part) in enumerate(parts)}
+        means = {f"the mean of prior[{i}]": frame.mean(part) for i, part in enumerate(parts)}
         check_drift(means | ({} if target.start is None else {"target.start": target.start}), scenario)
         return SearchCase(path.stem, scenario, pdf, detectors)
     except InputError as error:
@@ -123,27 +121,6 @@ def _detectors(scenario: SearchScenario) -> list[Detector]:
         except InputError as error:
             raise InputError(f"vehicles[{i}].{error}" if own else str(error)) from error
     return detectors
-
-
-def _part(i: int, part: Prior, frame: GridFrame, folder: Path) -> NDArray[np.float64]:
-    try:
-        match part:
-            case Uniform():
-                return uniform(frame)
-            case Polygon():
-                return polygon(frame, part.corners)
-            case Heat():
-                return heat_map(frame, folder / part.file)
-            case Gaussian():
-                if part.sigma is not None and part.covariance is not None:
-                    raise InputError("give either sigma or covariance")
-                spread = part.sigma if part.sigma is not None else part.covariance
-                if spread is None:
-                    raise InputError("give sigma or covariance")
-                return gaussians(frame, [GaussianPart(part.mean, spread)])
-    except InputError as error:
-        said = str(error).removeprefix("prior: ").removeprefix("gaussian 1: ")
-        raise InputError(f"prior[{i}]: {said}") from error
 
 
 def _check_area(scenario: SearchScenario) -> None:

@@ -11,7 +11,10 @@ from vedette.domains.search.worth import Worth, discounted, mean_time, plain
 from vedette.maps import GridFrame
 from vedette.scenario import Metre, Name
 
+Length = Annotated[float, Meta(gt=0.0, le=1e6)]  # [m]
 Weight = Annotated[float, Meta(gt=0.0, le=1e9)]
+
+Corners: TypeAlias = Annotated[tuple[tuple[Metre, Metre], ...], Meta(min_length=3)]
 
 MOST_VEHICLES = 64
 
@@ -36,18 +39,38 @@ class Gaussian(
 class Polygon(Struct, forbid_unknown_fields=True, frozen=True, kw_only=True, tag_field="type", tag="polygon"):
     """Anywhere in a polygon alike."""
 
-    corners: Annotated[tuple[tuple[Metre, Metre], ...], Meta(min_length=3)]
+    corners: Corners
     weight: Weight = 1.0
 
 
 class Heat(Struct, forbid_unknown_fields=True, frozen=True, kw_only=True, tag_field="type", tag="image"):
-    """As the grey levels of an image stretched over the area, black is nowhere."""
+    """As the numbers of a raster, a grey image for instance, 0 or black is nowhere."""
 
     file: str  # relative to the scenario's folder
+    extent: tuple[Metre, Metre, Metre, Metre] | None = (
+        None  # where it lies, as ``area``; else as the file says
+    )
     weight: Weight = 1.0
 
 
-Prior: TypeAlias = Uniform | Gaussian | Polygon | Heat
+class Rings(Struct, forbid_unknown_fields=True, frozen=True, kw_only=True, tag_field="type", tag="rings"):
+    """Round the last known place, by how far such people were found from theirs."""
+
+    centre: tuple[Metre, Metre]
+    distances: Annotated[tuple[Length, ...], Meta(min_length=1, max_length=100)]
+    within: Annotated[tuple[Annotated[float, Meta(gt=0.0, le=1.0)], ...], Meta(min_length=1)]  # share by each
+    weight: Weight = 1.0
+
+
+Prior: TypeAlias = Uniform | Gaussian | Polygon | Heat | Rings
+
+
+class Searched(Struct, forbid_unknown_fields=True, frozen=True):
+    """A track that somebody has searched already, in vain."""
+
+    path: Annotated[tuple[tuple[Metre, Metre], ...], Meta(min_length=2, max_length=10_000)]
+    width: Length  # of what it covered, half on each side
+    detection: Annotated[float, Meta(gt=0.0, le=1.0)]  # probability of detection of a target there
 
 
 class Target(Struct, forbid_unknown_fields=True, frozen=True):
@@ -93,6 +116,8 @@ class SearchScenario(Struct, forbid_unknown_fields=True, frozen=True, kw_only=Tr
     area: tuple[Metre, Metre, Metre, Metre]  # lowest x, lowest y, highest x, highest y [m]
     cell: Annotated[float, Meta(gt=0.0, le=1e6)] = 25.0  # side of a cell [m]
     prior: Annotated[tuple[Prior, ...], Meta(min_length=1, max_length=1000)]
+    searched: Annotated[tuple[Searched, ...], Meta(max_length=1000)] = ()
+    no_go: Annotated[tuple[Corners, ...], Meta(max_length=1000)] = ()  # polygons in which the target is not
     target: Target = Target()
     vehicles: Annotated[tuple[SearchVehicle, ...], Meta(min_length=1, max_length=MOST_VEHICLES)]
     detector: dict[str, Any] = field(
