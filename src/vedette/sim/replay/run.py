@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from vedette.agent import Agent
-from vedette.agent.events import Pose, Scan
+from vedette.agent.events import Pose, Scan, Sensed
 from vedette.agent.mates import Mate
 from vedette.domains.mapping.planners import DEFAULT
 from vedette.domains.mapping.sightings import BINS
@@ -35,9 +35,9 @@ LOOK_PERIOD = 1.0  # [s]
 class Following(Exploring):
     """Sees what was recorded: no mate was in those scans, and the mission ends with the log."""
 
-    def observe(self, scan: Scan, pose: Pose, mates: Sequence[Mate], now: float) -> None:
+    def observe(self, seen: Scan | Sensed, pose: Pose, mates: Sequence[Mate], now: float) -> None:
         """Add a scan to the robot's own evidence, whoever is said to stand where now."""
-        super().observe(scan, pose, (), now)
+        super().observe(seen, pose, (), now)
 
     def nothing_left(self, value: float, now: float) -> bool:
         """Tell that there is more, to the end."""
