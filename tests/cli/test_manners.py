@@ -41,6 +41,65 @@ def test_a_mistyped_command_gets_the_nearest_one(
     refused(vedette(*typed), f"id you mean {meant!r}?")
 
 
+@pytest.mark.parametrize(
+    ("typed", "said"),
+    [
+        (("explore", "--robot", 3), "unknown option '--robot'; did you mean '--robots'?"),
+        (("track", "--no-compaer"), "unknown option '--no-compaer'; did you mean '--no-compare'?"),
+        (("team", "search", "--leese", 3), "unknown option '--leese'; did you mean '--lease'?"),
+        (("--verson",), "unknown option '--verson'; did you mean '--version'?"),
+        (("explore", "--zzz"), "unknown option '--zzz'; see vedette explore --help"),
+        (("study",), "SPEC is missing; see vedette study --help"),
+        (("keys", "pair"), "DIR is missing; see vedette keys --help"),
+    ],
+)
+def test_a_mistyped_option_gets_the_nearest_one_and_a_missing_argument_its_help(
+    vedette: Command, typed: tuple[str, ...], said: str
+) -> None:
+    refused(vedette(*typed), said)
+
+
+@pytest.mark.parametrize(
+    ("typed", "said"),
+    [
+        (("explore", "agent.yaml"), "agent.yaml is a robot's file, not a map; it goes with: vedette agent"),
+        (
+            ("agent", "track.yaml"),
+            "track.yaml is a tracking scenario, not a robot's file; it goes with: vedette t",
+        ),
+        (
+            ("track", "search.yaml"),
+            "search.yaml is a search scenario, not a tracking scenario; it goes with: ",
+        ),
+        (("search", "track.yaml"), "track.yaml is a tracking scenario, not a search scenario"),
+        (("explore", "--team", "agent.yaml"), "agent.yaml is a robot's file, not a team file"),
+        (("explore", "--faults", "track.yaml"), "track.yaml is a tracking scenario, not a fault schedule"),
+        (("study", "agent.yaml"), "agent.yaml is a robot's file, not a study's spec"),
+    ],
+)
+def test_a_file_given_to_another_command_is_sent_to_its_own(
+    vedette: Command, typed: tuple[str, ...], said: str
+) -> None:
+    Path("agent.yaml").write_text("team: office\nrobot: 1\nlinks: {insecure: true}\n")
+    Path("track.yaml").write_text("area: [0, 0, 9, 9]\nvehicles: []\ntargets: []\n")
+    Path("search.yaml").write_text("area: [0, 0, 9, 9]\nvehicles: []\nprior: []\n")
+    refused(vedette(*typed), said)
+
+
+def test_two_files_of_one_robot_are_not_asked_as_one(vedette: Command) -> None:
+    text = "team: office\nrobot: 1\nlinks: {insecure: true}\nbody: {map: map.yaml, start: [1, 1, 0]}\n"
+    for name in ("a.yaml", "b.yaml"):
+        Path(name).write_text(text)
+    refused(vedette("status", "a.yaml", "b.yaml"), "a.yaml and b.yaml are both of robot 1; leave one out")
+    Path("b.yaml").write_text(text.replace("robot: 1", "robot: 2").replace("insecure", "scouting"))
+    refused(vedette("status", "a.yaml", "b.yaml"), "some of the files have secured links and some have not")
+
+
+def test_force_without_a_folder_is_told_to_be_in_vain(vedette: Command) -> None:
+    ran = vedette("explore", "--robots", 1, "--max-time", 0.5, "--json", "--force")
+    assert ran.err == "vedette: --force changes nothing without --out: the results go into a new folder\n"
+
+
 def test_a_robots_file_that_is_not_there_is_not_called_a_scenario(vedette: Command) -> None:
     refused(vedette("agent", "nowhere.yaml"), "cannot read robot's file nowhere.yaml")
 
@@ -64,7 +123,7 @@ def test_the_version_is_that_of_the_project_wherever_one_asks(vedette: Command) 
         ("vedette wo", ["plain,world"]),
         ("vedette explore --planner ", [f"plain,{name}" for name in PLANNERS]),
         ("vedette explore --planner ja", ["plain,jacobi"]),
-        ("vedette world ", [f"plain,{name}" for name in GENERATORS]),
+        ("vedette world ", [f"plain,{name}" for name in (*GENERATORS, "log")]),
         ("vedette explore my-w", ["file,my-w"]),
         ("vedette track --out my-w", ["file,my-w"]),
         ("vedette status pair", ["file,pair"]),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import sys
 import warnings
 from collections.abc import Iterator
@@ -91,9 +92,28 @@ def _main() -> None:
         click.echo(error.format_message(), err=True)
         sys.exit(BAD_INPUT)
     except (click.ClickException, InputError) as error:
-        text = error.format_message() if isinstance(error, click.ClickException) else str(error)
-        _say(text)
+        _say(_line(error))
         sys.exit(BAD_INPUT)
+
+
+def _line(error: click.ClickException | InputError) -> str:
+    """Return what is wrong, with the nearest option there is, or where all are listed."""
+    if isinstance(error, InputError):
+        return str(error)
+    help_of = (
+        f"see {error.ctx.command_path} --help" if isinstance(error, click.UsageError) and error.ctx else ""
+    )
+    if isinstance(error, click.NoSuchOption) and error.ctx is not None:
+        known = [
+            name for each in error.ctx.command.get_params(error.ctx) for name in each.opts if name[0] == "-"
+        ]
+        close = difflib.get_close_matches(error.option_name, known, n=1)
+        return f"unknown option {error.option_name!r}; {f'did you mean {close[0]!r}?' if close else help_of}"
+    if isinstance(error, click.MissingParameter) and error.param is not None:
+        return (
+            f"{error.param.make_metavar(error.ctx) if error.ctx else error.param.name} is missing; {help_of}"
+        )
+    return error.format_message()
 
 
 @contextmanager

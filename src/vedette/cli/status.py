@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -11,7 +12,7 @@ from rich.console import Console
 from vedette.cli.options import FILE, Positive
 from vedette.errors import InputError
 from vedette.net.access import Access
-from vedette.net.config import ADMITTED, load_config
+from vedette.net.config import ADMITTED, AgentConfig, load_config
 from vedette.net.credentials import credentials
 from vedette.net.status import ask, status_table, team_status
 from vedette.net.transport import Operator
@@ -37,7 +38,10 @@ def status(config_paths: tuple[Path, ...], keys: Path | None, wait: float, as_js
     configs = [load_config(path) for path in config_paths]
     if len({config.team for config in configs}) > 1:
         raise InputError("the files are of different teams; ask for one team at a time")
+    _check_distinct(config_paths, configs)
     insecure = configs[0].links.insecure
+    if any(config.links.insecure != insecure for config in configs):
+        raise InputError("some of the files have secured links and some have not; ask for one kind at a time")
     if keys is None and not insecure:
         raise InputError("--keys is missing: the team's links are secured; give the operator's folder")
     operator = None if keys is None else credentials(keys, datetime.now(UTC))
@@ -54,3 +58,13 @@ def status(config_paths: tuple[Path, ...], keys: Path | None, wait: float, as_js
     agreed = len({condition.digest for condition in answered}) <= 1
     outcome = Outcome.COMPLETE if agreed and len(answered) == len(told) else Outcome.MAPS_DIFFER
     raise SystemExit(outcome.status)
+
+
+def _check_distinct(paths: Sequence[Path], configs: Sequence[AgentConfig]) -> None:
+    """Refuse two files of one robot, of which one would not be asked."""
+    first: dict[int, Path] = {}
+    for path, config in zip(paths, configs, strict=True):
+        if first.setdefault(config.robot, path) is not path:
+            raise InputError(
+                f"{first[config.robot]} and {path} are both of robot {config.robot}; leave one out"
+            )

@@ -35,7 +35,13 @@ class OutputFolder:
 
         Raises:
             InputError: as `output_directory`.
+
+        Warns:
+            InputWarning: ``force`` is in vain, for the folder is a new one.
         """
+        if force and out is None:
+            text = "--force changes nothing without --out: the results go into a new folder"
+            warnings.warn(text, InputWarning, stacklevel=2)
         return cls(new_directory("runs", stem) if out is None else output_directory(out, force, inputs))
 
     def __enter__(self) -> Self:
