@@ -93,7 +93,7 @@ def test_the_command_writes_a_map_that_a_team_can_explore(tmp_path: Path) -> Non
         (("log",), "vedette world log needs a FILE"),
         (("office", "a.log"), "office is generated, without a file; of a recording: vedette world log a.log"),
         (("log", "a.log", "--seed", "3"), "--seed is of generated worlds; leave it out"),
-        (("cave", "--range", "3"), "--range is of logs; leave it out"),
+        (("cave", "--range", "3"), "--range is of recordings; leave it out"),
     ],
 )
 def test_what_does_not_go_together_is_refused(words: tuple[str, ...], told: str, tmp_path: Path) -> None:

@@ -14,11 +14,12 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn
 
 from vedette.cli.ends import telling_what_is_missing
-from vedette.cli.options import FILE, OneOf, Positive, Share
+from vedette.cli.options import FILE, OneOf, Share
+from vedette.cli.recordings import recording, recording_options
 from vedette.domains.mapping.sightings import empty_counts
 from vedette.errors import InputError
 from vedette.interrupt import ending_on_ctrl_c
-from vedette.logs import RecordedLog, read_carmen
+from vedette.logs import RecordedLog
 from vedette.maps import write_map
 from vedette.missions.explore.assemble import FUSIONS
 from vedette.outcome import Outcome
@@ -27,7 +28,7 @@ from vedette.record.replay.summary import Replayed, ReplayedBuilding, ReplaySumm
 from vedette.sim.explore.run import explore, prepare
 from vedette.sim.explore.simulation import ExploreSetup
 from vedette.sim.replay.run import Replay, ReplaySetup
-from vedette.sim.worlds import NO_RETURNS, office
+from vedette.sim.worlds import office
 from vedette.team import PlatformSpec
 
 MOST_ROBOTS = 64
@@ -45,16 +46,7 @@ _MISSION = 120.0  # of the simulated robots whose scans are set beside the recor
     help="Cut each log into so many shares, one robot each.",
 )
 @click.option("--resolution", type=float, default=0.1, show_default=True, help="Side of a cell [m].")
-@click.option(
-    "--range", "reach", type=Positive("m"), default=20.0, show_default=True, help="How far beams count [m]."
-)
-@click.option(
-    "--no-return",
-    type=OneOf(NO_RETURNS),
-    default="ignore",
-    show_default=True,
-    help="What a beam says that did not come back: nothing, or that the way is free.",
-)
+@recording_options
 @click.option(
     "--fusion",
     type=OneOf(list(FUSIONS)),
@@ -81,15 +73,17 @@ def replay(
     out: Path | None,
     force: bool,
     as_json: bool,
+    **names: str,
 ) -> None:
-    """Let each LOG, a lidar log in the format of CARMEN, go through one agent, or in shares through several.
+    """Let each LOG go through one agent, or in shares through several: a lidar log in the format of CARMEN,
+    a rosbag2 folder, or an MCAP file with scans and TF.
 
     The agents map, fuse and plan as on a robot; where it goes is the log's. Left are each building's map, and
     what its scans saw of the unknown, against distance, beside simulated ones (the paper's Fig. 3).
     Exit status: 0 all went through, 2 bad input, 130 interrupted.
     """
     setup = ReplaySetup(robots, resolution, reach, no_return, fusion=fusion, link_loss=link_loss, seed=seed)
-    logs = [read_carmen(path) for path in files]
+    logs = [recording(path, no_return, **names) for path in files]
     _check_names(logs)
     replays = [Replay(log, setup) for log in logs]
     maps = [f"{log.name}.{ending}" for log in logs for ending in ("yaml", "pgm", "png")]

@@ -8,16 +8,15 @@ import click
 import numpy as np
 from click.core import ParameterSource
 
-from vedette.cli.options import FILE, OneOf, Positive
+from vedette.cli.options import FILE, OneOf
+from vedette.cli.recordings import OF_RECORDINGS, recording, recording_options
 from vedette.errors import InputError
-from vedette.logs import read_carmen
 from vedette.maps.world import World
 from vedette.record.folder import OutputFolder
-from vedette.sim.worlds import GENERATORS, NO_RETURNS, logged
+from vedette.sim.worlds import GENERATORS, logged
 
 LOG = "log"
 _OF_GENERATED = ("seed", "width", "height")
-_OF_LOGS = ("reach", "no_return")
 
 
 @click.command()
@@ -28,18 +27,12 @@ _OF_LOGS = ("reach", "no_return")
 @click.option("--width", type=float, default=30.0, show_default=True, help="Size in x [m].")
 @click.option("--height", type=float, default=20.0, show_default=True, help="Size in y [m].")
 @click.option("--resolution", type=float, default=0.1, show_default=True, help="Side of a cell [m].")
-@click.option(
-    "--range", "reach", type=Positive("m"), default=20.0, show_default=True,
-    help="How far a log's beams count [m].",
-)  # fmt: skip
-@click.option(
-    "--no-return", type=OneOf(NO_RETURNS), default="ignore", show_default=True,
-    help="What a log's beam says that did not come back: nothing, or that the way is free.",
-)  # fmt: skip
+@recording_options
 @click.option("--force", is_flag=True, help="Write into DIR although it exists.")
 @click.pass_context
 def world(
     context: click.Context,
+    /,
     kind: str,
     file: Path | None,
     seed: int,
@@ -50,16 +43,21 @@ def world(
     reach: float,
     no_return: str,
     force: bool,
+    **names: str,
 ) -> None:
     """Make a world: DIR gets map.yaml and map.pgm, as ROS map_server reads them, and preview.png.
 
     KIND is office, cave or maze, generated: the same seed and size give the same world. Or it is log: the
-    building in which FILE, a CARMEN log, was recorded.
+    building in which FILE was recorded, a CARMEN log, a rosbag2 folder or an MCAP file with scans and TF.
     """
     of_log = kind == LOG
-    _refuse(context, _OF_GENERATED if of_log else _OF_LOGS, "generated worlds" if of_log else "logs")
+    _refuse(
+        context, _OF_GENERATED if of_log else OF_RECORDINGS, "generated worlds" if of_log else "recordings"
+    )
     if of_log:
-        made = _of_log(file, resolution, reach, no_return)
+        if file is None:
+            raise InputError("vedette world log needs a FILE: a CARMEN log, a rosbag2 folder or an MCAP file")
+        made = logged(recording(file, no_return, **names), resolution, reach, no_return)
     else:
         made = _generated(kind, file, seed, width, height, resolution)
     with OutputFolder.make(out, force, kind, [] if file is None else [file]) as folder:
@@ -87,9 +85,3 @@ def _generated(
     if file is not None:
         raise InputError(f"{kind} is generated, without a file; of a recording: vedette world log {file}")
     return GENERATORS[kind](np.random.default_rng(seed), width, height, resolution)
-
-
-def _of_log(file: Path | None, resolution: float, reach: float, no_return: str) -> World:
-    if file is None:
-        raise InputError("vedette world log needs a FILE: a CARMEN log, plain or gzipped")
-    return logged(read_carmen(file), resolution, reach, no_return)

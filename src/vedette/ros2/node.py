@@ -16,10 +16,10 @@ from uuid import uuid4
 import numpy as np
 
 from vedette.errors import InputError
-from vedette.ros2.door import Answer, Deviation, GoalStatus, Grid, Joint, NavigatorGone, Patch, Told
+from vedette.ros2.door import Answer, Deviation, GoalStatus, Grid, NavigatorGone, Patch, Told
 from vedette.ros2.goals import Place
+from vedette.ros2.messages import joints_of, seconds, sweep_of
 from vedette.ros2.offered import Offered, Writer
-from vedette.ros2.scans import LaserSweep
 from vedette.ros2.settings import Ros2Settings
 from vedette.ros2.transforms import deviations, matrix
 
@@ -42,11 +42,6 @@ def ros(name: str) -> Any:
     except ImportError as error:
         missing = error.name if isinstance(error, ModuleNotFoundError) else f"{name}: {error}"
         raise InputError(f"body.ros2: this Python has no {missing}; {HOW}") from None
-
-
-def seconds(stamp: Any) -> float:
-    """Return a ``builtin_interfaces/Time`` [s]."""
-    return float(stamp.sec) + 1e-9 * float(stamp.nanosec)
 
 
 @dataclass(eq=False)
@@ -150,28 +145,12 @@ class RosDoor:
 
     def _hear_tf(self, message: Any, own: bool, fixed: bool) -> None:
         """Take in transforms; of a topic that all robots share only those with the namespace before them."""
-        for told in message.transforms:
-            child, t, q = told.child_frame_id, told.transform.translation, told.transform.rotation
-            if not own and not child.lstrip("/").startswith(self._prefix):
-                continue
-            quaternion = (q.x, q.y, q.z, q.w)
-            if any(quaternion):
-                T = matrix((t.x, t.y, t.z), quaternion)
-                self._told.append(Joint(told.header.frame_id, child, seconds(told.header.stamp), T, fixed))
+        for joint in joints_of(message, fixed=fixed):
+            if own or joint.child.lstrip("/").startswith(self._prefix):
+                self._told.append(joint)
 
     def _hear_scan(self, message: Any) -> None:
-        self._told.append(
-            LaserSweep(
-                message.header.frame_id,
-                seconds(message.header.stamp),
-                message.angle_min,
-                message.angle_increment,
-                message.time_increment,
-                message.range_min,
-                message.range_max,
-                np.asarray(message.ranges, np.float64),
-            )
-        )
+        self._told.append(sweep_of(message))
 
     def _hear_pose(self, message: Any) -> None:
         self._told.append(Deviation(*deviations(message.pose.covariance)))
