@@ -148,6 +148,17 @@ def test_one_robot_alone_is_told_what_needs_others(vedette: Command) -> None:
     assert said == "vedette: one robot alone tells nobody anything, whatever scheme, fusion, radio\n"
 
 
+def test_an_objective_that_replaces_the_scenarios_is_told() -> None:
+    with pytest.warns(
+        InputWarning, match="objective trajectory replaces that of the scenario, final-entropy"
+    ):
+        Track(content(duration=6, objective="final-entropy"), objective="trajectory")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", InputWarning)
+        Track(content(duration=6, objective="final-entropy"), objective="final-entropy")
+        Track(content(duration=6), objective="final-entropy")
+
+
 @pytest.mark.parametrize("coordination", ["shared", "optimum"])
 def test_a_scheme_is_in_vain_where_no_plans_are_told(coordination: str) -> None:
     few = content(duration=6, decisions=2)

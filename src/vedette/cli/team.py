@@ -22,11 +22,12 @@ from vedette.cli.tracking import TRACKING, tracking_options
 from vedette.errors import InputError
 from vedette.interrupt import ending_on_ctrl_c
 from vedette.missions.explore.options import ExploreOptions
-from vedette.missions.pairs import scheme_of, tell_duration, tell_unheeded, tell_unsaid
+from vedette.missions.pairs import scheme_of, tell_duration, tell_objective, tell_unheeded, tell_unsaid
 from vedette.missions.search.assemble import SearchTeam
 from vedette.missions.search.options import SearchOptions
 from vedette.missions.track.assemble import TrackTeam
 from vedette.missions.track.options import TrackOptions
+from vedette.missions.track.scenario import default_scenario
 from vedette.net.explore.plan import ExplorePlan
 from vedette.net.explore.ros2_plan import Ros2Plan, environment, strangers
 from vedette.net.explore.watch import ExploreWatcher
@@ -161,6 +162,7 @@ def track(
         raise InputError("--coordination optimum: nobody on a network can work it out; see `vedette track`")
     scenario, name = scenario_of(scenario_path)
     tell_unsaid(coordination, len(scenario.vehicles), scheme, fusion=fusion, lease=lease)
+    tell_objective(objective, scenario.objective, default_scenario().objective)
     tell_duration(max_time, scenario.duration)
     options = TrackOptions(coordination, scheme, fusion, objective, continuous)
     plan = FlightsPlan("track", options, scenario_path, len(scenario.vehicles), seed, speed, lease)

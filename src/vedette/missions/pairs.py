@@ -65,6 +65,13 @@ def tell_duration(max_time: float | None, duration: float) -> None:
         warnings.warn(text, InputWarning, stacklevel=3)
 
 
+def tell_objective(objective: str | None, scenarios: str, usual: str) -> None:
+    """Say that an objective replaces the one that a scenario names, if that is not the usual one."""
+    if objective is not None and scenarios not in (objective, usual):
+        text = f"objective {objective} replaces that of the scenario, {scenarios}"
+        warnings.warn(text, InputWarning, stacklevel=3)
+
+
 def tell_too_late(kills: Sequence[tuple[int, float]], max_time: float) -> None:
     """Say which robots, by index, would die when the mission is over; times [s]."""
     for robot, time in kills:

@@ -16,7 +16,7 @@ from vedette.domains.tracking.courses import Course
 from vedette.domains.tracking.filter import predict
 from vedette.domains.tracking.impact import Impact
 from vedette.interrupt import ending_on_ctrl_c
-from vedette.missions.pairs import tell_duration, tell_unsaid
+from vedette.missions.pairs import tell_duration, tell_objective, tell_unsaid
 from vedette.missions.track.scenario import TrackScenario, checked, default_scenario, read_scenario
 from vedette.record.track.log import TrackLog, TrackScene, TrackSnapshot
 from vedette.record.track.mcap import TrackMcapWriter
@@ -109,6 +109,7 @@ class Track(_Mission):
         )
         tell_unsaid(setup.coordination, size, **links_of(setup))
         tell_duration(max_time, self.scenario.duration)
+        tell_objective(objective, self.scenario.objective, default_scenario().objective)
         self.simulation = TrackSimulation(self.scenario, setup)
         self.scene = TrackScene.of(self.scenario, name)
         followers = Followers[TrackSnapshot]()

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
+from rich.console import Console
 
 from tests.support.small_missions import robots, run, small_maze
 from vedette.agent.effects import TrafficKind as Kind
@@ -22,6 +23,7 @@ from vedette.missions.explore.options import ExploreOptions
 from vedette.outcome import Outcome
 from vedette.record.explore.log import RobotSample
 from vedette.record.explore.observer import ExploreObserver
+from vedette.record.explore.screen import screen
 from vedette.record.explore.summary import LeftOut
 from vedette.record.explore.views import GroundFigures, RobotView, held_map, left_out, union_map
 from vedette.record.figures import RoundFigures
@@ -226,3 +228,16 @@ def test_a_simulated_team_is_seen_as_it_is() -> None:
         assert robot.figures.messages == report.summary.messages[robot.sample.name]
     assert report.summary.apart_s == 0.0
     assert report.log.last.links is None
+
+
+def test_live_view_curves_and_summary_tell_the_same_metres() -> None:
+    _, report = run(small_maze(), robots(2), max_time=20.0)
+    driven = {robot.name: robot.driven for robot in report.log.last.robots}
+    assert driven == report.summary.path_m
+    assert report.log.path_length[-1].tolist() == list(driven.values())
+    assert (np.diff(report.log.path_length, axis=0) >= 0.0).all()
+    assert min(driven.values()) > 1.0
+    console = Console(width=100, height=40, color_system=None)
+    with console.capture() as shown:
+        console.print(screen(report.log.scene, console, report.log.last))
+    assert all(f"{metres:.1f}" in shown.get() for metres in driven.values())
