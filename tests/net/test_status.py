@@ -74,3 +74,12 @@ def test_in_json_robots_count_from_1_wherever_they_are_named() -> None:
     assert robots["robot-1"]["neighbours"] == [2, 3]
     assert robots["robot-1"]["root"] == 1
     assert [link["robot"] for link in robots["robot-1"]["links"]] == [2]
+
+
+def test_of_ground_whose_size_nobody_knows_no_share_is_told_but_how_much_how_fast_and_what_is_left() -> None:
+    open_ground = replace(FIRST, known=None, known_m2=120.4, frontiers=3, began=10.0, time=40.0)
+    rows = said({0: open_ground, 1: replace(SECOND, known=0.25)})
+    cells = [line.split("│")[3].strip() for line in rows if re.match("│ robot-[12].*old", line)]
+    assert cells == ["120 m², 4.0 m²/s, 3 frontiers left", "25.0 %"]
+    robots = json.loads(team_status({0: open_ground}).to_json())["robots"]
+    assert (robots["robot-1"]["known"], robots["robot-1"]["known_m2"]) == (None, 120.4)

@@ -70,7 +70,7 @@ class Condition(msgspec.Struct, frozen=True, array_like=True, tag=2):
     age: Real  # of the tree, here [s]
     links: Annotated[tuple[LinkReport, ...], Meta(max_length=1024)]
     digest: int  # of its evidence: equal ones mean equal maps
-    known: Annotated[float, Meta(ge=0.0, le=1.0)] | None  # share of the map's cells; None: no map is made
+    known: Annotated[float, Meta(ge=0.0, le=1.0)] | None  # share of the ground; None: nobody knows it
     rounds: Count  # ended with a decision
     sweeps: Count
     cuts: Count  # children that did not answer in time
@@ -88,6 +88,8 @@ class Condition(msgspec.Struct, frozen=True, array_like=True, tag=2):
     round_ms: SpreadReport | None  # rounds that this robot began, as the root, from end to end
     decided: Real | None = None  # how long ago the latest round ended with a decision, in real time [s]
     ending: Ending = "complete"  # how the mission ends for it, once it is done
+    known_m2: Real | None = None  # [m^2]; None: no map is made
+    frontiers: Count | None = None  # of the latest round's map; None: there has been none
 
 
 class Report(msgspec.Struct, frozen=True, array_like=True, tag=3):

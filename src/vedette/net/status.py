@@ -101,13 +101,25 @@ def _row(said: Condition, digest: int) -> list[str]:
     parent = "root" if said.parent is None else robot_name(said.parent)
     return [
         said.state,
-        "-" if said.known is None else f"{100 * said.known:.1f} %",
+        _known(said),
         "same" if said.digest == digest else "differs",
         f"{robot_name(said.root)}, {many(said.size, 'robot')}, {said.age:.0f} s old",
         parent,
         str(said.rounds) if said.decided is None else f"{said.rounds}, {said.decided:.0f} s ago",
         dropped or "none",
     ]
+
+
+def _known(said: Condition) -> str:
+    """Return how much of the ground is known; if nobody knows how large it is, how fast it grew as well."""
+    if said.known is not None:
+        return f"{100 * said.known:.1f} %"
+    if said.known_m2 is None:
+        return "-"
+    lasted = 0.0 if said.began is None else said.time - said.began
+    rate = f", {said.known_m2 / lasted:.1f} m²/s" if lasted > 0.0 else ""
+    left = "" if said.frontiers is None else f", {many(said.frontiers, 'frontier')} left"
+    return f"{said.known_m2:.0f} m²{rate}{left}"
 
 
 def _link(link: LinkReport) -> list[str]:

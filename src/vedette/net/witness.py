@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Protocol, cast
+from typing import NamedTuple, Protocol, cast
 
 import numpy as np
 from msgspec import structs
@@ -19,12 +19,20 @@ from vedette.record.clock import Clock
 from vedette.record.summary import Spread as Statistics
 
 
+class Known(NamedTuple):
+    """How much of a map a robot knows."""
+
+    share: float | None  # of the cells of the team's ground; None: nobody knows how large that is
+    area: float  # [m^2]
+    frontiers: int | None  # where it goes on, as of the latest round; None: there has been none
+
+
 class Teller(Protocol):
     """What a robot of one domain has to tell the operator beside its condition."""
 
     @property
-    def known(self) -> float | None:
-        """Share of its map's cells that it knows; None: it makes no map."""
+    def known(self) -> Known | None:
+        """How much of its map it knows; None: it makes none."""
 
     def path(self, now: float) -> NDArray[np.float64]:
         """Return where it means to go, ``(k, 2)`` [m], team frame; ``now``: mission time [s], as below."""
@@ -77,7 +85,7 @@ class Witness:
         agent, overlay = self.node.agent, self.node.overlay.status(now)
         x, y, heading = self.body.pose
         path = self.teller.path(mission_time).ravel().tolist()
-        counted = self.body.figures
+        counted, known = self.body.figures, self.teller.known
         return Condition(
             robot=agent.robot,
             boot=agent.boot,
@@ -98,7 +106,7 @@ class Witness:
             age=overlay.age,
             links=tuple(map(_link, overlay.links)),
             digest=agent.mission.fusion.digest,
-            known=self.teller.known,
+            known=None if known is None else known.share,
             rounds=agent.rounds.decisions,
             sweeps=agent.rounds.sweeps,
             cuts=agent.rounds.cuts,
@@ -123,6 +131,8 @@ class Witness:
             round_ms=_spread(Statistics.of([1e3 * took for took in self._rounds]), len(self._rounds)),
             decided=None if self._decided is None else max(now - self._decided, 0.0),
             ending=cast(Ending, agent.ending.value),
+            known_m2=None if known is None else known.area,
+            frontiers=None if known is None else known.frontiers,
         )
 
 

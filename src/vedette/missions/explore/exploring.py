@@ -88,6 +88,7 @@ class Exploring:
     platform: MappingPlatform = field(init=False)
     log_odds: TiledGrid[np.int8] = field(init=False)  # own evidence
     counts: NDArray[np.int64] = field(init=False)  # (4, BINS) own sightings
+    frontiers: int | None = None  # of the latest round's map; None: there has been none
     _changed: list[NDArray[np.int64]] = field(default_factory=list)  # cells whose own class changed
     _counts_due: float = 0.0
     _seen: Bounds = field(default_factory=Bounds)  # of its own evidence
@@ -293,7 +294,7 @@ class Exploring:
     def freeze(self, t0: float) -> MapBelief:
         """Snapshot the team map for a round; tours count time from when it is frozen."""
         known = self.fusion.known
-        return freeze(
+        belief = freeze(
             self.fusion.classes.window(*known),
             self.frame,
             reach=max(self.spec.range, NEARBY + self.frame.resolution),
@@ -307,6 +308,8 @@ class Exploring:
             known=known,
             area=self.lattice.area,
         )
+        self.frontiers = len(belief.frontier_starts) - 1
+        return belief
 
     def prepare(
         self, belief: MapBelief, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float

@@ -19,6 +19,7 @@ from vedette.maps import OCCUPIED, GridFrame
 from vedette.missions.explore.exploring import Exploring
 from vedette.net.gather import figures_of, path_of
 from vedette.net.report import MOST_BYTES, Condition, Count, Real, inflated
+from vedette.net.witness import Known
 from vedette.record.explore.log import RobotSample
 from vedette.record.explore.views import GroundFigures, RobotView, held, left_out
 
@@ -65,15 +66,15 @@ class ExploreTeller:
         return cast(Exploring, self.agent.mission)
 
     @property
-    def known(self) -> float | None:
-        """Share of the cells of the team's ground; None: nobody knows how large it is."""
-        lattice, known = self._mission.lattice, self._mission.known
-        if lattice.cells is None:
-            return None
-        classes, _ = held(self._mission.fusion.classes, self._mission.log_odds, known)
+    def known(self) -> Known:
+        """How much of the team's ground it knows."""
+        mission, lattice, extent = self._mission, self._mission.lattice, self._mission.known
+        classes, _ = held(mission.fusion.classes, mission.log_odds, extent)
         if lattice.area is not None:
-            classes *= lattice.area.holds(lattice.frame.window(*known))
-        return float(np.count_nonzero(classes) / lattice.cells)
+            classes *= lattice.area.holds(lattice.frame.window(*extent))
+        cells = np.count_nonzero(classes)
+        share = None if lattice.cells is None else float(cells / lattice.cells)
+        return Known(share, float(cells) * lattice.frame.resolution**2, mission.frontiers)
 
     def path(self, now: float) -> NDArray[np.float64]:
         """Return the way that the robot wants to go."""
