@@ -35,7 +35,7 @@ _BARE = re.compile(r"\{(?!MOST)[^{}]*\} (robots|vehicles|targets|runs|places|row
 
 
 def test_no_message_counts_in_the_plural_what_may_be_one() -> None:
-    more_than_one = ("for at most", "robots do not fit", "are too many", "at least one of each")
+    more_than_one = ("for at most", "robots do not fit", "are too many", "at least one of each", "are due")
     lines = [
         line.strip()
         for path in (ROOT / "src").rglob("*.py")

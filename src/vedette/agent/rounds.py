@@ -20,6 +20,7 @@ from vedette.agent.messages import Begin, Call, Flushed, Freeze, Negotiate
 from vedette.agent.mission import Mission
 from vedette.agent.pace import Pace
 from vedette.agent.round import Round, say, send_news
+from vedette.number import many
 
 IDLE = 1.0  # a robot that did not look after its rounds for longer did not want any [s of the transport]
 CALL_AGAIN = 1.0  # a call not answered is repeated after so long [s]
@@ -273,7 +274,9 @@ class Rounds:
         """
         round_ = self._of(message.epoch, message.sequence)
         if message.robots > self.admitted:
-            raise ValueError(f"flushed: {message.robots} robots; the team has {self.admitted} at most")
+            raise ValueError(
+                f"flushed: {many(message.robots, 'robot')}; the team has {self.admitted} at most"
+            )
         return [] if round_ is None else round_.hear_flushed(sender, message, now)
 
     def freeze(self, message: Freeze, now: float) -> list[Effect]:

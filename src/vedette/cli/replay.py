@@ -22,6 +22,7 @@ from vedette.interrupt import ending_on_ctrl_c
 from vedette.logs import RecordedLog
 from vedette.maps import write_map
 from vedette.missions.explore.assemble import FUSIONS
+from vedette.number import many
 from vedette.outcome import Outcome
 from vedette.record.folder import OutputFolder
 from vedette.record.replay.summary import Replayed, ReplayedBuilding, ReplaySummary
@@ -154,10 +155,10 @@ def _draw(done: list[Replayed], simulated: NDArray[np.int64], folder: OutputFold
 def _closing(summary: ReplaySummary, folder: Path) -> str:
     lines = []
     for each in summary.buildings:
-        team = "one robot" if len(each.robots) == 1 else f"{len(each.robots)} robots"
+        team = many(len(each.robots), "robot")
         agree = "" if len(each.robots) == 1 else ", all of one map" if each.agreed else ", their maps differ"
         lines.append(
-            f"{each.log}: {each.scans} scans over {each.way_m:.0f} m, {each.known_m2:.0f} m2 known, "
+            f"{each.log}: {many(each.scans, 'scan')} over {each.way_m:.0f} m, {each.known_m2:.0f} m2 known, "
             f"{each.free_m2:.0f} m2 free, {team}{agree}"
         )
     return "\n".join([*lines, f"maps and pictures: {folder}; what scans see: {folder / 'observation.png'}"])

@@ -13,6 +13,7 @@ from vedette.cli.running import Kind
 from vedette.missions.pairs import SCHEME
 from vedette.missions.search.options import COORDINATIONS, FUSIONS
 from vedette.negotiation import SCHEMES
+from vedette.number import many
 from vedette.record.search.live import search_display
 from vedette.record.search.mcap import SearchMcapWriter
 from vedette.record.search.outputs import write_outputs
@@ -88,7 +89,7 @@ def _counted(summary: SearchSummary) -> list[str]:
         ]
     if counted.off is not None and counted.off > counted.band:
         return [
-            f"counted over {counted.trials} targets detection is off the predicted by up to "
+            f"counted over {many(counted.trials, 'target')} detection is off the predicted by up to "
             f"{counted.off:.3f}, more than the 95 % band of {counted.band:.3f}: smaller cells predict better"
         ]
     return []

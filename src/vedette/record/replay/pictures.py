@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from vedette.domains.mapping.sightings import BIN, P_OCCUPIED
+from vedette.number import many
 from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save, tidy
 from vedette.record.explore.raster import fit, known_window, pool
@@ -39,7 +40,7 @@ def map_png(replayed: Replayed, path: Path | str) -> None:
             colour = palette.unit(palette.robot_colour(i))
             axes.plot(*way.T, color=colour, lw=1.0, alpha=0.8, label=name)
             axes.plot(*way[0], "o", color=colour, ms=5)
-        title = f"{replayed.name}: {replayed.scans} scans, {replayed.known_m2[-1]:.0f} m² known"
+        title = f"{replayed.name}: {many(replayed.scans, 'scan')}, {replayed.known_m2[-1]:.0f} m² known"
         axes.set_title(title, loc="left", fontsize=11, fontweight="bold")
         if len(replayed.names) > 1:
             axes.legend(loc="best", fontsize=8, framealpha=0.9)

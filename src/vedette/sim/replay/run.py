@@ -21,6 +21,7 @@ from vedette.maps.lattice import Lattice
 from vedette.missions.explore.assemble import assemble
 from vedette.missions.explore.exploring import Exploring
 from vedette.missions.explore.options import ExploreOptions
+from vedette.number import many
 from vedette.record.replay.summary import Replayed
 from vedette.sim.explore.simulation import ExploreSetup
 from vedette.sim.replay.field import RecordedRobots
@@ -65,7 +66,9 @@ class ReplaySetup:
             InputError: it has too few scans.
         """
         if len(log.scans) < 2 * self.robots:
-            raise InputError(f"{log.name} has {len(log.scans)} scans, too few for {self.robots} robots")
+            raise InputError(
+                f"{log.name} has {many(len(log.scans), 'scan')}, too few for {many(self.robots, 'robot')}"
+            )
         ends = np.linspace(0, len(log.scans), self.robots + 1).round().astype(int).tolist()
         return [log.scans[a:b] for a, b in pairwise(ends)]
 
