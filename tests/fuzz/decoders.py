@@ -211,7 +211,7 @@ def _read_report(data: bytes) -> None:
     with contextlib.suppress(ValueError):
         told = report.read_report(data)
         status_of(told.condition)
-        map_content.view_of(told.condition, told.content, FRAME, MappingCodec(FRAME.size))
+        map_content.view_of(told.condition, told.content, FRAME, MappingCodec(FRAME.size), "robot-1")
     with contextlib.suppress(ValueError):
         map_content.seen_of(map_content.read_content(report.read_report(data).content))
 

@@ -70,11 +70,25 @@ def test_what_lies_behind_a_dead_mate_in_the_only_way_is_unreached() -> None:
     assert summary.coverage < 0.9
 
 
-@pytest.mark.parametrize(("reach", "radius"), [(0.25, 0.2), (0.2, 0.3), (0.3, 0.2)])
+@pytest.mark.parametrize(
+    ("reach", "radius", "resolution"),
+    [
+        (0.25, 0.2, 0.05),
+        (0.2, 0.3, 0.05),
+        (0.3, 0.2, 0.05),
+        (0.3, 0.25, 0.05),
+        (0.4, 0.3, 0.05),
+        (0.5, 0.5, 0.02),
+        (0.6, 0.5, 0.02),
+        (0.25, 0.1, 0.1),
+        (0.35, 0.2, 0.1),
+    ],
+)
 def test_a_lidar_that_sees_hardly_farther_than_its_robot_completes_nothing(
-    reach: float, radius: float
+    reach: float, radius: float, resolution: float
 ) -> None:
-    _, report = run(room_with_a_wall(0.05), robots(1, range=reach, radius=radius), seed=1, max_time=1800.0)
+    world = room_with_a_wall(resolution)
+    _, report = run(world, robots(1, range=reach, radius=radius), seed=1, max_time=1800.0)
     assert report.summary.coverage < 0.2
     assert report.summary.outcome in (Outcome.ENCLOSED, Outcome.UNREACHED)
 

@@ -11,8 +11,17 @@ from numpy.typing import NDArray
 
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.platform import GivenUp, MappingPlatform
-from vedette.domains.mapping.stops import CLEARANCES, LEFT_ALONE, Ground, seen_from, survey, unknown_near
+from vedette.domains.mapping.stops import (
+    CLEARANCES,
+    LEFT_ALONE,
+    Ground,
+    nearest_view,
+    seen_from,
+    survey,
+    unknown_near,
+)
 from vedette.domains.mapping.views import MOST_STOPS, views_within
+from vedette.team import PlatformSpec
 
 Why = Literal["unseeable", "unreached", "out_of_reach"]
 
@@ -41,8 +50,12 @@ def leftovers(belief: MapBelief, platform: MappingPlatform) -> list[Leftover]:
     """Return what is left to a robot that has just found no stop.
 
     A frontier is out of reach if from no place that the map, without anybody's body in it, lets the robot
-    drive to is it seen. One that promises too little for a stop is not worth mention.
+    drive to is it seen. One that promises too little for a stop is not worth mention. A lidar that sees no
+    farther than its robot gets to a frontier has looked at nothing: whatever is left is unreached.
     """
+    if blind(platform.spec, belief.frame.resolution):
+        places = _places(belief).tolist()
+        return [_left(belief, x, y, "unreached") for x, y in places]
     alone = survey(belief, platform.spec, platform.x, platform.y, [], CLEARANCES[-1])
     middles, way = _seen(belief, platform, alone)
     open_now = way
@@ -57,9 +70,17 @@ def leftovers(belief: MapBelief, platform: MappingPlatform) -> list[Leftover]:
             left.append(Leftover(spot.x, spot.y, spot.unknown, _why(bool(way[near].any()))))
     untouched = ~_near(middles, [*visited, *missed, *platform.told]) & ~(way & open_now)
     for (x, y), reachable in zip(middles[untouched].tolist(), way[untouched].tolist(), strict=True):
-        unknown = unknown_near(belief.classes, belief.frame, x, y)
-        left.append(Leftover(x, y, unknown, _why(reachable)))
+        left.append(_left(belief, x, y, _why(reachable)))
     return left
+
+
+def blind(spec: PlatformSpec, resolution: float) -> bool:
+    """Tell whether a lidar sees hardly a cell beyond what its robot keeps off from."""
+    return spec.range < nearest_view(spec, resolution) + resolution
+
+
+def _left(belief: MapBelief, x: float, y: float, why: Why) -> Leftover:
+    return Leftover(x, y, unknown_near(belief.classes, belief.frame, x, y), why)
 
 
 def _why(reachable: bool) -> Why:

@@ -114,8 +114,10 @@ def read_content(payload: bytes) -> MapContent:
     return wire.decode(_CONTENTS, payload, "report")
 
 
-def view_of(condition: Condition, payload: bytes, frame: GridFrame, codec: MapImpactCodec) -> RobotView:
-    """Return what a robot reports, over a lattice with this frame.
+def view_of(
+    condition: Condition, payload: bytes, frame: GridFrame, codec: MapImpactCodec, name: str
+) -> RobotView:
+    """Return what a robot of this name reports, over a lattice with this frame.
 
     Raises:
         ValueError: malformed, or of another lattice.
@@ -129,7 +131,7 @@ def view_of(condition: Condition, payload: bytes, frame: GridFrame, codec: MapIm
     path, at = path_of(condition), (condition.x, condition.y, condition.heading)
     goal = (float(path[-1, 0]), float(path[-1, 1])) if len(path) else None
     return RobotView(
-        sample=RobotSample(*at, condition.state, True, path, condition.name, goal),
+        sample=RobotSample(*at, condition.state, True, path, name, goal),
         frame=frame.window(slice(told.row, end[0]), slice(told.col, end[1])),
         classes=classes_of(told),
         seen=seen_of(told),
@@ -139,7 +141,7 @@ def view_of(condition: Condition, payload: bytes, frame: GridFrame, codec: MapIm
             collisions=condition.collisions,
             min_clearance_m=UNTOUCHED if condition.min_clearance is None else condition.min_clearance,
         ),
-        left_out=left_out([Leftover(*spot) for spot in told.left_out], condition.name),
+        left_out=left_out([Leftover(*spot) for spot in told.left_out], name),
     )
 
 

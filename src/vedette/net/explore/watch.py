@@ -55,7 +55,8 @@ class ExploreWatcher:
 
     def take(self, condition: Condition, content: bytes) -> None:
         """Take a robot's map."""
-        self._views[condition.robot] = view_of(condition, content, self._frame, self._codec)
+        name = self._views[condition.robot].sample.name  # as the team's file has it
+        self._views[condition.robot] = view_of(condition, content, self._frame, self._codec, name)
         self._ways[condition.robot] = condition.travelled
 
     def look(self, now: float, fates: Fates, links: Links) -> None:
