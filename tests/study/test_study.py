@@ -99,6 +99,22 @@ def conducted(all_runs: list[Run], out: Path, work: Counting) -> Conducted:
 # -- what is run --------------------------------------------------------------------------------------
 
 
+def test_a_list_of_platforms_has_the_combinations_of_each(tmp_path: Path) -> None:
+    text = """
+planners: [tours]
+worlds: [{kind: office}]
+platform:
+  - {view: [360, 180], range: 4}
+  - {view: 90}
+  - {view: [360, 90], beams: [8, 360]}
+"""
+    platforms = {(run.platform.view, run.platform.range, run.platform.beams) for run in runs(tmp_path, text)}
+    assert platforms == {
+        (360.0, 4.0, 360), (180.0, 4.0, 360), (90.0, 8.0, 360),
+        (360.0, 8.0, 8), (360.0, 8.0, 360), (90.0, 8.0, 8),
+    }  # fmt: skip
+
+
 def test_every_combination_is_a_run_once(tmp_path: Path) -> None:
     text = """
 planners: [tours, nearest, tours]
@@ -169,6 +185,8 @@ MISTAKES = {
     "planners: [tours]\nmaps: [{file: nowhere.yaml}]": "maps[0]: cannot read map",
     "planners: [tours]\nworlds: [{kind: maze}]\nrobots: [0]": "robots[0]: must be a whole number from 1",
     "planners: [tours]\nworlds: [{kind: maze}]\nplatform: {rnage: 3}": "platform: unknown field 'rnage'; did",
+    "planners: [tours]\nworlds: [{kind: maze}]\nplatform: []": "platform: lists nothing; give a mapping",
+    "planners: [tours]\nworlds: [{kind: maze}]\nplatform: [{}, {rnage: 3}]": "platform[1]: unknown field",
     "planners: [tours]\nworlds: [{kind: maze}]\nplatform: {range: [4, 900]}": "range must be 0.2 to 200 m",
     "planners: [tours]\nworlds: [{kind: maze}]\nsetup: {seed: 3}": "setup: unknown field 'seed'",
     "planners: [tours]\nworlds: [{kind: maze}]\nsetup: {link_loss: 0.95}": "link_loss must be 0 to 0.9;",

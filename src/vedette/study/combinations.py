@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -39,7 +39,7 @@ def runs_of(spec: Spec, path: Path) -> list[Run]:
     for name in spec.planners:
         _known_planner(name, path)
     worlds = list(_worlds(spec, path))
-    platforms = [_platform(fields, path) for fields in _each(spec.platform, f"{path}: platform")]
+    platforms = list(_platforms(spec.platform, path))
     choices = list(_each(spec.setup, f"{path}: setup"))
     axes = worlds, spec.robots, spec.starts, spec.seeds, platforms, choices, spec.planners
     count = math.prod(len(axis) for axis in axes)
@@ -98,8 +98,19 @@ def _each(fields: Mapping[str, Any], where: str) -> Iterator[dict[str, Any]]:
         yield dict(zip(fields, combination, strict=True))
 
 
-def _platform(fields: Mapping[str, Any], path: Path) -> PlatformSpec:
-    return as_scenario(fields, PlatformSpec, f"{path}: platform", OF_PLATFORM)
+def _platforms(given: Mapping[str, Any] | Sequence[Mapping[str, Any]], path: Path) -> Iterator[PlatformSpec]:
+    """Yield every combination of each set of fields."""
+    where = f"{path}: platform"
+    if not given and not isinstance(given, Mapping):
+        raise InputError(f"{where}: lists nothing; give a mapping, or leave it out")
+    sets = (
+        {where: given}
+        if isinstance(given, Mapping)
+        else {f"{where}[{k}]": one for k, one in enumerate(given)}
+    )
+    for place, fields in sets.items():
+        for combination in _each(fields, place):
+            yield as_scenario(combination, PlatformSpec, place, OF_PLATFORM)
 
 
 def _setup(fields: Mapping[str, Any], path: Path, robots: int) -> ExploreSetup:

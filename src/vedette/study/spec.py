@@ -44,7 +44,9 @@ class Spec(Struct, forbid_unknown_fields=True, frozen=True):
     robots: Annotated[tuple[Robots, ...], Meta(min_length=1)] = (3,)
     starts: Annotated[tuple[Literal["together", "apart"], ...], Meta(min_length=1)] = ("together",)
     seeds: Seeds = (0,)  # of the starts and of all chance in a run
-    platform: dict[str, Any] = {}  # fields of ``PlatformSpec``
+    platform: (
+        dict[str, Any] | tuple[dict[str, Any], ...]
+    ) = {}  # fields of ``PlatformSpec``; several sets of them
     setup: dict[str, Any] = {}  # fields of ``ExploreSetup``
     reference: str = ""  # the planner that the others are compared with; the first if empty
 
