@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -59,6 +60,17 @@ def test_a_pdf_that_a_vehicle_reports_is_its_own() -> None:
     assert view.pdf is not None
     np.testing.assert_allclose(view.pdf.mass, plan.case.pdf.mass, rtol=1e-6)
     assert looks == {}
+
+
+def test_how_probably_the_target_has_left_is_reported_with_the_pdf() -> None:
+    leaving = case(target={"drift": [60.0, 0.0], "border": "leave"})
+    pdf = leaving.pdf.predict(3)
+    agent = SearchTeam(replace(leaving, pdf=replace(pdf, step=0)), SearchOptions(), TIMES).assemble(0, 1)
+    told = pdfs.SearchTeller(agent, leaving).content(0.0)
+    view, _ = pdfs.view_of(condition(), told, leaving.pdf)
+    assert view.pdf is not None
+    assert 0.3 < pdf.outside == pytest.approx(view.pdf.outside, abs=1e-6)
+    np.testing.assert_allclose(view.pdf.mass, pdf.mass, rtol=1e-5, atol=1e-9)
 
 
 @pytest.mark.parametrize("damage", [b"", b"\x00", b"\xff" * 40])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -63,3 +64,8 @@ def test_the_picture_has_north_up_and_the_likeliest_darkest() -> None:
 def test_a_line_tells_how_far_it_is() -> None:
     said = line(SCENE, snapshot())
     assert said == "   12.0 s  detection  25.0 %  entropy  3.20 nat  vehicle-1 flying  vehicle-2 dead"
+
+
+def test_with_false_alarms_a_line_tells_of_true_reports_and_how_probably_a_target_has_left() -> None:
+    said = line(replace(SCENE, false_alarms=True), replace(snapshot(), outside=0.125))
+    assert "true report  25.0 %  has left  12.5 %  entropy" in said

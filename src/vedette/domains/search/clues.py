@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,7 +16,8 @@ from vedette.maps import GridFrame
 
 _POINTS = 16.0  # along a radius or a track's width at which a cell is tested
 _LEAST = 16  # points along each side of a cell
-_MOST_DISC, _MOST_TRACK = 512, 128  # at most; a disc that is so small is in few cells
+_MOST_DISC, _MOST_TRACK = 512, 64  # at most; a disc that is so small is in few cells
+_MOST_POINTS = 8_000_000  # in all
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,24 +85,30 @@ def missed_by(frame: GridFrame, tracks: Sequence[SearchedTrack]) -> NDArray[np.f
     Raises:
         InputError: nothing of a track is in the area.
     """
-    if not tracks:
-        return np.ones(frame.shape)
-    offsets = _offsets(frame, min(track.width for track in tracks), _MOST_TRACK)
-    near = [_cells_near(frame, track) for track in tracks]
-    for i, cells in enumerate(near):
+    near = [[_cells_near(frame, ends, track.width) for ends in _segments(track)] for track in tracks]
+    own = [np.unique(np.concatenate(pieces)) for pieces in near]
+    for i, cells in enumerate(own):
         if not len(cells):
             raise InputError(f"searched[{i}]: nothing of the track is in the area; check its path, in m")
-    missed = np.ones(frame.size)
-    touched = np.unique(np.concatenate(near))
-    for part in np.array_split(touched, max(1, len(touched) * len(offsets) // 1_000_000)):
-        points = frame.centres(part)[:, None] + offsets
-        chance = np.ones(points.shape[:2])
-        for track, cells in zip(tracks, near, strict=True):
-            own = np.isin(part, cells, assume_unique=True)
-            seen = _distance(points[own], track.path) <= track.width / 2.0
-            chance[own] *= 1.0 - track.detection * seen
-        missed[part] = chance.mean(axis=1)
-    return missed.reshape(frame.shape)
+    touched = np.unique(np.concatenate([np.empty(0, np.int64), *own]))
+    missed = np.ones(frame.shape)
+    if len(touched):
+        most = min(_MOST_TRACK, math.isqrt(_MOST_POINTS // len(touched)))
+        offsets = _offsets(frame, min(track.width for track in tracks), most)
+        chance = np.ones((len(touched), len(offsets)))
+        for track, pieces, all_cells in zip(tracks, near, own, strict=True):
+            seen = np.zeros((len(all_cells), len(offsets)), bool)
+            for ends, beside in zip(_segments(track), pieces, strict=True):
+                points = frame.centres(beside)[:, None] + offsets
+                seen[np.searchsorted(all_cells, beside)] |= _distance(points, ends) <= track.width / 2.0
+            chance[np.searchsorted(touched, all_cells)] *= 1.0 - track.detection * seen
+        missed.ravel()[touched] = chance.mean(axis=1)
+    return missed
+
+
+def _segments(track: SearchedTrack) -> Iterator[NDArray[np.float64]]:
+    """The track's straight pieces, ``(2, 2)`` each."""
+    return (track.path[i : i + 2] for i in range(len(track.path) - 1))
 
 
 def without(frame: GridFrame, areas: Sequence[ArrayLike]) -> NDArray[np.float64]:
@@ -116,29 +122,23 @@ def without(frame: GridFrame, areas: Sequence[ArrayLike]) -> NDArray[np.float64]
     return open_to
 
 
-def _cells_near(frame: GridFrame, track: SearchedTrack) -> NDArray[np.int64]:
-    """Return the flat cells that a track may have touched, each once."""
-    reach = track.width / 2.0 + frame.resolution * math.sqrt(0.5)
-    found = [np.empty(0, np.int64)]
-    for start, end in pairwise(track.path):
-        (x0, x1), (y0, y1) = np.sort((start, end), axis=0).T
-        row, col = np.maximum(frame.cell(x0 - reach, y0 - reach), 0)
-        last_row, last_col = np.minimum(frame.cell(x1 + reach, y1 + reach), np.subtract(frame.shape, 1))
-        box = np.arange(row, last_row + 1)[:, None] * frame.cols + np.arange(col, last_col + 1)
-        cells = box.ravel().astype(np.int64)
-        found.append(cells[_distance(frame.centres(cells), np.array((start, end))) <= reach])
-    return np.unique(np.concatenate(found))
+def _cells_near(frame: GridFrame, ends: NDArray[np.float64], width: float) -> NDArray[np.int64]:
+    """Return the flat cells that a straight piece of a track may have touched, rising."""
+    reach = width / 2.0 + frame.resolution * math.sqrt(0.5)
+    (x0, x1), (y0, y1) = np.sort(ends, axis=0).T
+    row, col = np.maximum(frame.cell(x0 - reach, y0 - reach), 0)
+    last_row, last_col = np.minimum(frame.cell(x1 + reach, y1 + reach), np.subtract(frame.shape, 1))
+    box = np.arange(row, last_row + 1)[:, None] * frame.cols + np.arange(col, last_col + 1)
+    cells = box.ravel().astype(np.int64)
+    return cells[_distance(frame.centres(cells), ends) <= reach]
 
 
-def _distance(points: NDArray[np.float64], path: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Distance of points ``(..., 2)`` from a line through places ``(n, 2)``."""
-    nearest = np.full(points.shape[:-1], np.inf)
-    for start, end in pairwise(path):
-        along = end - start
-        share = np.clip((points - start) @ along / max(float(along @ along), 1e-300), 0.0, 1.0)
-        away = points - start - share[..., None] * along
-        nearest = np.minimum(nearest, np.hypot(away[..., 0], away[..., 1]))
-    return nearest
+def _distance(points: NDArray[np.float64], ends: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Distance of points ``(..., 2)`` from a straight piece between two places ``(2, 2)``."""
+    along = ends[1] - ends[0]
+    share = np.clip((points - ends[0]) @ along / max(float(along @ along), 1e-300), 0.0, 1.0)
+    away = points - ends[0] - share[..., None] * along
+    return np.asarray(np.hypot(away[..., 0], away[..., 1]))
 
 
 def _offsets(frame: GridFrame, length: float, most: int) -> NDArray[np.float64]:
