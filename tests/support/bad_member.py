@@ -1,11 +1,13 @@
 """Teams with members that misbehave, all of which follows from a seed: the others keep the laws and finish.
 
 A failing team replays with ``python -m tests.support.bad_member MODE SEED``; ``--trace`` tells what happens.
+``python -m tests.support.bad_member MODE FIRST LAST`` plays many, and the same teams with those members dead.
 """
 
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
@@ -74,7 +76,7 @@ def plan_of(mode: str, seed: int) -> tuple[Plan, dict[int, Program]]:
         bad = bad[:1]
         others = [i for i in range(n) if i not in bad]
         return plan, {bad[0]: partial(Mutant, case=case, another=int(rng.choice(others)))}
-    return plan, {i: MODES[mode](rng) for i in bad}
+    return plan, {i: misbehaving.Dead if mode == "dead" else MODES[mode](rng) for i in bad}
 
 
 def play(mode: str, seed: int, trace: bool = False) -> BadTeam:
@@ -96,6 +98,24 @@ def play(mode: str, seed: int, trace: bool = False) -> BadTeam:
     return team
 
 
+def compare(mode: str, first: int, last: int) -> str:
+    """Play many teams; tell how many fail, how many a minute, and how late the others are."""
+    began, ratios, failures = time.monotonic(), [], list[str]()
+    for seed in range(first, last):
+        try:
+            ratios.append(play(mode, seed).now / play("dead", seed).now)
+        except AssertionError as error:
+            failures.append(str(error))
+    rate = 60.0 * (last - first) / (time.monotonic() - began)
+    late = f"{np.median(ratios):.2f} (p90 {np.quantile(ratios, 0.9):.2f})" if ratios else "-"
+    told = f"{mode}: {last - first} teams, {len(failures)} failed, {rate:.0f} a minute"
+    told += f"; {late} of the time with those members dead"
+    return "\n".join([told, *failures])
+
+
 if __name__ == "__main__":
-    played = play(sys.argv[1], int(sys.argv[2]), "--trace" in sys.argv)
-    print(f"complete after {played.now:.1f} s; {played.round_law.rounds} rounds checked")
+    if len(sys.argv) == 4 and sys.argv[3].isdigit():
+        print(compare(sys.argv[1], int(sys.argv[2]), int(sys.argv[3])))
+    else:
+        played = play(sys.argv[1], int(sys.argv[2]), "--trace" in sys.argv)
+        print(f"complete after {played.now:.1f} s; {played.round_law.rounds} rounds checked")

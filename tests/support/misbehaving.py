@@ -23,8 +23,8 @@ BEACONS_EVERY, BEACONS_AT_ONCE = 0.1, 40  # [s]
 class Slow(NetworkedAgent):
     """Takes so long [s] for every job; for ever: it hangs. Its overlay goes on."""
 
-    def __init__(self, agent: Agent, now: float, *, lease: float, takes: float) -> None:
-        super().__init__(agent, now, lease=lease)
+    def __init__(self, agent: Agent, now: float, *, takes: float, **how: Any) -> None:
+        super().__init__(agent, now, **how)
         self._takes, self._back = takes, NEVER
         self._job: JobDone | None = None
 
@@ -48,6 +48,22 @@ class Slow(NetworkedAgent):
         if any(isinstance(each, Job) for each in outputs):
             self.hold, self._back = True, now + self._takes
         return outputs
+
+
+class Dead(NetworkedAgent):
+    """Says and does nothing: what the others are compared with."""
+
+    def hear(self, sender: int, datagram: bytes, now: float) -> list[Output]:
+        """Nothing."""
+        return []
+
+    def peers(self, robots: Iterable[int], now: float) -> list[Output]:
+        """Nothing."""
+        return []
+
+    def step(self, events: Iterable[Event], now: float) -> list[Output]:
+        """Nothing."""
+        return []
 
 
 class Mute(NetworkedAgent):
@@ -93,8 +109,8 @@ class Echoing(Hailing):
 class Raising(Hailing):
     """Says once to each that the epoch is the highest there can be, or somewhat lower."""
 
-    def __init__(self, agent: Agent, now: float, *, lease: float, epoch: int) -> None:
-        super().__init__(agent, now, lease=lease)
+    def __init__(self, agent: Agent, now: float, *, epoch: int, **how: Any) -> None:
+        super().__init__(agent, now, **how)
         self._epoch, self._said = epoch, 0
 
     def _change(self, hello: list[Any]) -> None:
@@ -106,15 +122,15 @@ class Raising(Hailing):
 class Disagreeing(NetworkedAgent):
     """Has another map than all the others."""
 
-    def __init__(self, agent: Agent, now: float, *, lease: float) -> None:
-        super().__init__(agent, now, lease=lease, terms={"map.resolution": "0.05"})
+    def __init__(self, agent: Agent, now: float, **how: Any) -> None:
+        super().__init__(agent, now, **(how | {"terms": {"map.resolution": "0.05"}}))
 
 
 class Beaconing(NetworkedAgent):
     """Sends so many beacons at once, again and again: of itself, or of robots that there are not."""
 
-    def __init__(self, agent: Agent, now: float, *, lease: float, robots: int, points: int) -> None:
-        super().__init__(agent, now, lease=lease)
+    def __init__(self, agent: Agent, now: float, *, robots: int, points: int, **how: Any) -> None:
+        super().__init__(agent, now, **how)
         self._robots, self._path = robots, (1000,) * 2 * points
         self._said, self._next = 0, now
 

@@ -1,4 +1,4 @@
-"""Which neighbours take part in rounds, by what this robot has seen of them."""
+"""Which neighbours rounds get anywhere with, by what this robot has seen of them."""
 
 from __future__ import annotations
 
@@ -6,8 +6,12 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
+from vedette.agent.events import TreeChanged
+
 MISSES = 2  # rounds in a row that a child may be cut from before the next ones go on without it
 PAUSE, MOST_PAUSE = 10.0, 160.0  # for which they do, doubling each time [s]
+UNLIKE = 4  # rounds in a row may be planned on another belief than the root's, for each link to it
+FARTHEST = 8  # a robot farther from the root, in links, counts as no farther
 
 
 @dataclass
@@ -45,3 +49,38 @@ class Attendance:
     def absent(self, now: float) -> frozenset[int]:
         """Return the children that rounds go on without."""
         return frozenset(child for child, until in self._until.items() if now < until)
+
+
+@dataclass
+class Upwards:
+    """How rounds fare that come by the parent; the farther the root, the longer a robot bears with it.
+
+    So whose neighbour is at fault acts before those behind it.
+    """
+
+    _failed: int = 0  # rounds in a row that came to nothing
+    _unlike: int = 0  # rounds in a row in which the belief was not the root's
+
+    def fails(self, tree: TreeChanged) -> bool:
+        """Note a round that came to nothing; tell whether to do without the parent."""
+        self._failed += 1
+        return self._is_enough(tree, self._failed > _far(tree))
+
+    def ends(self, tree: TreeChanged, approximate: bool) -> bool:
+        """Note a round that has ended, on the root's belief or another; tell likewise.
+
+        A belief that is never the root's tells of evidence that is changed on its way.
+        """
+        self._failed = 0
+        self._unlike = self._unlike + 1 if approximate else 0
+        return self._is_enough(tree, self._unlike >= UNLIKE * _far(tree))
+
+    def _is_enough(self, tree: TreeChanged, is_much: bool) -> bool:
+        if tree.parent is None or not is_much:
+            return False
+        self._failed = self._unlike = 0
+        return True
+
+
+def _far(tree: TreeChanged) -> int:
+    return min(max(tree.distance, 1), tree.size, FARTHEST)

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from vedette.agent.attendance import Attendance
+from vedette.agent.attendance import Attendance, Upwards
 from vedette.agent.effects import Effect, Job, Shun
 from vedette.agent.events import Pose, TreeChanged
 from vedette.agent.mates import Mate
@@ -25,9 +25,6 @@ from vedette.number import many
 IDLE = 1.0  # a robot that did not look after its rounds for longer did not want any [s of the transport]
 CALL_AGAIN = 1.0  # a call not answered is repeated after so long [s]
 SETTLING = 0.2  # a new tree is left alone for so long before a round [s]
-UNLIKE = 4  # rounds in a row may be planned on another belief than the root's, for each link to it
-FARTHEST = 8  # a robot farther from the root, in links, counts as no farther
-AS_LONG = 3.0  # a robot waits for others so many times as long as its own last preparation took, and more
 CLOCKS_APART = 20.0  # that the root's may be from this robot's, where rounds keep to beats [s]
 
 
@@ -75,12 +72,11 @@ class Rounds:
     _began: float = -1e9
     _ended: float = -1e9
     _attendance: Attendance = field(default_factory=Attendance)
+    _upwards: Upwards = field(default_factory=Upwards)
     _prepares: float = -1e9  # since when [s]
     _preparation: float = 0.0  # what its own last one took [s]
     _together: float = -1e9  # when it last decided as others did, or wanted nothing [s]
     _ticked: float = -1e9
-    _failed: int = 0  # rounds in a row that the parent let come to nothing
-    _unlike: int = 0  # rounds in a row in which its belief was not the root's
     _solos: int = 0  # rounds that this robot began for itself alone
 
     @property
@@ -115,7 +111,7 @@ class Rounds:
         if tree.epoch == before.epoch:
             return
         self.round = None
-        self._sequence = self._failed = self._unlike = 0
+        self._sequence, self._upwards = 0, Upwards()
         self._called = -1e9
 
     def want(self) -> None:
@@ -149,7 +145,8 @@ class Rounds:
             self.cuts += 1
             self._attendance.missed(silent, now, self.tempo)
             effects += self._after(round_.cut(silent, now), now)
-        if effects or now <= round_.heard + 1.5 * self._patience():
+        most = self._base() if self._is_lonely(now) else 1.5 * self._patience()
+        if effects or now <= round_.heard + most:
             return effects
         return self._give_up(round_, now)
 
@@ -162,38 +159,23 @@ class Rounds:
         return self._fail()
 
     def _patience(self, depth: int = 0) -> float:
-        """Return how long this robot waits for others [s]: the longer, the longer it took itself."""
-        size = min(self.tree.size, self.admitted)
-        return self.tempo * patience(size, depth) + AS_LONG * self._preparation
+        """Return how long this robot waits for others [s]: longer where its own preparation takes long."""
+        return self._base(depth) + self._preparation
 
-    def _compare(self, round_: Round) -> list[Effect]:
-        """Shun the parent if this robot's belief is never the root's: evidence that passes it is changed."""
-        self._unlike = self._unlike + 1 if round_.approximate else 0
-        if self.tree.parent is None or self._unlike < UNLIKE * self._far:
-            return []
-        self._unlike = 0
-        return [Shun(self.tree.parent)]
-
-    @property
-    def _far(self) -> int:
-        """How far the root is, in links, as patience with the parent counts it."""
-        return min(max(self.tree.distance, 1), self.tree.size, FARTHEST)
+    def _base(self, depth: int = 0) -> float:
+        """Return how long a robot would wait whose own preparation takes no time [s]."""
+        return self.tempo * patience(min(self.tree.size, self.admitted), depth)
 
     def _is_lonely(self, now: float) -> bool:
         """Tell whether this robot has decided with nobody for so long that it had better plan alone."""
-        return now > self._together + self.pace.overdue + 3.0 * self._patience()
+        return now > self._together + self.pace.overdue + 3.0 * self._base() + self._preparation
 
     def _fail(self) -> list[Effect]:
-        """Note that the parent let a round come to nothing; shun it if that goes on.
+        """Note that the parent let a round come to nothing."""
+        return self._shun() if self._upwards.fails(self.tree) else []
 
-        The farther from the root, the later: whose neighbour is at fault acts before those behind it.
-        """
-        self._failed += 1
-        parent = self.tree.parent
-        if parent is None or self._failed <= self._far:
-            return []
-        self._failed = 0
-        return [Shun(parent)]
+    def _shun(self) -> list[Effect]:
+        return [] if self.tree.parent is None else [Shun(self.tree.parent)]
 
     def _ask(self, now: float) -> list[Effect]:
         if self.tree.parent is None:
@@ -237,13 +219,15 @@ class Rounds:
         self.blocked &= not round_.blocked  # taken into account
         lonely = not round_.tree.neighbours and self.tree.parent is not None
         if not lonely:
-            self._together, self._failed = now, 0
+            self._together = now
             self._attendance.attended(round_.children)
         self._end(now)
         seen = round_.value_seen
         value = outcome.value if seen is None else seen
         self.decided(Decision(now, value, round_.approximate or lonely, round_.blocked))
-        return effects if lonely else [*effects, *self._compare(round_)]
+        if not lonely and self._upwards.ends(self.tree, round_.approximate):
+            effects = [*effects, *self._shun()]
+        return effects
 
     def _end(self, now: float) -> None:
         self.round = None

@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import queue
 import threading
+from collections import Counter
 from dataclasses import dataclass
+
+from vedette.agent.networked import BEACON
 
 MOST_EVENTS = 4096
 MOST_BYTES = 1 << 26
+MOST_OF_ONE = 1024  # datagrams of one neighbour that wait
+MOST_BEACONS = 32  # of these, beacons: the next one is worth more than all before
 
 
 @dataclass(frozen=True)
@@ -39,7 +44,8 @@ class Inbox:
     """A queue of bounded size that any thread may put into and one takes from.
 
     What does not fit is dropped and counted in ``dropped``, as a network would drop it: datagrams when they
-    come; anything else makes room for itself by dropping the oldest.
+    come; anything else makes room for itself by dropping the oldest. Each neighbour has a share, and its
+    beacons a small one of that: whoever floods drowns nobody but itself.
     """
 
     def __init__(self, most_events: int = MOST_EVENTS, most_bytes: int = MOST_BYTES) -> None:
@@ -47,21 +53,22 @@ class Inbox:
         self._queue: queue.SimpleQueue[object] = queue.SimpleQueue()
         self._lock = threading.Lock()
         self._bytes = 0
+        self._waiting: Counter[tuple[int, bool]] = Counter()  # by neighbour, beacons apart
+        self._bytes_of: Counter[int] = Counter()
         self.dropped = 0
 
     def put(self, event: object) -> None:
         """Add an event, if it fits; never waits."""
-        size = _size(event)
         with self._lock:
-            if size and self._bytes + size > self._most_bytes:
+            if self._is_too_much(event):
                 self.dropped += 1
                 return
             if self._queue.qsize() >= self._most_events:
                 self.dropped += 1
                 if isinstance(event, ReceivedDatagram):
                     return
-                self._bytes -= _size(self._queue.get())
-            self._bytes += size
+                self._count(self._queue.get(), -1)
+            self._count(event, 1)
             self._queue.put(event)
 
     def get(self, timeout: float | None = None) -> object | None:
@@ -71,9 +78,23 @@ class Inbox:
         except queue.Empty:
             return None
         with self._lock:
-            self._bytes -= _size(event)
+            self._count(event, -1)
         return event
 
+    def _is_too_much(self, event: object) -> bool:
+        """Tell whether a datagram is beyond what there is room for, or beyond its neighbour's share."""
+        if not isinstance(event, ReceivedDatagram):
+            return False
+        robot, size, is_beacon = event.robot, len(event.payload), event.payload.startswith(BEACON)
+        most = MOST_BEACONS if is_beacon else MOST_OF_ONE
+        return (
+            self._waiting[robot, is_beacon] >= most
+            or (self._bytes_of[robot] > 0 and self._bytes_of[robot] + size > self._most_bytes // 2)
+            or self._bytes + size > self._most_bytes
+        )
 
-def _size(event: object) -> int:
-    return len(event.payload) if isinstance(event, ReceivedDatagram) else 0
+    def _count(self, event: object, sign: int) -> None:
+        if isinstance(event, ReceivedDatagram):
+            self._bytes += sign * len(event.payload)
+            self._bytes_of[event.robot] += sign * len(event.payload)
+            self._waiting[event.robot, event.payload.startswith(BEACON)] += sign
