@@ -69,7 +69,7 @@ def test_how_probably_the_target_has_left_is_reported_with_the_pdf() -> None:
     told = pdfs.SearchTeller(agent, leaving).content(0.0)
     view, _ = pdfs.view_of(condition(), told, leaving.pdf)
     assert view.pdf is not None
-    assert 0.3 < pdf.outside == pytest.approx(view.pdf.outside, abs=1e-6)
+    assert 0.2 < pdf.outside == pytest.approx(view.pdf.outside, abs=1e-6)
     np.testing.assert_allclose(view.pdf.mass, pdf.mass, rtol=1e-5, atol=1e-9)
 
 
