@@ -13,7 +13,7 @@ from vedette.agent.events import Arrived, Pose, Scan, Stuck
 from vedette.errors import InputError
 from vedette.maps import GridFrame
 from vedette.ros2.body import Ros2Body
-from vedette.ros2.door import Answer, Deviation, GoalStatus, NavigatorGone, Told
+from vedette.ros2.door import Answer, Deviation, GoalStatus, NavigatorGone, Told, Word
 from vedette.ros2.goals import ActionStatus
 from vedette.ros2.robot import awaited
 from vedette.ros2.settings import Ros2Settings
@@ -165,3 +165,37 @@ def test_a_bodys_lidar_is_what_its_scans_tell_of_it() -> None:
     body = awaited(PlatformSpec(radius=0.3), Ros2Settings(), door, lambda: 0.0, lambda span: None)
     assert (body.hull.radius, body.hull.range, body.hull.beams) == (0.3, 6.0, 11)
     assert body.hull.view == pytest.approx(np.degrees(1.1))
+
+
+def test_a_paused_robot_stands_whatever_its_agent_wants_and_goes_on_where_that_wants_it_by_then() -> None:
+    door = FakeDoor(at(1.0, 0.0))
+    body = body_of(door)
+    body.sense(0.0)
+    body.carry_out(route((10.0, 5.0), (10.0, 7.0)), 0.1)
+    door.told = [Answer(1, accepted=True), Word.PAUSE]
+    body.sense(0.2)
+    assert door.cancelled == [1]
+    door.told = [GoalStatus(1, ActionStatus.CANCELED)]
+    assert [type(event) for event in body.sense(0.3)] == [Pose]
+    body.carry_out(route((10.0, 5.0), (10.0, 6.0)), 0.4)
+    assert len(door.asked) == 1
+    door.told = [Word.RESUME]
+    body.sense(0.5)
+    assert door.asked[1][1] == pytest.approx((1.0, 0.0, 0.0))
+
+
+def test_a_recalled_robot_goes_back_to_where_it_began_and_tells_its_agent_nothing_of_it() -> None:
+    door = FakeDoor(at(1.0, 0.0))
+    body = body_of(door)
+    body.sense(0.0)
+    door.told = at(2.0, 3.0)
+    body.sense(0.1)
+    door.told = [Word.RECALL]
+    body.sense(0.2)
+    ((goal, place),) = door.asked
+    assert place == pytest.approx((0.0, 0.0, 0.0))
+    door.told = [Answer(goal, accepted=True), GoalStatus(goal, ActionStatus.SUCCEEDED)]
+    assert [type(event) for event in body.sense(0.3)] == [Pose]
+    door.told = [Word.RESUME]
+    body.sense(0.4)
+    assert body.at_work is None

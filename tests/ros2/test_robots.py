@@ -6,14 +6,15 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Mapping
+import time
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from tests.support.ros2_teams import Tried, plan, tried
+from tests.support.ros2_teams import DOMAIN, Tried, living, plan, tried
 from tests.support.small_missions import TWO_ROOMS, drawn
 from vedette.maps import UNKNOWN, read_map
 from vedette.outcome import Outcome
@@ -63,6 +64,83 @@ def test_a_robots_own_map_is_its_evidence_and_a_mistake_of_half_a_metre_and_five
     odd = {"slam": True, "lost": [15.0, 0.4, 0.3, 5.0]}
     team = plan(drawn(TWO_ROOMS), 1, oddities={0: odd}, settings={"evidence": "map"})
     sound(tried(team, tmp_path), 1)
+
+
+class Beside:
+    """Somebody who uses the robot's ROS, with nothing of Vedette."""
+
+    def __init__(self) -> None:
+        import rclpy
+        from nav_msgs.msg import OccupancyGrid, Odometry
+        from rclpy.executors import SingleThreadedExecutor
+        from rclpy.qos import DurabilityPolicy, QoSProfile
+        from std_srvs.srv import Trigger
+
+        self.context = rclpy.Context()
+        rclpy.init(context=self.context, domain_id=DOMAIN)
+        self.node = rclpy.create_node("beside", namespace="robot1", context=self.context)
+        self.executor = SingleThreadedExecutor(context=self.context)
+        self.executor.add_node(self.node)
+        self.trigger = Trigger
+        self.known, self.speed, self.at = 0, 0.0, (0.0, 0.0)
+        late = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self.node.create_subscription(OccupancyGrid, "vedette/team_map", self.hear_map, late)
+        self.node.create_subscription(Odometry, "odom", self.hear_odometry, 10)
+
+    def hear_map(self, message: Any) -> None:
+        self.known = int(np.count_nonzero(np.asarray(message.data) >= 0))
+
+    def hear_odometry(self, message: Any) -> None:
+        self.speed = abs(message.twist.twist.linear.x) + abs(message.twist.twist.angular.z)
+        self.at = message.pose.pose.position.x, message.pose.pose.position.y
+
+    def until(self, holds: Callable[[], bool], what: str, patience: float = 30.0) -> None:
+        end = time.monotonic() + patience
+        while not holds():
+            assert time.monotonic() < end, what
+            self.executor.spin_once(timeout_sec=0.1)
+
+    def stays(self, holds: Callable[[], bool], span: float = 3.0) -> bool:
+        end = time.monotonic() + span
+        while time.monotonic() < end:
+            self.executor.spin_once(timeout_sec=0.1)
+            if not holds():
+                return False
+        return True
+
+    def say(self, word: str) -> None:
+        client = self.node.create_client(self.trigger, f"vedette/{word}")
+        assert client.wait_for_service(timeout_sec=20.0), word
+        said = client.call_async(self.trigger.Request())
+        self.until(said.done, word)
+        assert said.result().success
+
+    def close(self) -> None:
+        self.executor.shutdown()
+        self.node.destroy_node()
+        self.context.try_shutdown()
+
+
+def test_who_stands_beside_a_robot_sees_the_teams_map_and_can_pause_recall_and_stop_it(
+    tmp_path: Path,
+) -> None:
+    beside = Beside()
+    try:
+        with living(plan(drawn(TWO_ROOMS), 1, speed=2.0), tmp_path) as team:
+            beside.until(lambda: beside.known > 500, "no map")
+            beside.until(lambda: beside.speed > 0.1, "it does not drive")
+            beside.say("pause")
+            beside.until(lambda: beside.speed == 0.0, "it does not pause")
+            assert beside.stays(lambda: beside.speed == 0.0)
+            beside.say("resume")
+            beside.until(lambda: beside.speed > 0.1, "it does not resume")
+            beside.say("recall")
+            beside.until(lambda: np.hypot(*beside.at) < 0.3 and beside.speed == 0.0, "it does not come back")
+            beside.say("stop")
+            beside.until(lambda: not team.runs(0), "the agent does not stop")
+            assert team.processes[0].poll() == 0
+    finally:
+        beside.close()
 
 
 @pytest.mark.slow

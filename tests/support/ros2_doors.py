@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from vedette.ros2.door import Joint, Told
+from vedette.ros2.door import Joint, Shown, Told
 from vedette.ros2.goals import Place
 from vedette.ros2.offered import Offered
 from vedette.ros2.scans import LaserSweep
@@ -22,6 +22,7 @@ class FakeDoor:
     asked: list[tuple[int, Place]] = field(default_factory=list)
     cancelled: list[int] = field(default_factory=list)
     closed: bool = False
+    shown: list[Shown] = field(default_factory=list)
     time: float | None = None
     offer: Offered | None = None
     telling: Callable[[], list[Told]] | None = None  # what comes whenever it is asked, beside ``told``
@@ -29,6 +30,9 @@ class FakeDoor:
     def take(self) -> Sequence[Told]:
         told, self.told = self.told, []
         return told if self.telling is None else [*told, *self.telling()]
+
+    def show(self, shown: Shown) -> None:
+        self.shown.append(shown)
 
     def offered(self) -> Offered:
         assert self.offer is not None

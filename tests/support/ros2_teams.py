@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
-from contextlib import ExitStack
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -71,16 +71,26 @@ def plan(world: World, count: int, speed: float = 3.0, **told: Any) -> TriedPlan
     return TriedPlan(world, specs, starts, ExploreOptions(), 0, speed, 3.0, **told)
 
 
-def tried(plan: TriedPlan, folder: Path, max_time: float = 300.0) -> Tried:
-    """Let a team explore, apart from all others on this host."""
+DOMAIN = os.getpid() % 100  # of ROS, for this process's tests
+
+
+@contextmanager
+def living(plan: TriedPlan, folder: Path) -> Iterator[TeamProcesses]:
+    """Let robots and their agents live, apart from all others on this host."""
     private, logs = folder / "private", folder / "logs"
     private.mkdir()
-    around = environment(os.getpid() % 100)
+    around = environment(DOMAIN)
     plan.write(private)
     with ExitStack() as stack:
         stack.enter_context(strangers(private, logs / "robots.log", plan.speed, around))
-        team = stack.enter_context(TeamProcesses(plan, private, logs, None, around))
+        yield stack.enter_context(TeamProcesses(plan, private, logs, None, around))
+
+
+def tried(plan: TriedPlan, folder: Path, max_time: float = 300.0) -> Tried:
+    """Let a team explore to the end."""
+    with ExitStack() as stack:
+        team = stack.enter_context(living(plan, folder))
         operator = stack.enter_context(Operator(team.operator))
         watcher = ExploreWatcher(plan, Setting(seed=0))
         report = TeamWatch(plan, team, operator, watcher, max_time).run()
-    return Tried(report, plan.world, (logs / "robots.log").read_text())
+    return Tried(report, plan.world, (folder / "logs" / "robots.log").read_text())

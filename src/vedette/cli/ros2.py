@@ -30,7 +30,7 @@ def check_robot(config_path: Path | None) -> None:
     input.
     """
     settings = Ros2Settings() if config_path is None else _settings_of(config_path)
-    door = RosDoor(settings, "vedette_check")
+    door = RosDoor(settings, "vedette_check", listens_only=True)
     try:
         findings = check(settings, door)
     finally:

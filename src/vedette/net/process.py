@@ -59,6 +59,7 @@ class AgentProcess:
     inbox: Inbox
     witness: Witness
     mission: Clockwork
+    show: Callable[[float], None] | None  # the robot to those beside it, at a mission's time [s]
     say: Callable[[str], None]  # tells whoever watches this process, a line each
     staged: Staged | None = None  # what befalls its links, to try a team
     clock: Callable[[], float] = time.monotonic
@@ -149,6 +150,8 @@ class AgentProcess:
             return
         at = self.mission.shows(now)
         self._reported, self._reported_at = now, at
+        if self.show is not None:
+            self.show(at)
         for robot, what in self.node.complaints.items():
             if self._said.get(robot) != what:
                 self._said[robot] = what

@@ -20,4 +20,5 @@ class Robot:
     shown: Shown | None  # the body, where it is simulated and others are to see it
     teller: Teller
     terms: Terms  # what its team has to agree on
+    show: Callable[[float], None] | None = None  # to those beside the robot, at a mission's time [s]
     time: Callable[[], float | None] | None = None  # its own clock [s], to go by; None: this host's

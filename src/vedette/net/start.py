@@ -76,7 +76,9 @@ def agent_process(
         admitted=access.robots,
     )
     witness = Witness(node, robot.body, transport, robot.teller, robot_name(index))
-    return AgentProcess(node, robot.body, robot.shown, transport, inbox, witness, clock, say, staged)
+    return AgentProcess(
+        node, robot.body, robot.shown, transport, inbox, witness, clock, robot.show, say, staged
+    )
 
 
 def _clock_of(config: AgentConfig, robot: Robot, speed: float, shared: MissionClock) -> Clockwork:

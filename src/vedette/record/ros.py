@@ -19,10 +19,11 @@ _OCCUPANCY[[UNKNOWN, FREE, OCCUPIED]] = -1, 0, 100
 
 
 class RosMessages:
-    """Build and encode messages; ``stamp`` is simulated time [ns], poses are in the frame ``map``."""
+    """Build and encode messages; ``stamp`` is a time [ns], poses are in the frame ``frame_id``."""
 
-    def __init__(self) -> None:
+    def __init__(self, frame_id: str = FRAME_ID) -> None:
         """Load the message definitions of ROS 2 Humble; later releases have the same ones."""
+        self.frame_id = frame_id
         self._store = get_typestore(Stores.ROS2_HUMBLE)
 
     def definition(self, kind: str) -> str:
@@ -87,7 +88,7 @@ class RosMessages:
 
     def _header(self, stamp: int) -> Any:
         time = self._make("builtin_interfaces/msg/Time", *divmod(stamp, 1_000_000_000))
-        return self._make("std_msgs/msg/Header", time, FRAME_ID)
+        return self._make("std_msgs/msg/Header", time, self.frame_id)
 
     def _turn(self, heading: float) -> Any:
         half = 0.5 * heading

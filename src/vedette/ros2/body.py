@@ -12,7 +12,18 @@ import numpy as np
 from vedette.agent.body import BodyFigures
 from vedette.agent.effects import Drive, Motion, Route
 from vedette.agent.events import Event, Pose, Scan, Sensed
-from vedette.ros2.door import Answer, Deviation, Door, GoalStatus, Grid, Joint, NavigatorGone, Patch, Told
+from vedette.ros2.door import (
+    Answer,
+    Deviation,
+    Door,
+    GoalStatus,
+    Grid,
+    Joint,
+    NavigatorGone,
+    Patch,
+    Told,
+    Word,
+)
 from vedette.ros2.goals import Ask, Errands, Place
 from vedette.ros2.grids import Grids
 from vedette.ros2.scans import LaserSweep, beams
@@ -40,6 +51,9 @@ class Ros2Body:
     grids: Grids = field(default_factory=Grids)
     left_out: int = 0  # scans whose transforms never came
     latest: LaserSweep | None = None
+    at_work: str | None = None  # why it does not do what its agent wants; None: it does
+    _wish: Drive | None = None  # what its agent wants
+    _began: Place | None = None  # where it was first
     _pose: Pose | None = None  # team frame
     _counted: Pose | None = None  # up to where its way is counted
     _travelled: float = 0.0
@@ -59,6 +73,11 @@ class Ros2Body:
         return (0.0, 0.0, 0.0) if at is None else (at.x, at.y, at.heading)
 
     @property
+    def stamp(self) -> float | None:
+        """The latest time at which the robot has told where it is, by its own clock [s]."""
+        return self.transforms.newest(self.frame(self.settings.base_frame))
+
+    @property
     def figures(self) -> BodyFigures:
         """Its way; its own software sees to collisions."""
         return BodyFigures(self._travelled)
@@ -74,17 +93,33 @@ class Ros2Body:
         scans = [event for sweep in self._due() for event in sweep]
         self._note(pose)
         outcomes, self.goals.outcomes = self.goals.outcomes, []
-        return [*scans, pose, *self._own_map(now), *outcomes]
+        return [*scans, pose, *self._own_map(now), *(outcomes if self.at_work is None else ())]
 
     def carry_out(self, motion: Motion, now: float) -> None:
         """Send the navigator to the end of a route, or let the robot stand."""
         assert isinstance(motion, Drive), "robots on the ground do not fly"
-        route = motion.route
+        self._wish = motion
+        if self.at_work is None:
+            self._follow(motion.route, now)
+
+    def _follow(self, route: Route | None, now: float) -> None:
         if route is None:
             self.goals.want(None, now)
         else:
             self.goals.want(self._end(route), now, facing=route.facing is not None)
         self._give_orders()
+
+    def _obey(self, word: Word, now: float) -> None:
+        """Do what somebody beside the robot says, whatever its agent wants."""
+        if word is Word.RESUME:
+            self.at_work = None
+            self._follow(None if self._wish is None else self._wish.route, now)
+        elif word is Word.RECALL:
+            self.at_work = "recalled: resume lets it work again"
+            self.goals.want(self._began, now, facing=False)
+        else:
+            self.at_work = "paused: resume lets it work again"
+            self.goals.want(None, now)
 
     def stop(self, now: float) -> None:
         """Stand, and leave the robot to others."""
@@ -116,6 +151,8 @@ class Ros2Body:
                 self.goals.status(goal, status, now)
             case NavigatorGone():
                 self.goals.gone(now)
+            case Word():
+                self._obey(told, now)
 
     def frame(self, name: str) -> str:
         """Return a frame as TF knows it: bare, or with the robot's namespace before it."""
@@ -138,6 +175,7 @@ class Ros2Body:
     def _note(self, pose: Pose) -> None:
         """Remember where the robot is, and count its way."""
         self._pose, last = pose, self._counted or pose
+        self._began = self._began or (pose.x, pose.y, pose.heading)
         way = hypot(pose.x - last.x, pose.y - last.y)
         if way >= NO_WAY or self._counted is None:
             self._counted, self._travelled = pose, self._travelled + way
@@ -216,7 +254,6 @@ class Ros2Body:
         orders, self.goals.orders = self.goals.orders, []
         for order in orders:
             if isinstance(order, Ask):
-                T_map_team = np.linalg.inv(self.settings.T_team_map)
-                self.door.ask(order.goal, place(T_map_team @ planar(*order.place)))
+                self.door.ask(order.goal, place(self.settings.T_map_team @ planar(*order.place)))
             else:
                 self.door.cancel(order.goal)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import Protocol, TypeAlias
 
 import numpy as np
@@ -73,7 +74,25 @@ class NavigatorGone:
     """There is no navigator now."""
 
 
-Told: TypeAlias = Joint | LaserSweep | Grid | Patch | Deviation | Answer | GoalStatus | NavigatorGone
+class Word(StrEnum):
+    """What somebody beside the robot may tell it, by a service; ``std_srvs/Trigger``."""
+
+    PAUSE = "pause"  # stand where it is
+    RESUME = "resume"  # work again
+    RECALL = "recall"  # go back to where it began, and stand there
+    STOP = "stop"  # stand, and end the agent: the team goes on without it
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A message for those who use the robot's ROS."""
+
+    topic: str
+    kind: str  # its type
+    cdr: bytes
+
+
+Told: TypeAlias = Joint | LaserSweep | Grid | Patch | Deviation | Answer | GoalStatus | NavigatorGone | Word
 
 
 class Door(Protocol):
@@ -91,6 +110,9 @@ class Door(Protocol):
 
     def cancel(self, goal: int) -> None:
         """Cancel a goal, whether it was taken up or not."""
+
+    def show(self, shown: Shown) -> None:
+        """Publish a message."""
 
     def close(self) -> None:
         """Leave; what was ordered is sent before."""

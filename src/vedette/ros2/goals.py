@@ -143,6 +143,7 @@ class Errands:
         if goal != self._goal or self._state not in (_State.ASKED, _State.DRIVING):
             return
         if status == ActionStatus.SUCCEEDED:
+            self.said = ""
             self._stand()
             self.outcomes.append(Arrived())
         elif status == ActionStatus.ABORTED:

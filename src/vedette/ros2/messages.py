@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from vedette.ros2.door import Joint
+from vedette.ros2.door import Deviation, Grid, Joint, Patch
 from vedette.ros2.scans import LaserSweep
-from vedette.ros2.transforms import matrix
+from vedette.ros2.transforms import Matrix, deviations, matrix
 
 
 def seconds(stamp: Any) -> float:
@@ -34,8 +34,35 @@ def sweep_of(message: Any) -> LaserSweep:
 def joints_of(message: Any, *, fixed: bool) -> Iterator[Joint]:
     """Yield the transforms of a ``tf2_msgs/TFMessage``; one whose quaternion is 0 is left out."""
     for told in message.transforms:
-        t, q = told.transform.translation, told.transform.rotation
-        quaternion = (q.x, q.y, q.z, q.w)
-        if any(quaternion):
-            T = matrix((t.x, t.y, t.z), quaternion)
+        T = _transform(told.transform.translation, told.transform.rotation)
+        if T is not None:
             yield Joint(told.header.frame_id, told.child_frame_id, seconds(told.header.stamp), T, fixed)
+
+
+def deviation_of(message: Any) -> Deviation:
+    """Return how sure a ``geometry_msgs/PoseWithCovarianceStamped`` is."""
+    return Deviation(*deviations(message.pose.covariance))
+
+
+def grid_of(message: Any) -> Grid | None:
+    """Return a ``nav_msgs/OccupancyGrid``; None: it makes no sense."""
+    info, cells = message.info, np.asarray(message.data, np.int8)
+    T = _transform(info.origin.position, info.origin.orientation)
+    if not info.resolution > 0.0 or len(cells) != info.height * info.width:
+        return None
+    cells = cells.reshape(info.height, info.width)
+    return Grid(message.header.frame_id, info.resolution, np.eye(4) if T is None else T, cells)
+
+
+def patch_of(message: Any) -> Patch | None:
+    """Return a ``map_msgs/OccupancyGridUpdate``; None: it makes no sense."""
+    cells = np.asarray(message.data, np.int8)
+    if len(cells) != message.height * message.width:
+        return None
+    return Patch(message.y, message.x, cells.reshape(message.height, message.width))
+
+
+def _transform(at: Any, turn: Any) -> Matrix | None:
+    """Return a translation and a rotation as a matrix; None for a quaternion of zeros."""
+    quaternion = (turn.x, turn.y, turn.z, turn.w)
+    return matrix((at.x, at.y, at.z), quaternion) if any(quaternion) else None

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import importlib
+import os
+import signal
 import time
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import partial
 from math import cos, sin
 from threading import Thread
 from typing import Any
@@ -16,19 +19,20 @@ from uuid import uuid4
 import numpy as np
 
 from vedette.errors import InputError
-from vedette.ros2.door import Answer, Deviation, GoalStatus, Grid, NavigatorGone, Patch, Told
+from vedette.ros2.door import Answer, GoalStatus, NavigatorGone, Shown, Told, Word
 from vedette.ros2.goals import Place
-from vedette.ros2.messages import joints_of, seconds, sweep_of
+from vedette.ros2.messages import deviation_of, grid_of, joints_of, patch_of, seconds, sweep_of
 from vedette.ros2.offered import Offered, Writer
 from vedette.ros2.settings import Ros2Settings
-from vedette.ros2.transforms import deviations, matrix
+from vedette.ros2.transforms import place
 
 HOW = "start it where ROS 2 is set up: source /opt/ros/<distro>/setup.bash"
 MOST_GOALS = 64  # that are remembered
 GOODBYE = 1.0  # what was ordered last has so long to get out [s]
 TOPICS = ("scan", "map", "pose", "navigate_to_pose")  # settings that name some
 NAVIGATOR = "bt_navigator"  # Nav2's node that offers the action
-DEPTH = 5  # messages of a sensor that are kept for us
+OURS = "vedette"  # before the names of what we offer
+TEAM_FRAME = "team"
 
 
 def ros(name: str) -> Any:
@@ -44,16 +48,28 @@ def ros(name: str) -> Any:
         raise InputError(f"body.ros2: this Python has no {missing}; {HOW}") from None
 
 
+def _profile(depth: int, *, reliable: bool = True, kept: bool = False) -> Any:
+    """Return a QoS; a reader that is not reliable and keeps nothing hears every writer."""
+    qos = ros("rclpy.qos")
+    return qos.QoSProfile(
+        depth=depth,
+        reliability=qos.ReliabilityPolicy.RELIABLE if reliable else qos.ReliabilityPolicy.BEST_EFFORT,
+        durability=qos.DurabilityPolicy.TRANSIENT_LOCAL if kept else qos.DurabilityPolicy.VOLATILE,
+    )
+
+
 @dataclass(eq=False)
 class RosDoor:
     """A node of the robot's ROS; ``vedette.ros2.door.Door``. What it is told comes in a thread of its own."""
 
     settings: Ros2Settings
     name: str
+    listens_only: bool = False  # offers nothing to others
+    time: float | None = None  # that /clock shows [s]
     _told: deque[Told] = field(default_factory=deque)
     _goals: dict[bytes, int] = field(default_factory=dict)  # our numbers by the names that goals travel with
     _was_there: bool = False  # the navigator
-    time: float | None = None  # that /clock shows [s]
+    _publishers: dict[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         rclpy, signals = ros("rclpy"), ros("rclpy.signals")
@@ -67,16 +83,16 @@ class RosDoor:
         )
         self._subscribe()
         self._find_navigator()
+        if not self.listens_only:
+            self._serve()
         self._executor = ros("rclpy.executors").SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.node)
         self._thread = Thread(target=self._spin, name="ros2", daemon=True)
         self._thread.start()
 
     def _spin(self) -> None:
-        try:
+        with suppress(ros("rclpy.executors").ExternalShutdownException):
             self._executor.spin()
-        except ros("rclpy.executors").ExternalShutdownException:
-            pass
 
     # -- what the robot tells -----------------------------------------------------------------------------
 
@@ -89,110 +105,48 @@ class RosDoor:
         return [self._told.popleft() for _ in range(len(self._told))]
 
     def _subscribe(self) -> None:
-        qos = ros("rclpy.qos")
-        tf = ros("tf2_msgs.msg").TFMessage
-        sensor = qos.QoSProfile(depth=DEPTH, reliability=qos.ReliabilityPolicy.BEST_EFFORT)
-        moving = qos.QoSProfile(depth=100, reliability=qos.ReliabilityPolicy.BEST_EFFORT)
-        latched = qos.QoSProfile(depth=100, durability=qos.DurabilityPolicy.TRANSIENT_LOCAL)
-        node, settings = self.node, self.settings
-        node.create_subscription(ros("sensor_msgs.msg").LaserScan, settings.scan, self._hear_scan, sensor)
-        pose = ros("geometry_msgs.msg").PoseWithCovarianceStamped
-        node.create_subscription(pose, settings.pose, self._hear_pose, sensor)
-        for topic in dict.fromkeys((node.resolve_topic_name("tf"), "/tf")):
-            own = topic != "/tf" or not self._prefix
-            node.create_subscription(tf, topic, lambda m, own=own: self._hear_tf(m, own, False), moving)
-            static = f"{topic}_static"
-            node.create_subscription(tf, static, lambda m, own=own: self._hear_tf(m, own, True), latched)
-
+        settings, sensor = self.settings, _profile(5, reliable=False)
+        self._hear("sensor_msgs", "LaserScan", settings.scan, sweep_of, sensor)
+        self._hear("geometry_msgs", "PoseWithCovarianceStamped", settings.pose, deviation_of, sensor)
         if settings.evidence == "map":
-            one = qos.QoSProfile(depth=1, durability=qos.DurabilityPolicy.TRANSIENT_LOCAL)
-            node.create_subscription(ros("nav_msgs.msg").OccupancyGrid, settings.map, self._hear_grid, one)
-            with suppress(ImportError):  # not all robots have updates of maps
-                update = importlib.import_module("map_msgs.msg").OccupancyGridUpdate
-                node.create_subscription(update, f"{settings.map}_updates", self._hear_patch, sensor)
+            kept = _profile(1, kept=True)
+            self._hear("nav_msgs", "OccupancyGrid", settings.map, grid_of, kept)
+            with suppress(InputError):  # not every robot's ROS has updates of maps
+                updates = f"{settings.map}_updates"
+                self._hear("map_msgs", "OccupancyGridUpdate", updates, patch_of, sensor)
+        self._hear_frames()
         if settings.use_sim_time:
-            newest = qos.QoSProfile(depth=1, reliability=qos.ReliabilityPolicy.BEST_EFFORT)
-            node.create_subscription(ros("rosgraph_msgs.msg").Clock, "/clock", self._hear_clock, newest)
+            clock, newest = ros("rosgraph_msgs.msg").Clock, _profile(1, reliable=False)
+            self.node.create_subscription(clock, "/clock", self._hear_clock, newest)
 
-    def _hear_grid(self, message: Any) -> None:
-        info, origin = message.info, message.info.origin
-        p, q = origin.position, origin.orientation
-        quaternion = (q.x, q.y, q.z, q.w) if any((q.x, q.y, q.z, q.w)) else (0.0, 0.0, 0.0, 1.0)
-        cells = np.asarray(message.data, np.int8)
-        if info.resolution > 0.0 and len(cells) == info.height * info.width:
-            self._told.append(
-                Grid(
-                    message.header.frame_id,
-                    info.resolution,
-                    matrix((p.x, p.y, p.z), quaternion),
-                    cells.reshape(info.height, info.width),
-                )
-            )
+    def _hear(self, package: str, kind: str, topic: str, read: Callable[[Any], Any], qos: Any) -> None:
+        """Take in a topic; what makes no sense is left out."""
 
-    def _hear_patch(self, message: Any) -> None:
-        cells = np.asarray(message.data, np.int8)
-        if len(cells) == message.height * message.width:
-            self._told.append(Patch(message.y, message.x, cells.reshape(message.height, message.width)))
+        def take_in(message: Any) -> None:
+            told = read(message)
+            if told is not None:
+                self._told.append(told)
+
+        self.node.create_subscription(getattr(ros(f"{package}.msg"), kind), topic, take_in, qos)
+
+    def _hear_frames(self) -> None:
+        """Take in TF: the robot's own, and of what all robots share the frames with its namespace first."""
+        message, namespace = ros("tf2_msgs.msg").TFMessage, self.settings.namespace.strip("/")
+        for topic in dict.fromkeys((self.node.resolve_topic_name("tf"), "/tf")):
+            prefix = f"{namespace}/" if namespace and topic == "/tf" else ""
+            for name, fixed, qos in (
+                (topic, False, _profile(100, reliable=False)),
+                (f"{topic}_static", True, _profile(100, kept=True)),
+            ):
+                take_in = partial(self._hear_joints, prefix, fixed)
+                self.node.create_subscription(message, name, take_in, qos)
+
+    def _hear_joints(self, prefix: str, fixed: bool, message: Any) -> None:
+        joints = joints_of(message, fixed=fixed)
+        self._told.extend(joint for joint in joints if joint.child.lstrip("/").startswith(prefix))
 
     def _hear_clock(self, message: Any) -> None:
         self.time = seconds(message.clock)
-
-    @property
-    def _prefix(self) -> str:
-        """What frames on the common topic begin with that are this robot's."""
-        namespace = self.settings.namespace.strip("/")
-        return f"{namespace}/" if namespace else ""
-
-    def _hear_tf(self, message: Any, own: bool, fixed: bool) -> None:
-        """Take in transforms; of a topic that all robots share only those with the namespace before them."""
-        for joint in joints_of(message, fixed=fixed):
-            if own or joint.child.lstrip("/").startswith(self._prefix):
-                self._told.append(joint)
-
-    def _hear_scan(self, message: Any) -> None:
-        self._told.append(sweep_of(message))
-
-    def _hear_pose(self, message: Any) -> None:
-        self._told.append(Deviation(*deviations(message.pose.covariance)))
-
-    # -- what there is to be told -------------------------------------------------------------------------
-
-    def offered(self) -> Offered:
-        """Return what the robot's ROS offers by now."""
-        node, settings = self.node, self.settings
-        resolved = {name: node.resolve_topic_name(getattr(settings, name)) for name in TOPICS}
-        resolved |= {name: node.resolve_topic_name(name) for name in ("tf", "tf_static")}
-        sure, kept = ros("rclpy.qos").ReliabilityPolicy, ros("rclpy.qos").DurabilityPolicy
-        return Offered(
-            {name: tuple(types) for name, types in node.get_topic_names_and_types()},
-            resolved,
-            {
-                topic: tuple(
-                    Writer(
-                        info.qos_profile.reliability == sure.RELIABLE,
-                        info.qos_profile.durability == kept.TRANSIENT_LOCAL,
-                    )
-                    for info in node.get_publishers_info_by_topic(topic)
-                )
-                for topic in (*resolved.values(), "/tf", "/tf_static", "/clock")
-            },
-            self._there,
-            self._state_of(NAVIGATOR),
-        )
-
-    def _state_of(self, node: str) -> str | None:
-        """Ask a node for the state of its life cycle; None: it does not answer."""
-        get_state = ros("lifecycle_msgs.srv").GetState
-        client = self.node.create_client(get_state, f"{node}/get_state")
-        try:
-            if not client.wait_for_service(timeout_sec=GOODBYE):
-                return None
-            asked, until = client.call_async(get_state.Request()), time.monotonic() + GOODBYE
-            while not asked.done() and time.monotonic() < until:
-                time.sleep(0.01)
-            return str(asked.result().current_state.label) if asked.done() else None
-        finally:
-            self.node.destroy_client(client)
 
     # -- the navigator ------------------------------------------------------------------------------------
 
@@ -200,15 +154,13 @@ class RosDoor:
         """Make clients of the action's services, which tell more of a goal than its client does."""
         self._action = ros("nav2_msgs.action").NavigateToPose
         self._cancel_goal = ros("action_msgs.srv").CancelGoal
-        status, qos = ros("action_msgs.msg").GoalStatusArray, ros("rclpy.qos")
+        status = ros("action_msgs.msg").GoalStatusArray
         action = self.node.resolve_topic_name(self.settings.navigate_to_pose)
-        self._asker = self.node.create_client(
-            self._action.Impl.SendGoalService, f"{action}/_action/send_goal"
-        )
+        send_goal = self._action.Impl.SendGoalService
+        self._asker = self.node.create_client(send_goal, f"{action}/_action/send_goal")
         self._canceller = self.node.create_client(self._cancel_goal, f"{action}/_action/cancel_goal")
-        self.node.create_subscription(
-            status, f"{action}/_action/status", self._hear_status, qos.qos_profile_action_status_default
-        )
+        qos = ros("rclpy.qos").qos_profile_action_status_default
+        self.node.create_subscription(status, f"{action}/_action/status", self._hear_status, qos)
 
     @property
     def _there(self) -> bool:
@@ -237,13 +189,85 @@ class RosDoor:
         for name in [name for name, number in self._goals.items() if number == goal]:
             request = self._cancel_goal.Request()
             request.goal_info.goal_id.uuid = np.frombuffer(name, np.uint8)
-            self._cancelled = self._canceller.call_async(request)
+            self._canceller.call_async(request)
 
     def _hear_status(self, message: Any) -> None:
         for told in message.status_list:
             goal = self._goals.get(bytes(told.goal_info.goal_id.uuid))
             if goal is not None:
                 self._told.append(GoalStatus(goal, int(told.status)))
+
+    # -- for those who use the robot's ROS ----------------------------------------------------------------
+
+    def _serve(self) -> None:
+        """Offer the services, and tell where the team's frame lies in the robot's map."""
+        for word in Word:
+            obey = partial(self._hear_word, word)
+            self.node.create_service(ros("std_srvs.srv").Trigger, f"{OURS}/{word}", obey)
+        told, tf = ros("geometry_msgs.msg").TransformStamped(), ros("tf2_msgs.msg").TFMessage
+        told.header.frame_id, told.child_frame_id = self.settings.map_frame, TEAM_FRAME
+        x, y, yaw = place(self.settings.T_map_team)
+        told.transform.translation.x, told.transform.translation.y = x, y
+        told.transform.rotation.z, told.transform.rotation.w = sin(yaw / 2), cos(yaw / 2)
+        self._static = self.node.create_publisher(tf, "tf_static", _profile(1, kept=True))
+        self._static.publish(tf(transforms=[told]))
+
+    def _hear_word(self, word: Word, asked: Any, said: Any) -> Any:
+        self._told.append(word)
+        said.success = True
+        if word is Word.STOP:
+            os.kill(os.getpid(), signal.SIGTERM)  # as from whoever started the agent
+        return said
+
+    def show(self, shown: Shown) -> None:
+        """Publish a message, for who comes late as well."""
+        if shown.topic not in self._publishers:
+            package, _, name = shown.kind.partition("/msg/")
+            topic = shown.topic if shown.topic.startswith("/") else f"{OURS}/{shown.topic}"
+            kind = getattr(ros(f"{package}.msg"), name)
+            self._publishers[shown.topic] = self.node.create_publisher(kind, topic, _profile(1, kept=True))
+        self._publishers[shown.topic].publish(shown.cdr)
+
+    # -- what there is to be told -------------------------------------------------------------------------
+
+    def offered(self) -> Offered:
+        """Return what the robot's ROS offers by now."""
+        node = self.node
+        names = {name: node.resolve_topic_name(getattr(self.settings, name)) for name in TOPICS}
+        names |= {name: node.resolve_topic_name(name) for name in ("tf", "tf_static")}
+        topics = (*names.values(), "/tf", "/tf_static", "/clock")
+        return Offered(
+            {name: tuple(types) for name, types in node.get_topic_names_and_types()},
+            names,
+            {topic: self._writers(topic) for topic in topics},
+            self._there,
+            self._state_of(NAVIGATOR),
+        )
+
+    def _writers(self, topic: str) -> tuple[Writer, ...]:
+        qos = ros("rclpy.qos")
+        profiles = [info.qos_profile for info in self.node.get_publishers_info_by_topic(topic)]
+        return tuple(
+            Writer(
+                each.reliability == qos.ReliabilityPolicy.RELIABLE,
+                each.durability == qos.DurabilityPolicy.TRANSIENT_LOCAL,
+            )
+            for each in profiles
+        )
+
+    def _state_of(self, node: str) -> str | None:
+        """Ask a node for the state of its life cycle; None: it does not answer."""
+        get_state = ros("lifecycle_msgs.srv").GetState
+        client = self.node.create_client(get_state, f"{node}/get_state")
+        try:
+            if not client.wait_for_service(timeout_sec=GOODBYE):
+                return None
+            asked, until = client.call_async(get_state.Request()), time.monotonic() + GOODBYE
+            while not asked.done() and time.monotonic() < until:
+                time.sleep(0.01)
+            return str(asked.result().current_state.label) if asked.done() else None
+        finally:
+            self.node.destroy_client(client)
 
     def close(self) -> None:
         """Leave; what was ordered last is given the time to get out."""

@@ -37,3 +37,8 @@ class Ros2Settings(Struct, forbid_unknown_fields=True, frozen=True):
         """``(4, 4)``."""
         x, y, yaw = self.start
         return planar(x, y, radians(yaw))
+
+    @property
+    def T_map_team(self) -> NDArray[np.float64]:
+        """``(4, 4)``."""
+        return np.linalg.inv(self.T_team_map).astype(np.float64)

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vedette.agent import Agent
 from vedette.agent.body import Body, Shown
 from vedette.maps.lattice import Lattice
 from vedette.maps.world import World
@@ -16,7 +17,7 @@ from vedette.missions.explore.assemble import assemble, terms_of
 from vedette.missions.explore.options import ExploreOptions
 from vedette.net.config import AgentConfig
 from vedette.net.explore.content import ExploreTeller
-from vedette.net.real import RESOLUTION, real_robot
+from vedette.net.real import RESOLUTION, real_robot, shows
 from vedette.net.robot import Robot
 from vedette.net.simulated import simulated_robot
 from vedette.team import Most, PlatformSpec
@@ -31,6 +32,7 @@ class _Place(NamedTuple):
     shown: Shown | None
     terms: dict[str, str]  # what its team has to agree on beside how it explores
     time: Callable[[], float | None] | None = None  # its own clock [s]
+    showing: Callable[[Agent], Callable[[float], None]] | None = None  # it to those beside it
 
 
 def explorer(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robot:
@@ -53,7 +55,8 @@ def explorer(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robo
         waits_for=config.robots,
     )
     terms = {**terms_of(place.lattice, options), **place.terms}
-    return Robot(agent, place.body, place.shown, ExploreTeller(agent), terms, place.time)
+    show = None if place.showing is None else place.showing(agent)
+    return Robot(agent, place.body, place.shown, ExploreTeller(agent), terms, show, place.time)
 
 
 def _simulated(config: AgentConfig, folder: Path, options: ExploreOptions) -> _Place:
@@ -67,7 +70,7 @@ def _simulated(config: AgentConfig, folder: Path, options: ExploreOptions) -> _P
 def _real(config: AgentConfig, options: ExploreOptions) -> _Place:
     lattice = options.lattice(config.body.resolution or RESOLUTION)
     body = real_robot(config)
-    return _Place(lattice, body.hull, body, None, {}, body.time)
+    return _Place(lattice, body.hull, body, None, {}, body.time, shows(config, body))
 
 
 def _fingerprint(world: World) -> str:

@@ -1,0 +1,153 @@
+"""What a robot's agent shows to those who use its ROS: the team's map, its own plan, its condition."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.agent import Agent
+from vedette.domains.mapping.belief import planning_factor
+from vedette.domains.mapping.impact import final_miss, moved
+from vedette.missions.explore.exploring import Exploring
+from vedette.record.ros import RosMessages
+from vedette.ros2.body import Ros2Body
+from vedette.ros2.door import Shown
+from vedette.ros2.node import TEAM_FRAME
+
+PERIOD = 1.0  # of what is shown, at least [s]
+GRID_PERIOD = 3.0  # of grids, which are shown when they have changed [s]
+POINT_SIZE, TEXT_SIZE = 0.15, 0.4  # of frontiers' marks and of names [m]
+_POINTS, _TEXT = 8, 9  # visualization_msgs/Marker
+_COLOUR = (0.0, 0.45, 0.7, 1.0)  # seen on white and on black
+_OK, _WARN = b"\x00", b"\x01"  # diagnostic_msgs/DiagnosticStatus
+
+
+class ShowingMessages(RosMessages):
+    """Messages for RViz and for who watches over robots."""
+
+    def marker(self, stamp: int, name: str, number: int, points: NDArray[np.float64], text: str = "") -> Any:
+        """Return a ``visualization_msgs/Marker``: ``(k, 2)`` points [m], or a text at the only one."""
+        x, y = points[0].tolist() if text else (0.0, 0.0)
+        size = TEXT_SIZE if text else POINT_SIZE
+        header, nothing = self._header(stamp), np.empty(0, np.uint8)
+        return self._make(
+            "visualization_msgs/msg/Marker",
+            header,
+            name,
+            number,
+            _TEXT if text else _POINTS,
+            0,  # add or replace
+            self._pose(x, y, 0.0),
+            self._make("geometry_msgs/msg/Vector3", size, size, size),
+            self._make("std_msgs/msg/ColorRGBA", *_COLOUR),
+            self._make("builtin_interfaces/msg/Duration", 5, 0),  # then it is gone
+            False,  # frame_locked
+            [] if text else [self._make("geometry_msgs/msg/Point", *at, 0.0) for at in points.tolist()],
+            [],
+            "",
+            self._make("sensor_msgs/msg/CompressedImage", header, "", nothing),
+            [],
+            text,
+            "",
+            self._make("visualization_msgs/msg/MeshFile", "", nothing),
+            False,
+        )
+
+    def markers(self, markers: Sequence[Any]) -> Any:
+        """Return a ``visualization_msgs/MarkerArray``."""
+        return self._make("visualization_msgs/msg/MarkerArray", list(markers))
+
+    def diagnosis(self, stamp: int, name: str, worry: str, facts: dict[str, str]) -> Any:
+        """Return a ``diagnostic_msgs/DiagnosticArray`` of one thing; ``worry``: what is wrong, or ''."""
+        pairs = [self._make("diagnostic_msgs/msg/KeyValue", *pair) for pair in facts.items()]
+        level = (_WARN if worry else _OK)[0]
+        status = self._make("diagnostic_msgs/msg/DiagnosticStatus", level, name, worry or "ok", name, pairs)
+        return self._make("diagnostic_msgs/msg/DiagnosticArray", self._header(stamp), [status])
+
+
+@dataclass(eq=False)
+class Showing:
+    """Shows one exploring robot; ``show`` it while its agent is not at work. Times are the mission's [s]."""
+
+    agent: Agent
+    body: Ros2Body
+    name: str
+    _messages: ShowingMessages = field(default_factory=lambda: ShowingMessages(TEAM_FRAME))
+    _due: float = 0.0
+    _grids_due: float = 0.0
+    _digest: int | None = None  # of the map that was shown last
+
+    def __call__(self, now: float) -> None:
+        """Show what is due."""
+        if now < self._due:
+            return
+        self._due = now + PERIOD
+        stamp = round(1e9 * (self.body.stamp or 0.0))
+        for topic, kind, message in (*self._grids(stamp, now), *self._rest(stamp)):
+            self.body.door.show(Shown(topic, kind, self._messages.encode(message)))
+
+    @property
+    def _mission(self) -> Exploring:
+        return cast(Exploring, self.agent.mission)
+
+    def _grids(self, stamp: int, now: float) -> Iterator[tuple[str, str, Any]]:
+        """Yield the team's map, and what its robots will have seen of it, where that is news."""
+        mission, digest = self._mission, self.agent.mission.fusion.digest
+        if now < self._grids_due or digest == self._digest:
+            return
+        self._grids_due, self._digest = now + GRID_PERIOD, digest
+        known = mission.known
+        frame = mission.frame.window(*known)
+        if not frame.size:
+            return
+        classes = mission.fusion.classes.window(*known)
+        yield "team_map", "nav_msgs/msg/OccupancyGrid", self._messages.map_grid(stamp, frame, classes)
+        if self.agent.rounds.impact is not None:
+            factor = planning_factor(mission.frame.resolution)
+            whole, part = mission.frame.coarse(factor), frame.coarse(factor)
+            miss = final_miss(moved(self.agent.rounds.impact, whole, part), part.size)
+            share = (1.0 - miss).reshape(part.shape)
+            yield "impact", "nav_msgs/msg/OccupancyGrid", self._messages.share_grid(stamp, part, share)
+
+    def _rest(self, stamp: int) -> Iterator[tuple[str, str, Any]]:
+        """Yield the robot's tour, its frontiers and mates, its condition."""
+        mission, pose = self._mission, self.body.pose
+        tour = np.vstack((np.array(pose[:2]), mission.strategy.views))
+        yield "tour", "nav_msgs/msg/Path", self._messages.path(stamp, tour)
+        marks = [self._messages.marker(stamp, "frontiers", 0, mission.platform.considered)]
+        marks += [
+            self._messages.marker(
+                stamp, "names", mate.robot, np.array(((mate.x, mate.y),)), f"robot-{mate.robot + 1}"
+            )
+            for mate in self.agent.mates.all()
+        ]
+        yield "markers", "visualization_msgs/msg/MarkerArray", self._messages.markers(marks)
+        diagnosis = self._messages.diagnosis(stamp, self.name, self._worry, self._facts)
+        yield "/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", diagnosis
+
+    @property
+    def _worry(self) -> str:
+        """What somebody should see to; nothing: ''."""
+        if self.body.at_work is not None:
+            return self.body.at_work
+        return self.body.goals.said
+
+    @property
+    def _facts(self) -> dict[str, str]:
+        rounds = self.agent.rounds
+        return {
+            "state": self.agent.state.value,
+            "rounds": str(rounds.decisions),
+            "robots on the tree": str(rounds.tree.size),
+            "way [m]": f"{self.body.figures.travelled:.1f}",
+            "scans without transforms": str(self.body.left_out),
+        }
+
+
+def showing(body: Ros2Body, name: str) -> Callable[[Agent], Callable[[float], None]]:
+    """Return what shows an agent in this body."""
+    return lambda agent: Showing(agent, body, name)

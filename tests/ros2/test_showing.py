@@ -1,0 +1,81 @@
+"""What an agent shows beside its robot, decoded again by the definitions that ROS 2 has."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from rosbags.typesys import Stores, get_typestore
+
+from tests.support.mapping_scenes import SPEC
+from tests.support.ros2_doors import FakeDoor, at
+from vedette.agent.events import Pose, Sensed
+from vedette.maps import FREE
+from vedette.maps.frame import GridFrame
+from vedette.maps.lattice import Lattice
+from vedette.missions.explore.assemble import assemble
+from vedette.missions.explore.options import ExploreOptions
+from vedette.missions.explore.own_map import OwnMap
+from vedette.ros2.body import Ros2Body
+from vedette.ros2.door import Word
+from vedette.ros2.settings import Ros2Settings
+from vedette.ros2.showing import GRID_PERIOD, PERIOD, Showing
+from vedette.team import Most
+
+STORE = get_typestore(Stores.ROS2_JAZZY)
+
+
+def shown(door: FakeDoor) -> dict[str, Any]:
+    """Return what was shown since the last call, by topic."""
+    told = {each.topic: STORE.deserialize_cdr(each.cdr, each.kind) for each in door.shown}
+    door.shown.clear()
+    return told
+
+
+def a_showing() -> tuple[Showing, FakeDoor]:
+    lattice = Lattice(GridFrame(0.1, 100, 100, -5.0, -5.0))
+    agent = assemble(lattice, SPEC, ExploreOptions(), 0, 1, robots=1, most=Most.of([SPEC]))
+    door = FakeDoor(at(12.5, 1.0))
+    body = Ros2Body(SPEC, Ros2Settings(), door)
+    body.sense(0.0)
+    own_map = OwnMap(np.full((10, 20), FREE, np.uint8), 0.1, 0.0, 0.0, 0.0)
+    agent.mission.observe(Sensed(own_map, 0.0), Pose(1.0, 0.0, 0.0), [], 0.0)
+    agent.mission.publish(0.0)
+    return Showing(agent, body, "robot-1"), door
+
+
+def test_the_map_lies_in_the_teams_frame_at_the_robots_own_time() -> None:
+    showing, door = a_showing()
+    showing(0.0)
+    told = shown(door)
+    assert set(told) == {"team_map", "tour", "markers", "/diagnostics"}
+    grid = told["team_map"]
+    assert (grid.header.frame_id, grid.header.stamp.sec, grid.header.stamp.nanosec) == ("team", 12, 500000000)
+    rows, cols = np.nonzero(grid.data.reshape(grid.info.height, grid.info.width) == 0)
+    corner = grid.info.origin.position
+    x, y = corner.x + 0.1 * cols, corner.y + 0.1 * rows  # of cells' corners
+    assert (x.min(), x.max(), y.min(), y.max()) == pytest.approx((0.0, 1.9, 0.0, 0.9))
+    assert len(x) == 200
+    (status,) = told["/diagnostics"].status
+    assert (status.level, status.name, status.message) == (0, "robot-1", "ok")
+
+
+def test_a_map_that_has_not_changed_is_not_shown_again() -> None:
+    showing, door = a_showing()
+    showing(0.0)
+    shown(door)
+    showing(PERIOD / 2)
+    assert shown(door) == {}
+    showing(2.0 * GRID_PERIOD)
+    assert set(shown(door)) == {"tour", "markers", "/diagnostics"}
+
+
+def test_what_keeps_the_robot_from_its_work_is_a_warning() -> None:
+    showing, door = a_showing()
+    door.told = [Word.PAUSE]
+    showing.body.sense(1.0)
+    showing(1.0)
+    (status,) = shown(door)["/diagnostics"].status
+    assert status.level == 1
+    assert "paused" in status.message
