@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from vedette.ros2.door import Joint, Shown, Told
+from vedette.ros2.door import Joint, Notice, Told
 from vedette.ros2.goals import Place
 from vedette.ros2.offered import Offered
 from vedette.ros2.scans import LaserSweep
@@ -22,7 +22,7 @@ class FakeDoor:
     asked: list[tuple[int, Place]] = field(default_factory=list)
     cancelled: list[int] = field(default_factory=list)
     closed: bool = False
-    shown: list[Shown] = field(default_factory=list)
+    shown: list[Notice] = field(default_factory=list)
     time: float | None = None
     offer: Offered | None = None
     telling: Callable[[], list[Told]] | None = None  # what comes whenever it is asked, beside ``told``
@@ -31,8 +31,8 @@ class FakeDoor:
         told, self.told = self.told, []
         return told if self.telling is None else [*told, *self.telling()]
 
-    def show(self, shown: Shown) -> None:
-        self.shown.append(shown)
+    def show(self, notice: Notice) -> None:
+        self.shown.append(notice)
 
     def offered(self) -> Offered:
         assert self.offer is not None

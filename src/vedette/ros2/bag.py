@@ -20,7 +20,7 @@ from vedette.errors import InputError, nearest_name
 from vedette.input_file import open_input
 from vedette.logs import RecordedLog, RecordedScan
 from vedette.ros2.body import Ros2Body
-from vedette.ros2.door import Told
+from vedette.ros2.door import Notice, Told
 from vedette.ros2.goals import Place
 from vedette.ros2.messages import joints_of, sweep_of
 from vedette.ros2.scans import Lidar
@@ -96,6 +96,9 @@ class RecordedDoor:
 
     def cancel(self, goal: int) -> None:
         """There is nothing to cancel."""
+
+    def show(self, notice: Notice) -> None:
+        """Show nobody anything."""
 
     def close(self) -> None:
         """There is nobody to leave."""

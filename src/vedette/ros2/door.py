@@ -84,7 +84,7 @@ class Word(StrEnum):
 
 
 @dataclass(frozen=True)
-class Shown:
+class Notice:
     """A message for those who use the robot's ROS."""
 
     topic: str
@@ -111,7 +111,7 @@ class Door(Protocol):
     def cancel(self, goal: int) -> None:
         """Cancel a goal, whether it was taken up or not."""
 
-    def show(self, shown: Shown) -> None:
+    def show(self, notice: Notice) -> None:
         """Publish a message."""
 
     def close(self) -> None:

@@ -19,7 +19,7 @@ from uuid import uuid4
 import numpy as np
 
 from vedette.errors import InputError
-from vedette.ros2.door import Answer, GoalStatus, NavigatorGone, Shown, Told, Word
+from vedette.ros2.door import Answer, GoalStatus, NavigatorGone, Notice, Told, Word
 from vedette.ros2.goals import Place
 from vedette.ros2.messages import deviation_of, grid_of, joints_of, patch_of, seconds, sweep_of
 from vedette.ros2.offered import Offered, Writer
@@ -219,14 +219,14 @@ class RosDoor:
             os.kill(os.getpid(), signal.SIGTERM)  # as from whoever started the agent
         return said
 
-    def show(self, shown: Shown) -> None:
+    def show(self, notice: Notice) -> None:
         """Publish a message, for who comes late as well."""
-        if shown.topic not in self._publishers:
-            package, _, name = shown.kind.partition("/msg/")
-            topic = shown.topic if shown.topic.startswith("/") else f"{OURS}/{shown.topic}"
+        if notice.topic not in self._publishers:
+            package, _, name = notice.kind.partition("/msg/")
+            topic = notice.topic if notice.topic.startswith("/") else f"{OURS}/{notice.topic}"
             kind = getattr(ros(f"{package}.msg"), name)
-            self._publishers[shown.topic] = self.node.create_publisher(kind, topic, _profile(1, kept=True))
-        self._publishers[shown.topic].publish(shown.cdr)
+            self._publishers[notice.topic] = self.node.create_publisher(kind, topic, _profile(1, kept=True))
+        self._publishers[notice.topic].publish(notice.cdr)
 
     # -- what there is to be told -------------------------------------------------------------------------
 

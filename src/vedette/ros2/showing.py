@@ -15,7 +15,7 @@ from vedette.domains.mapping.impact import final_miss, moved
 from vedette.missions.explore.exploring import Exploring
 from vedette.record.ros import RosMessages
 from vedette.ros2.body import Ros2Body
-from vedette.ros2.door import Shown
+from vedette.ros2.door import Notice
 from vedette.ros2.node import TEAM_FRAME
 
 PERIOD = 1.0  # of what is shown, at least [s]
@@ -88,7 +88,7 @@ class Showing:
         self._due = now + PERIOD
         stamp = round(1e9 * (self.body.stamp or 0.0))
         for topic, kind, message in (*self._grids(stamp, now), *self._rest(stamp)):
-            self.body.door.show(Shown(topic, kind, self._messages.encode(message)))
+            self.body.door.show(Notice(topic, kind, self._messages.encode(message)))
 
     @property
     def _mission(self) -> Exploring:
