@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from tests.support.ros2_teams import DOMAIN, Tried, living, plan, tried
-from tests.support.small_missions import TWO_ROOMS, drawn
+from tests.support.small_missions import TWO_ROOMS, drawn, small_maze
 from vedette.maps import UNKNOWN, read_map
 from vedette.outcome import Outcome
 
@@ -94,7 +94,7 @@ class Beside:
         self.speed = abs(message.twist.twist.linear.x) + abs(message.twist.twist.angular.z)
         self.at = message.pose.pose.position.x, message.pose.pose.position.y
 
-    def until(self, holds: Callable[[], bool], what: str, patience: float = 30.0) -> None:
+    def until(self, holds: Callable[[], bool], what: str, patience: float = 90.0) -> None:
         end = time.monotonic() + patience
         while not holds():
             assert time.monotonic() < end, what
@@ -126,7 +126,7 @@ def test_who_stands_beside_a_robot_sees_the_teams_map_and_can_pause_recall_and_s
 ) -> None:
     beside = Beside()
     try:
-        with living(plan(drawn(TWO_ROOMS), 1, speed=2.0), tmp_path) as team:
+        with living(plan(small_maze(), 1, speed=2.0), tmp_path) as team:
             beside.until(lambda: beside.known > 500, "no map")
             beside.until(lambda: beside.speed > 0.1, "it does not drive")
             beside.say("pause")
