@@ -34,22 +34,22 @@ const WALL_LOOK: f64 = 0.3;
 /// Tolerance of "does not get worse" [m].
 const SLACK: f64 = 1e-9;
 
-/// A boolean grid, row 0 at the lowest y.
+/// A boolean grid, row 0 at the lowest y; a window of one that begins at the origin, false beside it.
 #[derive(Clone, Copy)]
 pub struct Grid<'a> {
     pub cells: &'a [bool],
     pub rows: usize,
     pub cols: usize,
     pub resolution: f64,
+    pub first: (i64, i64), // row and column of the window's first cell
 }
 
 impl Grid<'_> {
     fn at(&self, x: f64, y: f64) -> bool {
-        let (row, col) = ((y / self.resolution).floor(), (x / self.resolution).floor());
-        row >= 0.0
-            && col >= 0.0
-            && (row as usize) < self.rows
-            && (col as usize) < self.cols
+        let (row, col) = ((y / self.resolution).floor() as i64, (x / self.resolution).floor() as i64);
+        let (row, col) = ((row - self.first.0) as u64, (col - self.first.1) as u64); // negative ones get huge
+        row < self.rows as u64
+            && col < self.cols as u64
             && self.cells[row as usize * self.cols + col as usize]
     }
 }
@@ -318,7 +318,7 @@ pub fn steer(scene: Scene, pose: (f64, f64, f64), s: f64, last_offset: f64) -> C
 
 fn grid<'a>(array: &'a PyReadonlyArray2<bool>, resolution: f64) -> PyResult<Grid<'a>> {
     let (rows, cols) = (array.shape()[0], array.shape()[1]);
-    Ok(Grid { cells: array.as_slice()?, rows, cols, resolution })
+    Ok(Grid { cells: array.as_slice()?, rows, cols, resolution, first: (0, 0) })
 }
 
 #[pyfunction(name = "clearance")]
@@ -330,6 +330,7 @@ fn py_clearance(solid: PyReadonlyArray2<bool>, resolution: f64, x: f64, y: f64, 
 fn py_steer(
     solid: PyReadonlyArray2<bool>,
     traversable: PyReadonlyArray2<bool>,
+    first: (i64, i64),
     resolution: f64,
     pose: (f64, f64, f64),
     path: PyReadonlyArray2<f64>,
@@ -341,7 +342,7 @@ fn py_steer(
     let (radius, speed, turn_rate, period, guard) = limits;
     let scene = Scene {
         solid: grid(&solid, resolution)?,
-        traversable: grid(&traversable, resolution)?,
+        traversable: Grid { first, ..grid(&traversable, resolution)? },
         path: Path { xy: path.as_slice()?, arc: arc.as_slice()? },
         others: others.as_slice()?,
         limits: Limits { radius, speed, turn_rate, period, guard },

@@ -88,6 +88,7 @@ def clearance(solid: NDArray[np.bool_], resolution: float, x: float, y: float, r
 def steer(
     solid: NDArray[np.bool_],
     traversable: NDArray[np.bool_],
+    first: tuple[int, int],
     resolution: float,
     pose: tuple[float, float, float],
     path: NDArray[np.float64],

@@ -68,8 +68,17 @@ def test_steer_equals_its_twin(seed: int) -> None:
     )
     turning = float(rng.choice((0.0, rng.uniform(-1.5, 1.5), -1.5, 1.5)))
     progress = (rng.uniform(0, 0.5), float(rng.choice(twin.OFFSETS)), turning)
-    scene = (solid, traversable, RESOLUTION, pose, path, arc_length(path), progress, others, LIMITS)
+    low, high = rng.integers(-5, 10, 2), rng.integers(20, 45, 2)
+    padded = np.pad(traversable, 50)[50 + low[0] : 50 + high[0], 50 + low[1] : 50 + high[1]]
+    rows, cols = np.indices(traversable.shape)
+    traversable &= (rows >= low[0]) & (rows < high[0]) & (cols >= low[1]) & (cols < high[1])
+    rest = (RESOLUTION, pose, path, arc_length(path), progress, others, LIMITS)
+    first = int(low[0]), int(low[1])
+    begun = motion.steer(solid, np.ascontiguousarray(padded), first, *rest)
+    scene = (solid, traversable, (0, 0), *rest)
+    assert motion.steer(*scene) == begun
     assert motion.steer(*scene) == pytest.approx(twin.steer(*scene), abs=1e-9)
+    assert begun == pytest.approx(twin.steer(solid, padded, first, *rest), abs=1e-9)
 
 
 @pytest.mark.parametrize("heading", [0.0, np.pi / 2, np.pi, -2.5])

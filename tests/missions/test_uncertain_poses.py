@@ -26,7 +26,7 @@ from vedette.kernels.frontier import traversable
 from vedette.kernels.reference import lidar as reference_lidar
 from vedette.kernels.reference.coverage import dense
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
-from vedette.sim.localisation import CORRELATION_TIME, Localisation, displaced
+from vedette.sim.localisation import CORRELATION_TIME, Localisation
 from vedette.team import PlatformSpec
 
 seeds = st.integers(0, 2**32 - 1)
@@ -65,16 +65,6 @@ def test_a_localiser_takes_nothing_from_the_robots_own_stream_of_chance() -> Non
     assert localiser is not None
     localiser.advance(0.1)
     assert stream.random() == untouched.random()
-
-
-@given(seeds, st.integers(-9, 9), st.integers(-9, 9))
-@settings(deadline=None, max_examples=50)
-def test_a_displaced_map_is_the_map_seen_from_beside(seed: int, rows: int, cols: int) -> None:
-    mask = np.random.default_rng(seed).random((5, 7)) < 0.5
-    moved = displaced(mask, rows, cols)
-    for r, c in np.ndindex(mask.shape):
-        inside = 0 <= r + rows < 5 and 0 <= c + cols < 7
-        assert moved[r, c] == (inside and mask[r + rows, c + cols])
 
 
 # -- evidence -------------------------------------------------------------------------------------------

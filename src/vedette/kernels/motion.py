@@ -43,6 +43,7 @@ def clearance(solid: NDArray[np.bool_], resolution: float, x: float, y: float, r
 def steer(
     solid: NDArray[np.bool_],
     traversable: NDArray[np.bool_],
+    first: tuple[int, int],
     resolution: float,
     pose: tuple[float, float, float],
     path: NDArray[np.float64],
@@ -61,11 +62,14 @@ def steer(
     that turns on the spot needs a reason to turn back, lest it dither between two followers.
 
     ``solid`` ``(R, C)``: the true walls, as a ring of proximity sensors feels them within a metre.
-    ``traversable`` ``(R, C)``: cells where the map allows the robot's centre.
+    ``traversable`` ``(r, c)``: cells where the map allows the robot's centre, from row and column ``first``
+    on, which may lie outside the grid; nowhere else.
     ``pose``: x, y [m] from the grid's lower-left corner, heading [rad].
     ``path`` ``(L, 2)`` [m], L >= 2, no two consecutive points equal; ``arc`` ``(L,)`` its arc length [m].
     ``progress``: from the last command, the arc length reached and the offset followed [m], and its turn rate
     [rad/s] if the robot did not move, otherwise 0; all 0 at first.
     ``others`` ``(D, 6)``: x, y, vx, vy, radius, and the gap one would rather keep (> 0) [m, m/s].
     """
-    return Command(*_kernels.steer(solid, traversable, resolution, pose, path, arc, progress, others, limits))
+    return Command(
+        *_kernels.steer(solid, traversable, first, resolution, pose, path, arc, progress, others, limits)
+    )

@@ -32,7 +32,8 @@ class _Task:
 
     xy: NDArray[np.float64]  # (L, 2) [m], L >= 2
     arc: NDArray[np.float64]  # (L,) arc length [m]
-    traversable: NDArray[np.bool_]  # (R, C) shared with the robot's own map
+    traversable: NDArray[np.bool_]  # (r, c) shared with the robot's own map
+    first: tuple[int, int]  # row and column of the grid where that begins
     guard: float  # least clearance to walls [m]
     facing: float | None  # heading to turn to at the end [rad]
     done: float = 0.0  # arc length reached [m]
@@ -87,15 +88,16 @@ class Bodies:
         i: int,
         path: NDArray[np.float64] | None,
         traversable: NDArray[np.bool_] | None = None,
+        first: tuple[int, int] = (0, 0),
         room: float = np.inf,
         facing: float | None = None,
     ) -> None:
         """Let robot ``i`` follow the polyline ``path`` ``(L, 2)`` [m]; None: stand still.
 
-        ``traversable`` ``(R, C)``: cells where robot ``i``'s own map allows its centre; held by reference,
-        so that later changes count; None: every cell that is not solid. ``room`` [m]: that the path keeps to
-        what is not known free; a robot keeps at least half of it to walls, of 5 cm and more 2.5 cm.
-        ``facing``: heading [rad] to turn to on the spot at the end; None: any.
+        ``traversable`` ``(r, c)``: cells where robot ``i``'s own map allows its centre, from row and column
+        ``first`` on; held by reference, so that later changes count; None: every cell that is not solid.
+        ``room`` [m]: that the path keeps to what is not known free; a robot keeps at least half of it to
+        walls, of 5 cm and more 2.5 cm. ``facing``: heading [rad] to turn to on the spot at the end; None: any.
         """
         if path is None or not self.alive[i]:
             self._tasks[i] = None
@@ -104,7 +106,7 @@ class Bodies:
         arc = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(xy, axis=0).T))))
         allowed = ~self.solid if traversable is None else traversable
         guard = min(motion.WALL_GUARD, GUARD_OF_ROOM * room)
-        task = _Task(xy, arc, allowed, guard, facing, best_left=float(arc[-1]))
+        task = _Task(xy, arc, allowed, first, guard, facing, best_left=float(arc[-1]))
         old = self._tasks[i]
         if old is not None and np.hypot(*(old.xy[-1] - xy[-1])) < SAME_GOAL:
             task.idle, task.offset, task.turning = old.idle, old.offset, old.turning
@@ -165,6 +167,7 @@ class Bodies:
         chosen = motion.steer(
             self.solid,
             task.traversable,
+            task.first,
             self.resolution,
             (x, y, heading),
             task.xy,

@@ -42,14 +42,3 @@ class Localisation:
         kept = math.exp(-dt / CORRELATION_TIME)
         fresh = self.deviation * self.rng.standard_normal(3)
         self.error = kept * self.error + math.sqrt(1.0 - kept * kept) * fresh
-
-
-def displaced(mask: NDArray[np.bool_], rows: int, cols: int) -> NDArray[np.bool_]:
-    """Return ``out[r, c] = mask[r + rows, c + cols]``, false where there is none."""
-    out = np.zeros_like(mask)
-    height, width = mask.shape
-    rows, cols = min(max(rows, -height), height), min(max(cols, -width), width)
-    taken = mask[max(0, rows) : height + min(0, rows), max(0, cols) : width + min(0, cols)]
-    top, left = max(0, -rows), max(0, -cols)
-    out[top : top + taken.shape[0], left : left + taken.shape[1]] = taken
-    return out

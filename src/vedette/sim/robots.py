@@ -7,14 +7,14 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.agent.effects import Drive, Motion, Route
+from vedette.agent.effects import Drive, Motion
 from vedette.agent.events import Arrived, Event, Pose, Scan, Stuck
 from vedette.kernels.lidar import cast_rays
-from vedette.maps.laid import laid
+from vedette.maps import GridFrame
 from vedette.maps.world import World
 from vedette.outcome import NO_PROGRESS, Outcome
 from vedette.sim.body import Bodies
-from vedette.sim.localisation import Localisation, displaced
+from vedette.sim.localisation import Localisation
 from vedette.team import PlatformSpec
 
 STUCK_AFTER = 4.0  # without progress [s]
@@ -45,7 +45,6 @@ class Robots:
         self._stuck_told = [0.0] * n
         self._told_arrival = [True] * n
         self._last_change = 0.0
-        self._laid: dict[int, tuple[NDArray[np.bool_], NDArray[np.bool_]]] = {}  # by robot, of its last route
 
     @property
     def alive(self) -> NDArray[np.bool_]:
@@ -110,23 +109,23 @@ class Robots:
         if route is None:
             self.bodies.command(i, None)
             return
-        path, passable, facing = route.path - self.corner, self._on_the_ground(i, route), route.facing
+        path, facing = route.path - self.corner, route.facing
+        east, north = 0.0, 0.0
         localiser = self._localisers[i]
         if localiser is not None:
             east, north, turn = localiser.error.tolist()
-            resolution = self._world.frame.resolution
             path = path - (east, north)
-            passable = displaced(passable, round(north / resolution), round(east / resolution))
             facing = None if facing is None else facing - turn
-        self.bodies.command(i, path, passable, route.room, facing)
+        self.bodies.command(
+            i, path, route.passable, self._first(route.frame, east, north), route.room, facing
+        )
         self._last_change = now
 
-    def _on_the_ground(self, i: int, route: Route) -> NDArray[np.bool_]:
-        """Return where a robot's map allows its centre, on the world's own grid."""
-        known = self._laid.get(i)
-        if known is None or known[0] is not route.passable:
-            self._laid[i] = known = route.passable, laid(route.passable, route.frame, self._world.frame)
-        return known[1]
+    def _first(self, frame: GridFrame, east: float, north: float) -> tuple[int, int]:
+        """Return where a grid begins among the world's cells, for a robot that lies so far beside it [m]."""
+        side, corner = self._world.frame.resolution, self.corner
+        row, col = round((frame.origin_y - corner[1]) / side), round((frame.origin_x - corner[0]) / side)
+        return row - round(north / side), col - round(east / side)
 
     def advance(self, now: float, dt: float) -> None:
         """Move everybody for a tick."""

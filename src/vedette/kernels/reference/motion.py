@@ -54,6 +54,7 @@ class MotionScene(NamedTuple):
 
     solid: NDArray[np.bool_]
     traversable: NDArray[np.bool_]
+    first: tuple[int, int]
     resolution: float
     path: NDArray[np.float64]
     arc: NDArray[np.float64]
@@ -63,7 +64,10 @@ class MotionScene(NamedTuple):
 
     def inside(self, x: float, y: float) -> bool:
         """Tell whether the point lies in a traversable cell."""
-        row, col = math.floor(y / self.resolution), math.floor(x / self.resolution)
+        row, col = (
+            math.floor(y / self.resolution) - self.first[0],
+            math.floor(x / self.resolution) - self.first[1],
+        )
         rows, cols = self.traversable.shape
         return 0 <= row < rows and 0 <= col < cols and bool(self.traversable[row, col])
 
@@ -187,6 +191,7 @@ class MotionScene(NamedTuple):
 def steer(
     solid: NDArray[np.bool_],
     traversable: NDArray[np.bool_],
+    first: tuple[int, int],
     resolution: float,
     pose: Pose,
     path: NDArray[np.float64],
@@ -197,7 +202,7 @@ def steer(
 ) -> Command:
     """Try every follower in turn; stop at the first that is good enough, else take the cheapest."""
     s, last_offset, turning = progress
-    scene = MotionScene(solid, traversable, resolution, path, arc, others, limits, turning)
+    scene = MotionScene(solid, traversable, first, resolution, path, arc, others, limits, turning)
     s = scene.project(pose[0], pose[1], s - 0.5, s + 1.0)[0]
     conceivable = max(float(arc[-1]) - s - STEPS * limits.period * limits.speed, 0.0) / limits.speed
     best = scene.price(Follower(last_offset, 0.0, LOOKS[0]), pose, s, last_offset)
