@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from vedette.domains.tracking.belief import tracks
 from vedette.domains.tracking.filter import nees, update
+from vedette.domains.tracking.geometry import packed
 from vedette.domains.tracking.models import static
-from vedette.domains.tracking.sensing import Sensor, evidence, packed
+from vedette.domains.tracking.sensing import Sensor, evidence
 from vedette.domains.tracking.sensors import BearingOnly, Position, RangeBearing, RangeOnly
 from vedette.kernels.looks import lines
 from vedette.kernels.reference.looks import line

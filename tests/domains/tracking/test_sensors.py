@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from vedette.domains.tracking.belief import tracks
 from vedette.domains.tracking.filter import update
+from vedette.domains.tracking.geometry import wrapped
 from vedette.domains.tracking.models import static
-from vedette.domains.tracking.sensing import Sensor, evidence, wrapped
+from vedette.domains.tracking.sensing import Sensor, evidence
 from vedette.domains.tracking.sensors import (
     BearingOnly,
     Position,

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from vedette.domains.tracking.models import STATE, TargetModel
+from vedette.domains.tracking.tail import Tail
 from vedette.errors import InputError
 from vedette.kernels.tracking import ChainMotion
 from vedette.number import many
@@ -37,6 +38,7 @@ class Tracks:
     Y: NDArray[np.float64]  # (T, 4, 4)
     y: NDArray[np.float64]  # (T, 4)
     origin: tuple[float, float] = (0.0, 0.0)  # o, team frame [m]
+    layers: tuple[float, ...] = ()  # ends of the tail's layers, after the horizon [s]
 
     def __post_init__(self) -> None:
         count = len(self.models)
@@ -104,6 +106,22 @@ class Tracks:
             out[k] = covariances = transitions @ covariances @ transitions.swapaxes(1, 2) + noises
         return out
 
+    @property
+    def blocks(self) -> int:
+        """Blocks of an impact: a step or a layer each."""
+        return self.horizon + len(self.layers)
+
+    @cached_property
+    def tail(self) -> Tail:
+        """The targets after the horizon, without measurements."""
+        ends = np.array((0.0, *self.layers))
+        ahead = self.horizon + np.rint((ends[1:] + ends[:-1]) / (2.0 * self.dt)).astype(int)
+        leaps = [_leap(self.motion, int(steps)) for steps in ahead]
+        start = (self.means - self.shift)[:, :, None]
+        means = np.array([(F @ start)[:, :, 0] for F, _ in leaps]).reshape(-1, len(self), STATE) + self.shift
+        spreads = [(F @ self.covariances @ F.swapaxes(1, 2) + Q)[:, :2, :2] for F, Q in leaps]
+        return Tail(self.layers, self.dt, means, np.array(spreads).reshape(-1, len(self), 2, 2))
+
     @cached_property
     def entropies(self) -> NDArray[np.float64]:
         """(T,) ``1/2 ln((2 pi e)^d det P)`` of the d components of each target [nat]; paper, eq. (22)."""
@@ -120,6 +138,7 @@ def tracks(
     horizon: int,
     k0: int = 0,
     origin: tuple[float, float] = (0.0, 0.0),
+    layers: tuple[float, ...] = (),
 ) -> Tracks:
     """Return tracks from means and covariances of the components that each target has.
 
@@ -131,6 +150,7 @@ def tracks(
         horizon: steps to plan.
         k0: step of this estimate.
         origin: a place not far from the targets [m], to which numbers are kept relative.
+        layers: ends of the tail's layers, after the horizon [s].
 
     Raises:
         InputError: lists of different lengths, wrong shapes, not finite, or a covariance that is not
@@ -157,7 +177,19 @@ def tracks(
         state[t, :d] = x
         state[t, :2] -= origin
     y = (information @ state[:, :, None])[:, :, 0]
-    return Tracks(k0, dt, horizon, tuple(models), information, y, origin)
+    return Tracks(k0, dt, horizon, tuple(models), information, y, origin, layers)
+
+
+def _leap(motion: ChainMotion, steps: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return F and Q (T, 4, 4) of so many steps at once, by doubling."""
+    F, Q = np.broadcast_to(np.eye(STATE), motion.transitions.shape), np.zeros(motion.noises.shape)
+    f, q = motion.transitions, motion.noises
+    while steps:
+        if steps % 2:
+            F, Q = f @ F, f @ Q @ f.swapaxes(1, 2) + q
+        f, q = f @ f, f @ q @ f.swapaxes(1, 2) + q
+        steps //= 2
+    return F, Q
 
 
 def is_positive_definite(matrices: NDArray[np.float64]) -> bool:

@@ -19,11 +19,12 @@ class Course:
 
     k0: int  # step at whose beginning it starts
     rates: tuple[float, ...]  # (K,) [rad/s], counter-clockwise positive
+    target: int | None = None  # where it goes, or stays, after the horizon
 
     def from_step(self, k0: int, horizon: int) -> Course:
         """Return what is left of it at a later step, straight ahead at the end."""
         left = self.rates[max(0, k0 - self.k0) :][:horizon]
-        return Course(k0, left + (0.0,) * (horizon - len(left)))
+        return Course(k0, left + (0.0,) * (horizon - len(left)), self.target)
 
 
 def sequences(turn_rate: float, horizon: int, decisions: int = MOST_DECISIONS) -> NDArray[np.float64]:

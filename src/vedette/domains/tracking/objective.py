@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from vedette.domains.tracking import impact as impacts
 from vedette.domains.tracking.belief import Tracks
-from vedette.domains.tracking.impact import Impact
+from vedette.domains.tracking.impact import Impact, Impacts
 from vedette.errors import InputError, nearest_name
 from vedette.kernels.tracking import Measure, chain_gradient, chain_values
 from vedette.problem import Objective, Reach
@@ -23,6 +23,8 @@ class TrackingObjective(Objective[Tracks, Impact]):
     but it takes a singular Q. As the mutual information of conditionally independent measurements it is
     monotone and submodular. With a horizon of one step it is the paper's eq. (28), as a logarithm.
     docs/tracking.md (V36)
+
+    With layers after the horizon it adds what they are worth, monotone and submodular too. (V90)
     """
 
     monotone = True
@@ -31,7 +33,7 @@ class TrackingObjective(Objective[Tracks, Impact]):
 
     def nothing(self, belief: Tracks) -> Impact:
         """Return the impact of a team that observes nothing."""
-        return impacts.nothing(belief.horizon)
+        return impacts.nothing(belief.blocks)
 
     def combine(self, a: Impact, b: Impact) -> Impact:
         """``a * b``: sums of information; paper, eq. (27)."""
@@ -43,7 +45,8 @@ class TrackingObjective(Objective[Tracks, Impact]):
 
     def clip(self, belief: Tracks, impact: Impact, reach: Reach) -> Impact:
         """Return what can matter to platforms that see within ``reach`` only; docs/theory.md (V14)."""
-        return impacts.clip(impact, belief.predicted_means, reach)
+        places = np.concatenate([belief.predicted_means, belief.tail.means]) if belief.layers else None
+        return impacts.clip(impact, belief.predicted_means if places is None else places, reach)
 
     def value(self, belief: Tracks, impact: Impact) -> float:
         """Return the gain over no measurements."""
@@ -51,14 +54,31 @@ class TrackingObjective(Objective[Tracks, Impact]):
 
     def values(self, belief: Tracks, others: Impact, own: Sequence[Impact]) -> NDArray[np.float64]:
         """``value(others * own_k)`` for every k, by one kernel call that redoes only what own_k sees."""
-        rows = impacts.stack(own, belief.horizon)
-        return chain_values(
-            belief.motion, self.measure, others.sparse, rows.starts, (rows.targets, rows.blocks)
+        rows = impacts.stack(own, belief.blocks)
+        near = (rows.targets, _near(rows.blocks, belief))
+        values = chain_values(
+            belief.motion, self.measure, (others.targets, _near(others.blocks, belief)), rows.starts, near
         )
+        return values + self._after(belief, others, rows) if belief.layers else values
+
+    def _after(self, belief: Tracks, others: Impact, rows: Impacts) -> NDArray[np.float64]:
+        """The tail's part of the values."""
+        tail, k = belief.tail, belief.horizon
+        theirs = np.zeros((len(belief), len(belief.layers), 3))
+        theirs[others.targets] = others.blocks[:, k:]
+        before = tail.worth(np.arange(len(belief)), theirs)
+        more = tail.worth(rows.targets, theirs[rows.targets] + rows.blocks[:, k:]) - before[rows.targets]
+        whose = np.repeat(np.arange(len(rows)), np.diff(rows.starts))
+        return np.asarray(before.sum() + np.bincount(whose, more, len(rows)))
 
     def gradient(self, belief: Tracks, team: Impact) -> NDArray[np.float64]:
-        """Derivative of ``value`` by each number in ``team.blocks``, (M, K, 3)."""
-        return chain_gradient(belief.motion, self.measure, team.sparse)
+        """Derivative of ``value`` by each number in the horizon's ``team.blocks``, (M, K, 3)."""
+        return chain_gradient(belief.motion, self.measure, (team.targets, _near(team.blocks, belief)))
+
+
+def _near(blocks: NDArray[np.float64], belief: Tracks) -> NDArray[np.float64]:
+    """Return the horizon's part of blocks (N, K + B, 3)."""
+    return np.ascontiguousarray(blocks[:, : belief.horizon])
 
 
 class FinalEntropy(TrackingObjective):

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vedette.domains.tracking import impact as impacts
 from vedette.domains.tracking.ascent import ascend, turn_rate_gradient
+from vedette.domains.tracking.attending import Attending
 from vedette.domains.tracking.belief import Tracks
 from vedette.domains.tracking.courses import MOST_DECISIONS, Course, sequences
 from vedette.domains.tracking.impact import Impact, Impacts
@@ -20,6 +22,7 @@ from vedette.errors import InputError
 from vedette.problem import Reach
 from vedette.vehicle import drive
 
+MOST_OTHERS = 8  # targets beside the present one that it may go to after the horizon
 EPSILON = 1e-9  # a new course must gain this share more than the present one
 
 
@@ -58,22 +61,31 @@ class TrackingPlatform:
     def prepare(self, belief: Tracks) -> None:
         """List the courses, the present one among them, and what each would observe: the slow part."""
         rates = sequences(self.turn_rate, belief.horizon, self.decisions)
-        carried = np.clip(self.carry_over(belief, self.present).rates, -self.turn_rate, self.turn_rate)
+        present = self.carry_over(belief, self.present)
+        carried = np.clip(present.rates, -self.turn_rate, self.turn_rate)
         if not (rates == carried).all(axis=1).any():
             rates = np.vstack([rates, carried])
-        self.courses = [Course(belief.k0, tuple(row)) for row in rates.tolist()]
+        self.courses = [Course(belief.k0, tuple(row), present.target) for row in rates.tolist()]
+        if belief.layers:
+            self.courses += self._ways_to_others(belief, rates, present.target)
         self._near = self._within_reach(belief)
         self._known.clear()
-        self.candidates = self._impacts(belief, rates)
+        self.candidates = self._impacts(belief, self.courses)
 
     def carry_over(self, belief: Tracks, strategy: Course | None) -> Course:
-        """Restate a course from the belief's step on, straight ahead where it has ended."""
-        return (strategy or Course(belief.k0, ())).from_step(belief.k0, belief.horizon)
+        """Restate a course from the belief's step on, straight ahead where it has ended.
+
+        With a tail it goes to a target after the horizon: the nearest, if none was chosen.
+        """
+        course = (strategy or Course(belief.k0, ())).from_step(belief.k0, belief.horizon)
+        if not belief.layers or course.target is not None:
+            return course
+        return replace(course, target=int(np.argmin(self._times(belief, self.pose))))
 
     def impact(self, belief: Tracks, strategy: Course) -> Impact:
         """Information about each target along the course, step by step; paper, eq. (25)."""
         if strategy not in self._known:
-            self._known[strategy] = self._impacts(belief, np.array([strategy.rates]))[0]
+            self._known[strategy] = self._impacts(belief, [strategy])[0]
         return self._known[strategy]
 
     def reply(self, belief: Tracks, others: Impact, current: Course) -> Course:
@@ -109,7 +121,7 @@ class TrackingPlatform:
 
     def reach(self, belief: Tracks) -> Reach:
         """Return the box within which it may see targets during the horizon [m], team frame."""
-        most = self.speed * belief.dt * belief.horizon + self.sensor.range
+        most = self.speed * (belief.dt * belief.horizon + sum(belief.layers[-1:])) + self.sensor.range
         x, y, _ = self.pose.tolist()
         return ((x - most, y - most, x + most, y + most),)
 
@@ -127,10 +139,34 @@ class TrackingPlatform:
         means, spreads = belief.predicted_means[:, near, :2], belief.predicted_covariances[:, near, :2, :2]
         return means.swapaxes(0, 1), spreads.swapaxes(0, 1)
 
-    def _impacts(self, belief: Tracks, rates: NDArray[np.float64]) -> Impacts:
-        poses = drive(self.pose, rates, self.speed, belief.dt)
-        blocks = self.sensor.foresee(poses, *self._expected(belief), self.speed * belief.dt)
-        return impacts.stack_dense(blocks, self._near)
+    def _impacts(self, belief: Tracks, courses: Sequence[Course]) -> Impacts:
+        poses = drive(self.pose, np.array([course.rates for course in courses]), self.speed, belief.dt)
+        near = self.sensor.foresee(poses, *self._expected(belief), self.speed * belief.dt)
+        if not belief.layers:
+            return impacts.stack_dense(near, self._near)
+        blocks = np.zeros((len(courses), len(belief), belief.blocks, 3))
+        blocks[:, self._near, : belief.horizon] = near
+        attending = Attending(self.sensor, self.speed, self.turn_rate)
+        goals = np.array([-1 if course.target is None else course.target for course in courses])
+        for goal in np.unique(goals[goals >= 0]).tolist():
+            ends = poses[goals == goal, -1]
+            blocks[goals == goal, :, belief.horizon :] = attending.blocks(belief.tail, ends, goal)
+        return impacts.stack_dense(blocks, np.arange(len(belief)))
+
+    def _times(self, belief: Tracks, poses: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Times to see each target where it is at the horizon's end, (..., T) [s]."""
+        places = belief.predicted_means[-1, :, :2]
+        return times_to_see(self.sensor, self.speed, self.turn_rate, poses[..., None, :], places)
+
+    def _ways_to_others(self, belief: Tracks, rates: NDArray[np.float64], target: int | None) -> list[Course]:
+        """For each of the `MOST_OTHERS` targets that are worth most after the horizon, the quickest way."""
+        tail = belief.tail
+        looks = Attending(self.sensor, self.speed, self.turn_rate).looks(tail)
+        worth = tail.worth(np.arange(len(belief)), looks)
+        times = self._times(belief, drive(self.pose, rates, self.speed, belief.dt)[:, -1])  # (C, T)
+        quickest, soon = np.argmin(times, axis=0), np.isfinite(times.min(axis=0))
+        order = [t for t in np.argsort(-worth, kind="stable").tolist() if soon[t] and t != target]
+        return [Course(belief.k0, tuple(rates[quickest[t]].tolist()), t) for t in order[:MOST_OTHERS]]
 
     def _ceiling(self, belief: Tracks) -> Impact:
         """The best that any look tells in any direction, wherever it can come within range of a target."""
@@ -138,7 +174,12 @@ class TrackingPlatform:
         points, _ = self._expected(belief)
         r = np.hypot(*np.moveaxis(points - self.pose[:2], -1, 0)) - gone
         most = np.where(r <= self.sensor.range, self.sensor.detection * self.sensor.most, 0.0)
-        return impacts.impact_of(most[..., None] * np.array([1.0, 0.0, 1.0]), self._near)
+        blocks = np.zeros((len(belief), belief.blocks, 3))
+        blocks[self._near, : belief.horizon] = most[..., None] * np.array([1.0, 0.0, 1.0])
+        if belief.layers:
+            looks = Attending(self.sensor, self.speed, self.turn_rate).looks(belief.tail)
+            blocks[:, belief.horizon :] = looks
+        return impacts.impact_of(blocks)
 
     # -- how a course is chosen ----------------------------------------------------------------------
 
@@ -146,11 +187,17 @@ class TrackingPlatform:
         """Improve a course by the gradient of the value as it is computed, but for the edges of the view."""
         near, dt, stride = self._near, belief.dt, self.speed * belief.dt
         points, spreads = self._expected(belief)
-        theirs = np.zeros((len(belief), belief.horizon, 3))
+        theirs = np.zeros((len(belief), belief.blocks, 3))
         theirs[others.targets] = others.blocks
+        theirs = theirs[:, : belief.horizon]
+
+        def course(rates: NDArray[np.float64]) -> Course:
+            return Course(belief.k0, tuple(rates.tolist()), start.target)
 
         def values(rates: NDArray[np.float64]) -> NDArray[np.float64]:
-            return self.objective.values(belief, others, self._impacts(belief, rates))
+            return self.objective.values(
+                belief, others, self._impacts(belief, [course(row) for row in rates])
+            )
 
         def gradient(rates: NDArray[np.float64]) -> NDArray[np.float64]:
             poses = drive(self.pose, rates, self.speed, dt)
@@ -160,7 +207,7 @@ class TrackingPlatform:
             return turn_rate_gradient(self.pose, rates, self.speed, dt, slopes.sum(axis=0))
 
         rates, value = ascend(values, gradient, np.array(start.rates), self.turn_rate)
-        return Course(belief.k0, tuple(rates.tolist())), value
+        return course(rates), value
 
     def _transit(self, belief: Tracks, others: Impact, current: Course) -> Course:
         """Head for the target that is worth most for the time to see it, by the course that ends nearest."""

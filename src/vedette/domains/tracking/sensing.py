@@ -11,6 +11,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from vedette.domains.tracking.geometry import geometry, offset_of, outer, packed, wrapped
 from vedette.domains.tracking.models import STATE
 from vedette.errors import Limits, check_limits
 from vedette.kernels import looks
@@ -104,7 +105,7 @@ class Sensor(ABC):
         """
         r, radial, across = geometry(poses, points)
         a, b = self.weights(np.maximum(r, self.min_range))
-        packed = a[..., None] * _outer(radial, radial) + b[..., None] * _outer(across, across)
+        packed = a[..., None] * outer(radial, radial) + b[..., None] * outer(across, across)
         weight = np.where(self.sees(poses, points), self.detection, 0.0)
         return np.asarray(packed * weight[..., None])
 
@@ -176,7 +177,7 @@ class Sensor(ABC):
 
     def sees(self, poses: ArrayLike, points: ArrayLike) -> NDArray[np.bool_]:
         """Tell which points (..., 2) [m] are in range and view from the poses (..., 3)."""
-        pose, offset = np.asarray(poses, np.float64), _offset(poses, points)
+        pose, offset = np.asarray(poses, np.float64), offset_of(poses, points)
         near = np.hypot(offset[..., 0], offset[..., 1]) <= self.range
         if self.view >= 360.0:
             return np.asarray(near)
@@ -239,41 +240,6 @@ class Sensor(ABC):
         matrix[:2, :2] = (information + information.T) / 2.0
         vector[:2] = gain @ left + information @ (x - o)
         return matrix, vector
-
-
-def geometry(
-    poses: ArrayLike, points: ArrayLike
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Return range (...) [m] and unit vectors (..., 2) along the line of sight and across it, to its left."""
-    offset = _offset(poses, points)
-    r = np.hypot(offset[..., 0], offset[..., 1])
-    radial = np.where(r[..., None] > 0.0, offset / np.maximum(r, 1e-300)[..., None], np.array([1.0, 0.0]))
-    return r, radial, np.stack([-radial[..., 1], radial[..., 0]], -1)
-
-
-def wrapped(angle: ArrayLike) -> NDArray[np.float64]:
-    """Return angles [rad] as the same directions in (-pi, pi]."""
-    return np.asarray(math.pi - np.mod(math.pi - np.asarray(angle, np.float64), 2.0 * math.pi))
-
-
-def _offset(poses: ArrayLike, points: ArrayLike) -> NDArray[np.float64]:
-    return np.asarray(points, np.float64) - np.asarray(poses, np.float64)[..., :2]
-
-
-def _outer(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    """``(a b' + b a') / 2`` as xx, xy, yy."""
-    ax, ay, bx, by = a[..., 0], a[..., 1], b[..., 0], b[..., 1]
-    return np.stack([ax * bx, (ax * by + ay * bx) / 2.0, ay * by], -1)
-
-
-def packed(covariances: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return symmetric matrices (..., 2, 2) as xx, xy, yy (..., 3)."""
-    return np.stack([covariances[..., 0, 0], covariances[..., 0, 1], covariances[..., 1, 1]], -1)
-
-
-def debiased(angle: float, deviation: float) -> NDArray[np.float64]:
-    """``(cos, sin) / e^{-sigma^2 / 2}`` of a noisy angle: on average those of the true one."""
-    return np.array([math.cos(angle), math.sin(angle)]) / math.exp(-(deviation**2) / 2.0)
 
 
 def evidence(

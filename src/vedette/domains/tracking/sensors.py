@@ -9,7 +9,8 @@ from typing import ClassVar, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.domains.tracking.sensing import Sensor, debiased, geometry, wrapped
+from vedette.domains.tracking.geometry import debiased, geometry, wrapped
+from vedette.domains.tracking.sensing import Sensor
 from vedette.scenario import as_one_of
 
 Floats: TypeAlias = NDArray[np.float64]

@@ -6,9 +6,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from vedette.domains.tracking.belief import Tracks
+from vedette.domains.tracking.geometry import geometry, wrapped
 from vedette.domains.tracking.impact import Impact, Impacts
 from vedette.domains.tracking.objective import TrackingObjective
-from vedette.domains.tracking.sensing import Sensor, geometry, wrapped
+from vedette.domains.tracking.sensing import Sensor
 
 
 def times_to_see(
@@ -49,8 +50,8 @@ def nearest_worth(
     """
     count = len(belief)
     a, b = sensor.weights(np.array([sensor.range]))
-    looks = np.zeros((count, belief.horizon, 3))
-    looks[:, -1, ::2] = sensor.detection * (a + b) / 2.0  # from whatever side
+    looks = np.zeros((count, belief.blocks, 3))
+    looks[:, belief.horizon - 1, ::2] = sensor.detection * (a + b) / 2.0  # from whatever side
     each = Impacts(np.arange(count + 1), np.arange(count), looks)
     gains = objective.values(belief, others, each) - objective.value(belief, others)
     rates = gains / np.maximum(times, belief.dt)

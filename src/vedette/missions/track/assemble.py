@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from vedette.agent import Agent, FlightBehaviour, Pace
@@ -75,7 +75,9 @@ class TrackTeam:
     @cached_property
     def prior(self) -> Tracks:
         """The targets as they are known at step 0."""
-        return self.scenario.prior()
+        prior = self.scenario.prior()
+        metres = self.objective.measure == "final-trace"  # which the tail's nats cannot be added to
+        return prior if metres else replace(prior, layers=self.scenario.layers)
 
     @cached_property
     def bounds(self) -> LookBounds:
@@ -111,5 +113,5 @@ class TrackTeam:
             most_matrix=self.bounds.matrix,
             most_vector=self.bounds.vector,
         )
-        plan = TrackPlan(prior.models, prior.dt, prior.horizon, self.lead, prior.origin)
+        plan = TrackPlan(prior.models, prior.dt, prior.horizon, self.lead, prior.origin, prior.layers)
         return Tracking(platform, plan, fusion, self.bounds, self.options.coordination != "shared")

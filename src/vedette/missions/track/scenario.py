@@ -19,6 +19,7 @@ from vedette.domains.tracking.belief import Tracks, tracks
 from vedette.domains.tracking.models import STATE, TargetModel, constant_velocity, static
 from vedette.domains.tracking.sensing import Sensor
 from vedette.domains.tracking.sensors import sensor_of
+from vedette.domains.tracking.tail import edges
 from vedette.errors import InputError, InputWarning
 from vedette.number import many
 from vedette.scenario import Metre, Name, as_scenario, load_scenario
@@ -26,6 +27,7 @@ from vedette.scenario import Metre, Name, as_scenario, load_scenario
 Numbers: TypeAlias = tuple[Annotated[float, Meta(ge=-1e12, le=1e12)], ...]
 
 MOST_VEHICLES, MOST_TARGETS = 64, 1000
+FAR, LONG, TAIL = 5.0, 60.0, 10.0  # horizons, seconds, crossings
 LEAST_SD = 1e-3  # [m], [m/s]
 DEFAULT = "track.yaml"
 
@@ -100,6 +102,7 @@ class TrackScenario(Struct, forbid_unknown_fields=True, frozen=True, kw_only=Tru
     step: Annotated[float, Meta(ge=0.2, le=60.0)] = 1.0  # of looking and planning [s]
     horizon: Annotated[int, Meta(ge=1, le=50)] = 6  # [steps]
     decisions: Annotated[int, Meta(ge=1, le=5)] = 5  # turn rates chosen independently in a horizon
+    tail: Annotated[float, Meta(ge=0.0, le=86400.0)] | None = None  # [s] after the horizon; see ``layers``
     objective: Literal["trajectory", "final-entropy", "final-variance"] = "trajectory"
 
     @property
@@ -116,6 +119,21 @@ class TrackScenario(Struct, forbid_unknown_fields=True, frozen=True, kw_only=Tru
     def sensors(self) -> list[Sensor]:
         """One a vehicle; InputError as ``sensor_of``."""
         return [sensor_of(each.sensor, f"vehicles[{i}].sensor") for i, each in enumerate(self.vehicles)]
+
+    @property
+    def layers(self) -> tuple[float, ...]:
+        """Ends of the layers of time after the horizon [s].
+
+        Where no tail is given there is one if the fastest takes longer to cross the area than `FAR` horizons
+        and `LONG`: `TAIL` times as long as that takes.
+        """
+        if self.tail is not None:
+            return edges(self.tail)
+        x0, y0, x1, y1 = self.area
+        fastest = max(vehicle.speed for vehicle in self.vehicles)
+        crossing = math.hypot(x1 - x0, y1 - y0) / max(fastest, 1e-9)
+        far = fastest > 0.0 and crossing > max(LONG, FAR * self.horizon * self.step)
+        return edges(TAIL * crossing) if far else ()
 
     def prior(self) -> Tracks:
         """Return what is known at step 0."""

@@ -35,6 +35,7 @@ class TrackPlan:
     horizon: int  # [steps]
     lead: float  # from freezing a round to the start of its plans, at least [s]
     origin: tuple[float, float] = (0.0, 0.0)  # of the tracks' numbers, team frame [m]
+    layers: tuple[float, ...] = ()  # ends of the tail's layers, after the horizon [s]
 
     def step(self, time: float) -> int:
         """Return the step that a time [s] lies in; step k begins at ``k dt``."""
@@ -70,7 +71,7 @@ class Tracking(FlyingMission):
     _seen_at: tuple[float, float, float] | None = None  # x, y [m], time [s] of the last pose
 
     def __post_init__(self) -> None:
-        self.codec = TrackImpactCodec(len(self.team.models), self.team.horizon)
+        self.codec = TrackImpactCodec(len(self.team.models), self.team.horizon + len(self.team.layers))
         self.platform = self.vehicle if self.tells_plans else SharedBelief(self.vehicle, self.objective)
 
     @property
@@ -109,7 +110,7 @@ class Tracking(FlyingMission):
         step, estimate = self.fusion.estimate()
         team = self.team
         matrix, vector = estimate.matrix, estimate.vector
-        return Tracks(step, team.dt, team.horizon, team.models, matrix, vector, team.origin)
+        return Tracks(step, team.dt, team.horizon, team.models, matrix, vector, team.origin, team.layers)
 
     # -- planning -----------------------------------------------------------------------------------
 
@@ -132,13 +133,14 @@ class Tracking(FlyingMission):
         """Return the box that it can see into by the end of plans frozen within ``lead`` of now.
 
         From the last pose observed: at full speed until the plans start, one step of rounding up included,
-        and through the horizon. docs/theory.md (V14)
+        through the horizon and the tail. docs/theory.md (V14)
         """
         if self._seen_at is None:
             return None
         x, y, then = self._seen_at
         team = self.team
-        flown = self.vehicle.speed * (now - then + 2.0 * team.lead + (team.horizon + 1) * team.dt)
+        ahead = (team.horizon + 1) * team.dt + sum(team.layers[-1:])
+        flown = self.vehicle.speed * (now - then + 2.0 * team.lead + ahead)
         return box_around(x, y, flown + self.vehicle.sensor.range)
 
     def admit(self, belief: Tracks, impact: Impact, robots: int) -> None:

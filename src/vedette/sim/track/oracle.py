@@ -20,9 +20,9 @@ Joint: TypeAlias = tuple[tuple[Course, ...], Impact]  # some vehicles' courses a
 MOST_JOINT = 20_000  # joint choices tried a round: some 0.1 s
 
 
-def joint_choices(decisions: int, horizon: int, vehicles: int) -> int:
-    """Return how many joint choices a round has, the present courses included."""
-    return int((CHOICES ** min(decisions, horizon) + 1) ** vehicles)
+def joint_choices(decisions: int, horizon: int, vehicles: int, others: int = 0) -> int:
+    """Return how many joint choices a round has, the present courses and ways to others included."""
+    return int((CHOICES ** min(decisions, horizon) + 1 + others) ** vehicles)
 
 
 class Oracle:
@@ -71,7 +71,7 @@ class Oracle:
 
 def _together(belief: Tracks, lists: Sequence[Sequence[Joint]]) -> list[Joint]:
     """Return every joint choice out of some lists, as if one platform made it."""
-    joint: list[Joint] = [((), impacts.nothing(belief.horizon))]
+    joint: list[Joint] = [((), impacts.nothing(belief.blocks))]
     for each in lists:
         joint = [(a + b, impacts.combine(one, other)) for a, one in joint for b, other in each]
     return joint

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import cast
 
 from vedette.agent import Agent
+from vedette.domains.tracking.platform import MOST_OTHERS
 from vedette.errors import InputError, check_word
 from vedette.missions.track.assemble import TrackTeam
 from vedette.missions.track.options import COORDINATIONS, TrackOptions
@@ -78,7 +79,8 @@ def check_optimum(scenario: TrackScenario, setup: TrackSetup) -> None:
     """Raise InputError where the best joint choice cannot be had by trying everything."""
     if setup.continuous:
         raise InputError("the optimum is found by trying everything: leave out --continuous")
-    joint = joint_choices(scenario.decisions, scenario.horizon, len(scenario.vehicles))
+    others = min(MOST_OTHERS, len(scenario.targets) - 1) if scenario.layers else 0
+    joint = joint_choices(scenario.decisions, scenario.horizon, len(scenario.vehicles), others)
     if joint > MOST_JOINT:
         raise InputError(
             f"the optimum would try {joint} joint choices a round, at most {MOST_JOINT} are feasible; "
