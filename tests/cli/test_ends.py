@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -50,6 +51,20 @@ def test_what_is_left_out_is_counted_by_its_reason() -> None:
     spots = [LeftOut(1.0, k, 9, "unreached" if k else "unseeable", "robot-1") for k in (0.0, 1.0, 2.0)]
     lines = closing(summary(Outcome.COMPLETE, tuple(spots)), Path("runs"))
     assert lines[1] == "frontiers left out: 1 unseeable, 2 unreached; summary.json lists them"
+
+
+@pytest.mark.parametrize(
+    ("ways", "said"),
+    [
+        ((12.0, 1.1), "0 collisions"),
+        ((12.0, 0.9), "0 collisions, 1 robot never left its start"),
+        ((0.0, 0.9), "0 collisions, 2 robots never left their start"),
+    ],
+)
+def test_robots_that_never_left_their_start_are_counted(ways: tuple[float, ...], said: str) -> None:
+    driven = {f"robot-{number}": way for number, way in enumerate(ways, start=1)}
+    lines = closing(replace(summary(Outcome.COMPLETE), path_m=driven), Path("runs"))
+    assert lines[0].endswith(f" m, {said}")
 
 
 def test_who_was_lost_is_named_in_the_summary_and_in_the_last_words(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -50,12 +51,13 @@ class Intent:
         return float(np.hypot(other.x - self.x, other.y - self.y))
 
 
-def apart(mine: NDArray[np.float64], theirs: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the distances ``(T,)`` of two foreseen motions, tick for tick [m]; who is there first waits."""
-    steps = max(len(mine), len(theirs))
-    between: NDArray[np.float64] = np.hypot(*(_padded(mine, steps) - _padded(theirs, steps)).T)
+def apart(mine: NDArray[np.float64], theirs: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
+    """Return the distances of my foreseen motion from others', ``(n, T)`` [m], tick for tick.
+
+    Who is at its end first waits there.
+    """
+    ways = np.empty((len(theirs) + 1, max(map(len, (mine, *theirs))), 2))
+    for whole, way in zip(ways, (mine, *theirs), strict=True):
+        whole[: len(way)], whole[len(way) :] = way, way[-1]
+    between: NDArray[np.float64] = np.hypot(*(ways[1:] - ways[0]).transpose(2, 0, 1))
     return between
-
-
-def _padded(way: NDArray[np.float64], steps: int) -> NDArray[np.float64]:
-    return np.vstack((way, np.repeat(way[-1:], steps - len(way), axis=0)))

@@ -124,7 +124,7 @@ def _path(
 
 def _meets_not(me: Intent, theirs: NDArray[np.float64], limit: float) -> bool:
     """Tell whether my motion keeps ``limit`` from theirs, or at least never comes nearer than now."""
-    between = apart(me.foreseen, theirs)
+    between = apart(me.foreseen, [theirs])[0]
     return bool(between.min() >= min(limit, between[0] - NEARER))
 
 

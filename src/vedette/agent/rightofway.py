@@ -40,8 +40,9 @@ def give_way(
     """
     narrows = Narrows(traversable, resolution)
     near = [mate for mate in others if len(mate.path) > 0 and me.away(mate) < 2.0 * HORIZON]
-    for mate in sorted(near, key=lambda mate: mate.rank):
-        if not _conflict(narrows, me, mate):
+    near.sort(key=lambda mate: mate.rank)
+    for mate, between in zip(near, apart(me.foreseen, [mate.foreseen for mate in near]), strict=True):
+        if not _conflict(narrows, me, mate, between):
             continue
         bystanders = [other for other in others if other is not mate]
         further = _spread(me, mate)
@@ -91,9 +92,11 @@ def _goes_before(narrows: Narrows, a: Intent, b: Intent) -> bool:
     return a.rank < b.rank
 
 
-def _conflict(narrows: Narrows, me: Intent, mate: Intent) -> bool:
-    """Tell whether we meet head-on, or I stand in the mate's way, where two cannot pass side by side."""
-    between = apart(me.foreseen, mate.foreseen)
+def _conflict(narrows: Narrows, me: Intent, mate: Intent, between: NDArray[np.float64]) -> bool:
+    """Tell whether we meet head-on, or I stand in the mate's way, where two cannot pass side by side.
+
+    ``between`` ``(T,)``: how far we are apart, as foreseen [m].
+    """
     limit = me.radius + mate.radius + GAP + _spread(me, mate)
     if between.min() >= limit:
         return False

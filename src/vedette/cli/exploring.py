@@ -30,6 +30,7 @@ from vedette.sim.starts import parse_starts
 from vedette.team import PlatformSpec, load_team
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
+STAYED = 1.0  # a robot that drove less than this never left its start [m]
 
 
 class Corners(click.ParamType[Any]):
@@ -162,10 +163,11 @@ def closing(summary: ExploreSummary, folder: Path) -> list[str]:
     """Say in a few lines how it went, what was left out, and where the pictures are."""
     t90 = "-" if summary.t90_s is None else f"{summary.t90_s:.0f} s"
     longest = max(summary.path_m.values())
+    stayed = sum(way < STAYED for way in summary.path_m.values())
     lines = [
         f"{summary.outcome.said}: {100 * summary.coverage:.1f} % of {summary.world} known after "
         f"{summary.time_s:.0f} s (90 % after {t90}), longest way {longest:.0f} m, "
-        f"{many(summary.collisions, 'collision')}",
+        f"{many(summary.collisions, 'collision')}{_told_of_those_who_stayed(stayed)}",
         f"pictures: {folder / 'progress.png'}, {folder / 'curves.png'}; all else beside them",
     ]
     if summary.left_out:
@@ -173,6 +175,12 @@ def closing(summary: ExploreSummary, folder: Path) -> list[str]:
         said = ", ".join(f"{number} {why}" for why, number in count.items())
         lines.insert(1, f"frontiers left out: {said}; summary.json lists them")
     return lines
+
+
+def _told_of_those_who_stayed(robots: int) -> str:
+    if robots == 0:
+        return ""
+    return f", {many(robots, 'robot')} never left {'its' if robots == 1 else 'their'} start"
 
 
 LEAVES = (RECORD, "summary.json", "timing.json", "map.yaml", "map.pgm", "progress.png", "curves.png")
