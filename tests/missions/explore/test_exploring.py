@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -19,7 +22,7 @@ from vedette.kernels.frontier import traversable
 from vedette.kernels.tiles import TiledGrid
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.maps.lattice import Lattice
-from vedette.missions.explore.exploring import AVOID_TIME, TRIES, Exploring
+from vedette.missions.explore.exploring import AVOID_TIME, CHANCES, TRIES, Exploring
 from vedette.team import PlatformSpec
 
 THERE = Pose(3.04, 7.08, 0.0)
@@ -97,9 +100,9 @@ def test_two_robots_that_exchange_hold_the_same_map_and_freeze_the_same_belief()
     assert known > np.count_nonzero(one.log_odds.window()) > 0
 
 
-def prepared(mission: Exploring, now: float = 0.0) -> None:
+def prepared(mission: Exploring, now: float = 0.0, mates: Sequence[Mate] = ()) -> None:
     belief = mission.freeze(0.0)
-    mission.prepare(belief, HERE, [], False, now)
+    mission.prepare(belief, HERE, mates, False, now)
     mission.strategy = mission.platform.reply(belief, mission.objective.nothing(belief), mission.strategy)
 
 
@@ -197,10 +200,34 @@ def test_a_stop_that_cannot_be_carried_out_is_left_alone_longer_each_time_and_gi
         waits.append(mission.platform.avoided[-1][2] - now)
         now += waits[-1] + 1.0
     assert waits == sorted(set(waits))
+    two_rounds = 8.0  # that agree on the end, at most [s]
+    assert sum(waits) + two_rounds <= 40.0  # so long a mission may last with nothing new and nobody driving
     assert not mission.platform.given_up
     mission.strategy = tour
     mission.release(now)
     assert [(spot.x, spot.y) for spot in mission.platform.given_up] == [tuple(tour.targets[0])]
+
+
+def test_a_stop_that_mates_kept_a_robot_from_is_taken_up_again_when_one_of_them_has_gone() -> None:
+    mission, now = explorer(), 0.0
+    look(mission, HERE)
+    prepared(mission)
+    tour = mission.strategy
+    target = tour.targets[0].tolist()
+    for chance in range(CHANCES + 1):
+        there = replace(mate_at(HERE.x + 1.0 + 1.6 * (chance % 2), HERE.y), heard=now)
+        for _ in range(TRIES):
+            mission.strategy = tour
+            prepared(mission, now, [there])
+            mission.strategy = tour
+            mission.release(now)
+            now += 20.0
+            there = replace(there, heard=now)
+        prepared(mission, now, [there])
+        assert not reachable(mission, target)  # while the mate stands there
+        gone = replace(there, x=there.x + (-1.6 if chance % 2 else 1.6), heard=now)
+        prepared(mission, now, [gone])
+        assert reachable(mission, target) == (chance < CHANCES)
 
 
 def test_a_round_that_is_cut_short_is_not_taken_for_a_quiet_one(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -34,6 +35,7 @@ LEAST_AREA = 0.08  # a stop must promise this much [m^2]
 HYSTERESIS = 0.03  # a new strategy must gain this share more than the present one
 STICKINESS = 0.1  # to turn away from the stop under way must gain this share more
 PATIENCE = 4  # times the usual work, if that finds nothing; twice as much each time that is not enough
+ELSEWHERE = 1.5  # who was in the way is so no longer when it is this far from where it was [m]
 SAME_PLACE = 1.2  # a frontier this near a stop of the last round is the same one [m]
 
 
@@ -66,6 +68,7 @@ _NONE, _NOWHERE = np.empty(0, np.int64), np.empty((0, 2))
 STAY = Tour(_NOWHERE, _NOWHERE, np.empty(0), _NONE, _NONE)
 
 
+Place = tuple[int, float, float]  # of a robot: id, -1 the robot itself, and x, y [m]
 # Of a frontier: x, y [m], unknown cells near it when it was planned, from how far away it was looked at [m].
 Visit = tuple[float, float, int, float]
 
@@ -78,6 +81,14 @@ class GivenUp:
     y: float
     unknown: int  # cells unknown near it when it was given up
     visited: bool = True  # otherwise it could not be reached
+    kept_off: tuple[Place, ...] = ()  # who stood about then: while they stand there it is not tried again
+
+    def stands(self, team: Sequence[Place]) -> bool:
+        """Tell whether all who stood about when it was given up are still there."""
+        now = {robot: (x, y) for robot, x, y in team}
+        return all(
+            robot in now and math.dist(now[robot], (x, y)) < ELSEWHERE for robot, x, y in self.kept_off
+        )
 
 
 @dataclass(eq=False)
@@ -93,7 +104,7 @@ class MappingPlatform:
     x: float = 0.0
     y: float = 0.0
     obstacles: list[Disc] = field(default_factory=list)
-    team: list[tuple[int, float, float]] = field(default_factory=list)  # id, x, y of all, itself included
+    team: list[Place] = field(default_factory=list)  # all, itself included
     now: float = 0.0
     visited: list[Visit] = field(default_factory=list)  # since the last round
     closer: list[GivenUp] = field(default_factory=list)  # seen from afar in vain: to be visited from nearer
@@ -117,7 +128,7 @@ class MappingPlatform:
         x: float,
         y: float,
         obstacles: list[Disc],
-        team: list[tuple[int, float, float]],
+        team: list[Place],
         now: float,
         doubtful: NDArray[np.bool_] | None = None,
     ) -> None:
@@ -218,7 +229,11 @@ class MappingPlatform:
             seen = before - unknown_near(belief.classes, belief.frame, x, y)
             return seen <= max(2, min(before // 8, much))
 
-        self.given_up = [spot for spot in self.given_up if unchanged(spot.x, spot.y, spot.unknown)]
+        self.given_up = [
+            spot
+            for spot in self.given_up
+            if unchanged(spot.x, spot.y, spot.unknown) and spot.stands(self.team)
+        ]
         self.told = [spot for spot in self.told if unchanged(spot.x, spot.y, spot.unknown)]
         self.closer = [spot for spot in self.closer if unchanged(spot.x, spot.y, spot.unknown)]
         for x, y, before, afar in self.visited:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -22,7 +23,7 @@ from vedette.domains.mapping.impact import Impact, MapImpactCodec, check_claim
 from vedette.domains.mapping.leftovers import Leftover, given_up, leftovers
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.planners import Planner
-from vedette.domains.mapping.platform import SAME_PLACE, STAY, GivenUp, MappingPlatform, Tour
+from vedette.domains.mapping.platform import SAME_PLACE, STAY, GivenUp, MappingPlatform, Place, Tour
 from vedette.domains.mapping.sightings import BIN, BINS, empty_counts
 from vedette.domains.mapping.stops import (
     CLEARANCES,
@@ -63,8 +64,10 @@ MATE_MARGIN = 0.15  # a return this near a mate's rim is the mate; more by two d
 THERE = 0.35  # a robot this near a stop's viewpoint is at it; more by two deviations of its pose [m]
 WELL_SEEN = 0.5  # nothing is concluded from a look at what is nearer the end of the lidar's range ... [m]
 IN_THE_WAY = 1.0  # a mate this near a frontier may hide it [m]
-AVOID_TIME = 20.0  # a stop that could not be carried out is left alone for so long, longer each time [s]
-TRIES = 4  # a stop that could not be carried out so often is given up
+AVOID_TIME = 10.0  # a stop that could not be carried out is left alone for so long, longer each time [s]
+TRIES = 3  # a stop that could not be carried out so often is given up
+BLOCKING = 3.0  # a mate this near may have kept the robot from a stop [m]
+CHANCES = 2  # a stop is taken up again so often because who kept the robot from it has gone
 JOIN = 4  # cells beyond what is known from which a robot or a goal still joins it
 SERVED_SHARE = 0.4  # a frontier with less than this of its unknown cells left has lost its point
 
@@ -101,6 +104,7 @@ class Exploring:
     _doubts: Doubts = field(init=False)
     _left: list[Leftover] | None = None  # as of the last round; None: there was a stop
     _released: list[tuple[float, float]] = field(default_factory=list)  # stops that could not be carried out
+    _despaired: list[tuple[float, float]] = field(default_factory=list)  # those that were given up for that
     _ground: dict[float, tuple[int, Ways]] = field(default_factory=dict)  # by clearance, as of a digest
 
     def __post_init__(self) -> None:
@@ -359,7 +363,7 @@ class Exploring:
         return [
             (mate.x, mate.y, mate.radius)
             for mate in mates
-            if mate.silent(now) or (blocked and np.hypot(mate.x - pose.x, mate.y - pose.y) < 3.0)
+            if mate.silent(now) or (blocked and np.hypot(mate.x - pose.x, mate.y - pose.y) < BLOCKING)
         ]
 
     def reach(self, now: float) -> None:
@@ -447,8 +451,18 @@ class Exploring:
             self.platform.avoided.append((x, y, now + AVOID_TIME * sum(near)))
         else:
             unknown = self._unknown_at(self.strategy.targets[0])
-            self.platform.given_up.append(GivenUp(x, y, unknown, visited=False))
+            kept_off = self._kept_off(x, y)
+            self.platform.given_up.append(GivenUp(x, y, unknown, visited=False, kept_off=kept_off))
+            self._despaired.append((x, y))
             self._released = [spot for spot, same in zip(self._released, near, strict=True) if not same]
+
+    def _kept_off(self, x: float, y: float) -> tuple[Place, ...]:
+        """Return who may have kept the robot from a stop, with itself; nobody, after some chances."""
+        if sum(np.hypot(x - u, y - v) < SAME_PLACE for u, v in self._despaired) >= CHANCES:
+            return ()
+        here = self.platform.x, self.platform.y
+        near = tuple(spot for spot in self.platform.team if math.dist(spot[1:], here) < BLOCKING)
+        return near if len(near) > 1 else ()
 
     def nothing_left(self, value: float, now: float) -> bool:
         """Tell whether nothing reachable is worth seeing, now or in a while, and all was tried."""
