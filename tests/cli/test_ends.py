@@ -17,7 +17,7 @@ from vedette.record.explore.summary import ExploreSummary, LeftOut
 
 def summary(outcome: Outcome, left_out: tuple[LeftOut, ...] = ()) -> ExploreSummary:
     return ExploreSummary(
-        completed=outcome.completed, outcome=outcome, lost=(), seed=1, robots=1, planner="tours",
+        completed=outcome.completed, outcome=outcome, lost=(), left=(), seed=1, robots=1, planner="tours",
         scheme="token", fusion="replicated", world="hall", radio=None, faults=None, time_s=60.0,
         t50_s=20.0, t90_s=50.0, t95_s=None, t99_s=None, auc_s=30.0, coverage=0.92, map_errors=0,
         map_error_share=0.0,
