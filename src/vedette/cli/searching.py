@@ -66,9 +66,11 @@ def closing(summary: SearchSummary, folder: Path) -> list[str]:
         end = "" if summary.detection is None else f", {100 * summary.detection:.0f} % in the end"
         lines[0] = how
         lines.append(f"some true report, predicted: {then}{end}; with false alarms not yet a finding")
-    if summary.outside is not None:
-        left = f"has left the area undetected with a probability of {100 * summary.outside:.0f} %"
-        lines.append(f"by {summary.duration_s:.0f} s the target {left}, nobody reporting")
+    if summary.outside_then is not None:
+        left = "by then the target has left the area undetected with a probability of"
+        end = f"{summary.duration_s:.0f} s, nobody reporting"
+        later = "" if summary.outside is None else f", of {100 * summary.outside:.0f} % by {end}"
+        lines.append(f"{left} {100 * summary.outside_then:.0f} %{later}")
     if summary.comparison:
         means = (f"{name} {quality.mean_time_s:.0f} s" for name, quality in summary.comparison.items())
         lines.append(f"mean time {what}, cut at {summary.duration_s:.0f} s: {', '.join(means)}")

@@ -39,7 +39,7 @@ def rings(
     Raises:
         InputError: as many distances as shares there must be, both rising from above 0, shares to 1 at most;
             or all rings lie outside the area.
-        InputWarning: some of them does.
+        InputWarning: some of them do.
     """
     radii, shares = np.asarray(distances, np.float64), np.asarray(within, np.float64)
     for name, values in (("distances", radii), ("within", shares)):
