@@ -48,6 +48,8 @@ def test_a_scan_comes_with_the_pose_at_its_own_time_before_the_present_one(
     assert seen.offset == pytest.approx((0.0, 0.2))
     assert seen.angles[5] == pytest.approx(pi / 2)
     assert seen.age == pytest.approx(0.5)
+    body.carry_out(route((10.0, 6.0), (10.0, 7.0)), 0.2)
+    assert door.frame == f"{prefix}map"
 
 
 def test_nothing_is_told_before_the_robot_has_said_where_it_is() -> None:

@@ -20,6 +20,7 @@ class FakeDoor:
 
     told: list[Told] = field(default_factory=list)
     asked: list[tuple[int, Place]] = field(default_factory=list)
+    frame: str = ""  # that the latest goal was in
     cancelled: list[int] = field(default_factory=list)
     closed: bool = False
     shown: list[Notice] = field(default_factory=list)
@@ -38,8 +39,9 @@ class FakeDoor:
         assert self.offer is not None
         return self.offer
 
-    def ask(self, goal: int, place: Place) -> None:
+    def ask(self, goal: int, place: Place, frame: str) -> None:
         self.asked.append((goal, place))
+        self.frame = frame
 
     def cancel(self, goal: int) -> None:
         self.cancelled.append(goal)

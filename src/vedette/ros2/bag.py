@@ -91,7 +91,7 @@ class RecordedDoor:
         told, self._told = self._told, deque()
         return tuple(told)
 
-    def ask(self, goal: int, place: Place) -> None:
+    def ask(self, goal: int, place: Place, frame: str) -> None:
         """Send nobody anywhere."""
 
     def cancel(self, goal: int) -> None:

@@ -254,6 +254,7 @@ class Ros2Body:
         orders, self.goals.orders = self.goals.orders, []
         for order in orders:
             if isinstance(order, Ask):
-                self.door.ask(order.goal, place(self.settings.T_map_team @ planar(*order.place)))
+                at = place(self.settings.T_map_team @ planar(*order.place))
+                self.door.ask(order.goal, at, self.frame(self.settings.map_frame))
             else:
                 self.door.cancel(order.goal)

@@ -105,8 +105,8 @@ class Door(Protocol):
     def time(self) -> float | None:
         """What ``/clock`` shows [s]; None: nothing yet."""
 
-    def ask(self, goal: int, place: Place) -> None:
-        """Send the navigator a goal; ``place``: x, y [m], heading [rad], map frame."""
+    def ask(self, goal: int, place: Place, frame: str) -> None:
+        """Send the navigator a goal; ``place``: x, y [m], heading [rad], in a frame of the robot's."""
 
     def cancel(self, goal: int) -> None:
         """Cancel a goal, whether it was taken up or not."""

@@ -166,7 +166,7 @@ class RosDoor:
     def _there(self) -> bool:
         return bool(self._asker.service_is_ready() and self._canceller.service_is_ready())
 
-    def ask(self, goal: int, place: Place) -> None:
+    def ask(self, goal: int, place: Place, frame: str) -> None:
         """Send a goal; where there is no navigator, it is as good as rejected."""
         if not self._there:
             self._told.append(Answer(goal, accepted=False))
@@ -178,7 +178,7 @@ class RosDoor:
             del self._goals[next(iter(self._goals))]
         request.goal_id.uuid = np.frombuffer(name, np.uint8)
         pose = request.goal.pose  # its stamp stays 0: the place is where it is now
-        pose.header.frame_id = self.settings.map_frame
+        pose.header.frame_id = frame
         pose.pose.position.x, pose.pose.position.y = x, y
         pose.pose.orientation.z, pose.pose.orientation.w = sin(heading / 2), cos(heading / 2)
         answer = self._asker.call_async(request)

@@ -1,0 +1,1 @@
+"""Starts a Vedette agent beside a robot's Nav2."""
