@@ -13,13 +13,14 @@ from vedette.fusion.link import RESEND_AFTER
 from vedette.fusion.packing import CodePacking
 from vedette.fusion.snapshots import NONE, Change, Delta, Snapshot, tiles_to_publish
 from vedette.fusion.tiles import WORDS, TeamMap, classes_of, codes_of
-from vedette.kernels.tiles import TiledGrid, Tiling
+from vedette.kernels.tiles import CELLS, TiledGrid, Tiling
 
 
 class ReplicatedEvidence(TeamMap):
     """Team evidence = sum over contributors of the latest known snapshot of each one's own evidence.
 
-    Memory is O(contributors x the area each has seen), 3 bytes a cell, beside 5 bytes a cell for the team.
+    Memory is O(contributors x the area each has seen), 3 bytes a cell, beside a byte a cell for the team;
+    of all that robots in one process hold alike, each tile once.
     ``own`` grids are int8 log-odds; times are seconds of any one clock of this robot.
     """
 
@@ -37,7 +38,6 @@ class ReplicatedEvidence(TeamMap):
         tiling = Tiling(*shape)
         super().__init__(tiling, counts_size, mark)
         self._codec = EvidenceCodec(tiling, counts_size, CodePacking())
-        self._words: TiledGrid[np.int32] = TiledGrid(tiling, np.int32)
         self._contributors: Contributors[Snapshot[np.uint8], Delta[np.uint8]] = Contributors(
             robot, boot, lambda: Snapshot(tiling, counts_size, np.uint8), resend_after
         )
@@ -74,14 +74,16 @@ class ReplicatedEvidence(TeamMap):
         news = self._contributors.hear(neighbour, self._codec.decode(payload), now)
         return self._merge([self._contributors.copies[key].apply(delta) for key, delta in news])
 
-    def _merge(self, changes: Sequence[Change[np.uint8] | None]) -> NDArray[np.int64]:
-        """team += new - old, tile by tile."""
+    def _merge(self, changes: Sequence[Change | None]) -> NDArray[np.int64]:
+        """Add up anew what has changed, tile by tile."""
         changed = [NONE]
         for change in changes:
             if change is not None:
-                more = WORDS[change.after] - WORDS[change.before]
-                self._words.write(change.tiles, self._words.read(change.tiles) + more)
                 self.counts += change.more_counts
                 changed.append(change.tiles)
         tiles = np.unique(np.concatenate(changed))
-        return self.show(tiles, classes_of(self._words.read(tiles)))
+        words = np.zeros((len(tiles), CELLS), np.int32)
+        for copy in self._contributors.copies.values():
+            held = np.flatnonzero(copy.values.holds(tiles))
+            words[held] += WORDS[copy.values.read(tiles[held])]
+        return self.show(tiles, classes_of(words))

@@ -8,6 +8,7 @@ from typing import Generic, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.fusion.shared import SharedTiles
 from vedette.fusion.tiles import CLASSES, codes_of
 from vedette.kernels.tiles import CELLS, TiledGrid, Tiling
 
@@ -35,12 +36,10 @@ class Delta(Generic[ValueT]):
 
 
 @dataclass(frozen=True, eq=False)
-class Change(Generic[ValueT]):
-    """Tiles that a snapshot has just replaced."""
+class Change:
+    """What a snapshot has just replaced."""
 
     tiles: NDArray[np.int64]  # (T,)
-    before: NDArray[ValueT]  # (T, 1024)
-    after: NDArray[ValueT]  # (T, 1024)
     more_counts: NDArray[np.int64]  # (K,) new minus old
 
 
@@ -51,26 +50,27 @@ class Snapshot(Generic[ValueT]):
     all, so "the later version wins" merges copies, and merging is idempotent and commutative. Each cell
     remembers the version that last changed it (from 65535 versions on, that it changed late: differences
     then repeat some cells). A difference from version 0 is the whole: what it does not give is blank.
-    Memory: 3 or 6 bytes a cell of the tiles ever written.
+    Memory: 3 or 6 bytes a cell of the tiles ever written, once for all who hold the same.
     """
 
     def __init__(self, tiling: Tiling, counts_size: int, dtype: type[ValueT]) -> None:
         self.version = 0
         self._whole_before = 0  # differences from earlier versions are told whole
-        self.values: TiledGrid[ValueT] = TiledGrid(tiling, dtype)
+        self.tiling = tiling
+        self.values: SharedTiles[ValueT] = SharedTiles(dtype)
         self.counts: NDArray[np.int64] = np.zeros(counts_size, dtype=np.int64)
-        self._stamps: TiledGrid[np.uint16] = TiledGrid(tiling, np.uint16)
-        self._versions: NDArray[np.int64] = np.zeros(1, dtype=np.int64)  # of the tile in each slot
+        self._stamps: SharedTiles[np.uint16] = SharedTiles(np.uint16)
+        self._versions: dict[int, int] = {}  # of each tile
         self._counts_version = 0
 
     @property
     def known_tiles(self) -> NDArray[np.int64]:
         """Tiles ever written, increasing."""
-        return np.sort(self.values.held)
+        return self.values.held
 
     def write(
         self, tiles: NDArray[np.int64], blocks: NDArray[ValueT], counts: NDArray[np.int64] | None = None
-    ) -> Change[ValueT] | None:
+    ) -> Change | None:
         """As the writer: set ``(len(tiles), 1024)`` values; a new version if anything differs, else None."""
         mask = blocks != self.values.read(tiles)
         rows = np.flatnonzero(mask.any(axis=1))
@@ -84,36 +84,33 @@ class Snapshot(Generic[ValueT]):
     def since(self, base: int) -> Delta[ValueT]:
         """Return the difference from version ``base`` to this one."""
         base = base if base >= self._whole_before else 0
-        held = self.values.held
-        tiles = np.sort(held[self._versions[1 : 1 + len(held)] > base])
+        late = [tile for tile, version in self._versions.items() if version > base]
+        tiles = np.sort(np.array(late, np.int64))
         mask = self._stamps.read(tiles) > self._stamp(base, _LAST_STAMP - 1)
         counts = self.counts.copy() if self._counts_version > base else None
         return Delta(base, self.version, tiles, mask, self.values.read(tiles)[mask], counts)
 
-    def apply(self, delta: Delta[ValueT]) -> Change[ValueT] | None:
+    def apply(self, delta: Delta[ValueT]) -> Change | None:
         """Advance to ``delta.version``; None if it is old news or does not connect to this version."""
         if not delta.base <= self.version < delta.version:
             return None
         if delta.base == 0 < self.version:
             delta = self._blanking(delta)
-        before = self.values.read(delta.tiles)
-        after = before.copy()
-        after[delta.mask] = delta.values
+        values = self.values.read(delta.tiles)
+        values[delta.mask] = delta.values
         stamps = self._stamps.read(delta.tiles)
         stamps[delta.mask] = self._stamp(delta.version, _LAST_STAMP)
-        self.values.write(delta.tiles, after)
+        self.values.write(delta.tiles, values)
         self._stamps.write(delta.tiles, stamps)
-        more = len(self.values.blocks) - len(self._versions)
-        self._versions = np.pad(self._versions, (0, more)) if more else self._versions
-        self._versions[self.values.slots[delta.tiles]] = delta.version
+        self._versions |= dict.fromkeys(delta.tiles.tolist(), delta.version)
         self.version = delta.version
-        return Change(delta.tiles, before, after, self._replace_counts(delta))
+        return Change(delta.tiles, self._replace_counts(delta))
 
     def overtake(self, version: int) -> None:
         """As the writer: go on above a version that was told in its name, and tell the whole anew."""
         self.version = self._whole_before = self._counts_version = version + 1
         tiles = self.known_tiles
-        self._versions[self.values.slots[tiles]] = self.version
+        self._versions = dict.fromkeys(self._versions, self.version)
         self._stamps.write(tiles, np.minimum(self._stamps.read(tiles), 1))
 
     def _stamp(self, version: int, most: int) -> int:
@@ -145,8 +142,8 @@ def tiles_to_publish(
     own: TiledGrid[np.int8], changed: NDArray[np.int64] | None, published: Snapshot[np.uint8]
 ) -> NDArray[np.int64]:
     """Return the tiles that hold ``changed`` cells, or (None) all whose class differs from the published."""
-    if own.tiling != published.values.tiling:
-        raise ValueError(f"own evidence lies on {own.tiling}; the team map on {published.values.tiling}")
+    if own.tiling != published.tiling:
+        raise ValueError(f"own evidence lies on {own.tiling}; the team map on {published.tiling}")
     if changed is not None:
         return own.tiling.holding(changed)
     held = np.union1d(own.held, published.values.held)

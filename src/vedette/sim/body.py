@@ -97,7 +97,8 @@ class Bodies:
         ``traversable`` ``(r, c)``: cells where robot ``i``'s own map allows its centre, from row and column
         ``first`` on; held by reference, so that later changes count; None: every cell that is not solid.
         ``room`` [m]: that the path keeps to what is not known free; a robot keeps at least half of it to
-        walls, of 5 cm and more 2.5 cm. ``facing``: heading [rad] to turn to on the spot at the end; None: any.
+        walls, of 5 cm and more 2.5 cm. ``facing``: heading [rad] to turn to on the spot at the end; None:
+        any.
         """
         if path is None or not self.alive[i]:
             self._tasks[i] = None
