@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -55,6 +55,10 @@ class BadTeam(FaultyTeam):
         if i in self.bad:
             return self.bad[i](agent, now, lease=lease)
         return super()._program(i, agent, now, lease)
+
+    def heard_by(self, part: Sequence[int]) -> Sequence[int]:
+        """Return whose plans a part may know of: those of others too, by way of who misbehaves."""
+        return self.honest
 
     @property
     def honest(self) -> list[int]:

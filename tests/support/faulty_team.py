@@ -214,6 +214,10 @@ class FaultyTeam(SiteTeam):
                 self.longest_idle = max(self.longest_idle, idle)
                 check(idle <= allowed, "a robot is idle for too long", i, agent.state, idle)
 
+    def heard_by(self, part: Sequence[int]) -> Sequence[int]:
+        """Return whose plans a part may know of: its own robots'."""
+        return part
+
     def _worthwhile(self, i: int, part: Sequence[int]) -> bool:
         sites, mission = self.sites, self._mission(i)
         seen = sites.seen(mission.fusion.classes.window())
@@ -221,7 +225,7 @@ class FaultyTeam(SiteTeam):
         if not ahead:
             return False
         left = 1.0 - seen
-        for k in part:
+        for k in self.heard_by(part):
             if k != i and (site := self._mission(k).strategy) is not None:
                 left *= sites.misses(*self.bodies.places[k], site)
         return any(

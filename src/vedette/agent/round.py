@@ -108,6 +108,11 @@ class Round:
         return None if self.negotiator is None else self.negotiator.finished
 
     @property
+    def replied(self) -> bool:
+        """Whether this robot has had its say."""
+        return self.negotiator is not None and self.negotiator.replied
+
+    @property
     def value_seen(self) -> float | None:
         """What the team's choice is worth as far as this robot holds it; None: not all of it."""
         whole = all(reach is None for reach in self._told(self.heard).values())

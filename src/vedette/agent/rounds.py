@@ -25,6 +25,7 @@ from vedette.number import many
 IDLE = 1.0  # a robot that did not look after its rounds for longer did not want any [s of the transport]
 CALL_AGAIN = 1.0  # a call not answered is repeated after so long [s]
 SETTLING = 0.2  # a new tree is left alone for so long before a round [s]
+DOUBTS, ROUNDING = 3, 1e-9  # rounds in a row that are told to be worth more, and by what share at least
 CLOCKS_APART = 20.0  # that the root's may be from this robot's, where rounds keep to beats [s]
 
 
@@ -43,7 +44,7 @@ class Decision:
 
     time: float
     value: float  # of the team's choice: as this robot sees it, if it sees all of it
-    approximate: bool  # this robot's belief was not the root's, or it decided without the team
+    approximate: bool  # its belief was not the root's, or it decided without the team or its own say
     blocked: bool  # this robot planned with its mates in the way
 
 
@@ -77,6 +78,7 @@ class Rounds:
     _preparation: float = 0.0  # what its own last one took [s]
     _together: float = -1e9  # when it last decided as others did, or wanted nothing [s]
     _ticked: float = -1e9
+    _doubted: int = 0  # rounds in a row that were told to be worth more than is seen here
     _solos: int = 0  # rounds that this robot began for itself alone
 
     @property
@@ -218,16 +220,30 @@ class Rounds:
             self.bound_ratios.append(outcome.value / outcome.bound)
         self.blocked &= not round_.blocked  # taken into account
         lonely = not round_.tree.neighbours and self.tree.parent is not None
-        if not lonely:
+        took_part = not lonely and round_.replied
+        if took_part:
             self._together = now
             self._attendance.attended(round_.children)
         self._end(now)
-        seen = round_.value_seen
-        value = outcome.value if seen is None else seen
-        self.decided(Decision(now, value, round_.approximate or lonely, round_.blocked))
-        if not lonely and self._upwards.ends(self.tree, round_.approximate):
-            effects = [*effects, *self._shun()]
-        return effects
+        value = self._value(outcome.value, round_.value_seen)
+        self.decided(Decision(now, value, round_.approximate or not took_part, round_.blocked))
+        if lonely:
+            return effects
+        self._wanted |= not took_part
+        if not took_part:
+            return [*effects, *self._fail()]
+        return [*effects, *(self._shun() if self._upwards.ends(self.tree, round_.approximate) else [])]
+
+    def _value(self, told: float, seen: float | None) -> float:
+        """Return what the team's choice is worth: the more, of what is told of it and what is seen here.
+
+        A round may stop before its last change has come round; one robot's view that is below what is told
+        round after round is right all the same.
+        """
+        if seen is None:
+            return told
+        self._doubted = self._doubted + 1 if told > seen + ROUNDING * max(abs(seen), 1.0) else 0
+        return seen if self._doubted >= DOUBTS else max(told, seen)
 
     def _end(self, now: float) -> None:
         self.round = None

@@ -103,6 +103,11 @@ class JacobiNode(Generic[ImpactT]):
                     return self._end(message)
         raise InputError(f"message {type(message).__name__} from {sender} is out of turn; drop it")
 
+    @property
+    def replied(self) -> bool:
+        """Whether an iterate has begun here: everybody replies in each."""
+        return bool(self._strategies)
+
     def value_held(self) -> None:
         """Nothing: the round may end with the strategies of an earlier iterate."""
 

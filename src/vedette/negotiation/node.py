@@ -86,8 +86,12 @@ class Negotiator(Protocol[ImpactT]):
     def waiting_for(self) -> frozenset[int]:
         """Neighbours without whose next message nothing goes on here; none once the round is over."""
 
+    @property
+    def replied(self) -> bool:
+        """Whether this platform has had its say in the round."""
+
     def value_held(self) -> float | None:
-        """Return what the impacts held are worth together, own one included; None: they are of no one choice.
+        """Return what the impacts held are worth together, own one included; None: they are not all here.
 
         At the end of a round whose messages are whole it is the outcome's value, whatever that says.
         """
@@ -180,6 +184,11 @@ class TreeLinks(Generic[ImpactT]):
         mu = self._own.impact if rest is None else self._own.combine(self._own.impact, rest)
         reach = self._reaches.get(receiver)
         return mu if reach is None else self._own.clip(mu, reach)
+
+    @property
+    def heard_all(self) -> bool:
+        """Whether every neighbour has sent a mu."""
+        return all(self._held[self._place[k]] is not None for k in self.neighbours)
 
     def others(self) -> ImpactT:
         """Return the rest of the team, ``* of mu_{k->i}`` over all neighbours: exact if all are fresh."""

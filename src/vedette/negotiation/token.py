@@ -146,11 +146,19 @@ class TokenNode(Generic[ImpactT]):
         if self._own.strategy is None and len(self._parts) < 2:
             return 0.0
         parts = [self._links.held(child) for child in self._children if child in self._parts]
-        together = self.value_held()
+        together = self._team_value()
         return together - sum(self._own.value(part) for part in parts)
 
-    def value_held(self) -> float:
+    @property
+    def replied(self) -> bool:
+        """Whether the token has been here."""
+        return bool(self.turns)
+
+    def value_held(self) -> float | None:
         """Return what the impacts held are worth together; see `Negotiator`."""
+        return self._team_value() if self._links.heard_all else None
+
+    def _team_value(self) -> float:
         return self._own.value(self._own.combine(self._links.others(), self._own.impact))
 
     def _take(self, sender: int, token: Token[ImpactT]) -> list[Outgoing[ImpactT]]:
@@ -180,9 +188,9 @@ class TokenNode(Generic[ImpactT]):
         """Take the parts cut since the token was last here off the tally."""
         while self._lost:
             child = self._lost.pop()
-            with_it = self.value_held()
+            with_it = self._team_value()
             self._links.cut(child)
-            tally = self._parts.pop(child).taken_off(tally, self._own, with_it - self.value_held())
+            tally = self._parts.pop(child).taken_off(tally, self._own, with_it - self._team_value())
         return tally
 
     def _turn(self, tally: Tally) -> list[Outgoing[ImpactT]]:
