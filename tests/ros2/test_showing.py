@@ -33,11 +33,11 @@ def shown(door: FakeDoor) -> dict[str, Any]:
     return told
 
 
-def a_showing() -> tuple[Showing, FakeDoor]:
+def a_showing(prefix: str = "", **settings: Any) -> tuple[Showing, FakeDoor]:
     lattice = Lattice(GridFrame(0.1, 100, 100, -5.0, -5.0))
     agent = assemble(lattice, SPEC, ExploreOptions(), 0, 1, robots=1, most=Most.of([SPEC]))
-    door = FakeDoor(at(12.5, 1.0))
-    body = Ros2Body(SPEC, Ros2Settings(), door)
+    door = FakeDoor(at(12.5, 1.0, prefix=prefix))
+    body = Ros2Body(SPEC, Ros2Settings(**settings), door)
     body.sense(0.0)
     own_map = OwnMap(np.full((10, 20), FREE, np.uint8), 0.1, 0.0, 0.0, 0.0)
     agent.mission.observe(Sensed(own_map, 0.0), Pose(1.0, 0.0, 0.0), [], 0.0)
@@ -49,7 +49,9 @@ def test_the_map_lies_in_the_teams_frame_at_the_robots_own_time() -> None:
     showing, door = a_showing()
     showing(0.0)
     told = shown(door)
-    assert set(told) == {"team_map", "tour", "markers", "/diagnostics"}
+    assert set(told) == {"/tf_static", "team_map", "tour", "markers", "/diagnostics"}
+    (joint,) = told["/tf_static"].transforms
+    assert (joint.header.frame_id, joint.child_frame_id) == ("map", "team")
     grid = told["team_map"]
     assert (grid.header.frame_id, grid.header.stamp.sec, grid.header.stamp.nanosec) == ("team", 12, 500000000)
     rows, cols = np.nonzero(grid.data.reshape(grid.info.height, grid.info.width) == 0)
@@ -79,3 +81,20 @@ def test_what_keeps_the_robot_from_its_work_is_a_warning() -> None:
     (status,) = shown(door)["/diagnostics"].status
     assert status.level == 1
     assert "paused" in status.message
+
+
+@pytest.mark.parametrize(
+    ("prefix", "topic", "frames"),
+    [("", "/r1/tf_static", ("map", "team")), ("r1/", "/tf_static", ("r1/map", "r1/team"))],
+)
+def test_the_teams_frame_hangs_from_the_robots_map_by_the_names_that_its_tf_has(
+    prefix: str, topic: str, frames: tuple[str, str]
+) -> None:
+    showing, door = a_showing(prefix, namespace="r1", start=(3.0, 1.0, 90.0))
+    showing(0.0)
+    told = shown(door)
+    (joint,) = told[topic].transforms
+    assert (joint.header.frame_id, joint.child_frame_id) == frames
+    t = joint.transform.translation
+    assert (t.x, t.y) == pytest.approx((-1.0, 3.0))  # the team's origin, from 3, 1 and turned by 90 degrees
+    assert told["team_map"].header.frame_id == frames[1]

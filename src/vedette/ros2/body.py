@@ -157,7 +157,7 @@ class Ros2Body:
     def frame(self, name: str) -> str:
         """Return a frame as TF knows it: bare, or with the robot's namespace before it."""
         prefixed = f"{self.settings.namespace.strip('/')}/{name}"
-        return prefixed if name not in self.transforms.frames and prefixed in self.transforms.frames else name
+        return prefixed if prefixed in self.transforms.frames else name
 
     def _localised(self) -> Pose | None:
         """Return where the robot is by the newest that each joint has told."""

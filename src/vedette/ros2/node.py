@@ -24,7 +24,6 @@ from vedette.ros2.goals import Place
 from vedette.ros2.messages import deviation_of, grid_of, joints_of, patch_of, seconds, sweep_of
 from vedette.ros2.offered import Offered, Writer
 from vedette.ros2.settings import Ros2Settings
-from vedette.ros2.transforms import place
 
 HOW = "start it where ROS 2 is set up: source /opt/ros/<distro>/setup.bash"
 MOST_GOALS = 64  # that are remembered
@@ -32,7 +31,6 @@ GOODBYE = 1.0  # what was ordered last has so long to get out [s]
 TOPICS = ("scan", "map", "pose", "navigate_to_pose")  # settings that name some
 NAVIGATOR = "bt_navigator"  # Nav2's node that offers the action
 OURS = "vedette"  # before the names of what we offer
-TEAM_FRAME = "team"
 
 
 def ros(name: str) -> Any:
@@ -200,17 +198,10 @@ class RosDoor:
     # -- for those who use the robot's ROS ----------------------------------------------------------------
 
     def _serve(self) -> None:
-        """Offer the services, and tell where the team's frame lies in the robot's map."""
+        """Offer the services."""
         for word in Word:
             obey = partial(self._hear_word, word)
             self.node.create_service(ros("std_srvs.srv").Trigger, f"{OURS}/{word}", obey)
-        told, tf = ros("geometry_msgs.msg").TransformStamped(), ros("tf2_msgs.msg").TFMessage
-        told.header.frame_id, told.child_frame_id = self.settings.map_frame, TEAM_FRAME
-        x, y, yaw = place(self.settings.T_map_team)
-        told.transform.translation.x, told.transform.translation.y = x, y
-        told.transform.rotation.z, told.transform.rotation.w = sin(yaw / 2), cos(yaw / 2)
-        self._static = self.node.create_publisher(tf, "tf_static", _profile(1, kept=True))
-        self._static.publish(tf(transforms=[told]))
 
     def _hear_word(self, word: Word, asked: Any, said: Any) -> Any:
         self._told.append(word)

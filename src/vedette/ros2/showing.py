@@ -16,8 +16,9 @@ from vedette.missions.explore.exploring import Exploring
 from vedette.record.ros import RosMessages
 from vedette.ros2.body import Ros2Body
 from vedette.ros2.door import Notice
-from vedette.ros2.node import TEAM_FRAME
+from vedette.ros2.transforms import place
 
+TEAM_FRAME = "team"
 PERIOD = 1.0  # of what is shown, at least [s]
 GRID_PERIOD = 3.0  # of grids, which are shown when they have changed [s]
 POINT_SIZE, TEXT_SIZE = 0.15, 0.4  # of frontiers' marks and of names [m]
@@ -76,7 +77,8 @@ class Showing:
     agent: Agent
     body: Ros2Body
     name: str
-    _messages: ShowingMessages = field(default_factory=lambda: ShowingMessages(TEAM_FRAME))
+    _messages: ShowingMessages = field(default_factory=ShowingMessages)
+    _anchored: bool = False  # where the team's frame lies was told
     _due: float = 0.0
     _grids_due: float = 0.0
     _digest: int | None = None  # of the map that was shown last
@@ -86,9 +88,23 @@ class Showing:
         if now < self._due:
             return
         self._due = now + PERIOD
+        if not self._anchored:
+            self._anchored = True
+            self._anchor()
         stamp = round(1e9 * (self.body.stamp or 0.0))
         for topic, kind, message in (*self._grids(stamp, now), *self._rest(stamp)):
             self.body.door.show(Notice(topic, kind, self._messages.encode(message)))
+
+    def _anchor(self) -> None:
+        """Tell where the team's frame lies in the robot's map, by the names that the robot's TF has."""
+        settings = self.body.settings
+        map_frame = self.body.frame(settings.map_frame)
+        prefix = map_frame.removesuffix(settings.map_frame)
+        self._messages.frame_id = f"{prefix}{TEAM_FRAME}"
+        at = RosMessages(map_frame)
+        joint = at.transforms(0, [(self._messages.frame_id, *place(settings.T_map_team))])
+        topic = "/tf_static" if prefix else f"/{settings.namespace.strip('/')}/tf_static".replace("//", "/")
+        self.body.door.show(Notice(topic, "tf2_msgs/msg/TFMessage", at.encode(joint)))
 
     @property
     def _mission(self) -> Exploring:
