@@ -51,6 +51,10 @@ def test_tracks_that_are_surer_than_they_are_right_are_said_in_a_line_and_in_the
     assert ran.status == 0
     assert "the tracks are surer than they are right: NEES " in ran.out
     assert "0.32 to 2.05 is consistent" in ran.out
+    in_view = json.loads((Path("out") / "summary.json").read_text())["in_view"]
+    unseen = [name for name, share in in_view.items() if not share]
+    assert unseen
+    assert f"never seen by anybody: {', '.join(unseen)}" in ran.out
     assert json.loads((Path("out") / "summary.json").read_text())["consistency"] == "overconfident"
 
 

@@ -81,7 +81,7 @@ def closing(summary: TrackSummary, folder: Path) -> list[str]:
 
 
 def _doubts(summary: TrackSummary) -> list[str]:
-    """Say what makes the figures doubtful: tracks that are not as right as they are sure, looks left out."""
+    """Say what makes figures doubtful: tracks not as right as they are sure, targets or looks left out."""
     low, high = summary.nees_band
     band = f"NEES {summary.nees:.2f}, where {low:.2f} to {high:.2f} is consistent"
     said = {
@@ -89,6 +89,8 @@ def _doubts(summary: TrackSummary) -> list[str]:
         "cautious": f"the tracks are less sure than they are right: {band}",
     }
     lines = [said[summary.consistency]] if summary.consistency in said else []
+    if unseen := [name for name, share in summary.in_view.items() if share == 0.0]:
+        lines.append(f"never seen by anybody: {', '.join(unseen[:10])}{', ...' if unseen[10:] else ''}")
     if summary.skipped:
         lines.append(f"looks left out, as their numbers were beyond all bounds: {summary.skipped}")
     return lines
