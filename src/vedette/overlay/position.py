@@ -16,6 +16,7 @@ from vedette.overlay.peer import Peer
 from vedette.overlay.stamp import Stamp
 
 GRACE = 0.2  # for which a robot alone waits to be taken in, before it starts a tree itself [s]
+IDLE = 2.0  # a robot alone that starts no tree within so long is not waited for [s]
 MUCH_BETTER = 3  # hops saved that are worth a new tree
 UNEASE, MOST_UNEASE = 30.0, 480.0  # if they have been there to save for so long, doubling [s]
 
@@ -107,11 +108,15 @@ class TreePosition:
     # -- starting a tree -----------------------------------------------------------------------------
 
     def _must_start(self, now: float) -> bool:
-        """Tell whether this robot, alone, has to start a tree: nobody within its reach ranks above it."""
+        """Tell whether this robot, alone, has to start a tree: nobody within its reach ranks above it.
+
+        Or who does has left it at that for long, though it would have had to start one.
+        """
         if not self.stamp.is_alone or now < self.since + GRACE:
             return False
-        stamps = [peer.stamp for peer in self._peers.values() if peer.usable]
-        return bool(stamps) and max(stamps) < self.stamp
+        usable = [peer for peer in self._peers.values() if peer.usable]
+        above = [each for each in usable if each.stamp > self.stamp]
+        return bool(usable) and all(each.stamp.is_alone and now >= each.since + IDLE for each in above)
 
     def _is_uneasy(self, now: float) -> bool:
         """Tell whether a much better way to the root has been there for long."""
