@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -17,6 +18,7 @@ import pytest
 from tests.support.ros2_teams import DOMAIN, Tried, living, plan, tried
 from tests.support.small_missions import TWO_ROOMS, drawn, small_maze
 from vedette.maps import UNKNOWN, read_map
+from vedette.net.explore.ros2_plan import environment
 from vedette.outcome import Outcome
 
 pytest.importorskip("rclpy", reason="`make test-ros2` has rclpy", exc_type=ImportError)
@@ -139,6 +141,37 @@ def test_who_stands_beside_a_robot_sees_the_teams_map_and_can_pause_recall_and_s
             beside.say("stop")
             beside.until(lambda: not team.runs(0), "the agent does not stop")
             assert team.processes[0].poll() == 0
+    finally:
+        beside.close()
+
+
+@pytest.mark.slow
+def test_an_agent_that_is_killed_and_started_again_drives_again_and_the_check_finds_all_it_needs(
+    tmp_path: Path,
+) -> None:
+    beside = Beside()
+    try:
+        with living(plan(small_maze(), 1, speed=2.0), tmp_path) as team:
+            beside.until(lambda: beside.speed > 0.1, "it does not drive")
+            team.signal(0, signal.SIGKILL)
+            beside.until(lambda: not team.runs(0), "the agent lives")
+            beside.until(lambda: beside.stays(lambda: beside.speed == 0.0), "its last goal has no end")
+            around = {**os.environ, **environment(DOMAIN)}
+            command = [sys.executable, "-m", "vedette", "ros2", "check"]
+            checked = subprocess.run(
+                [*command, str(tmp_path / "private" / "robot-1.yaml")],
+                capture_output=True,
+                text=True,
+                timeout=TRIED,
+                check=False,
+                env=around,
+            )
+            assert checked.returncode == 0, checked.stdout
+            assert "/robot1/navigate_to_pose is there" in checked.stdout
+            beside.known = 0
+            team.restart(0)
+            beside.until(lambda: beside.speed > 0.1, "it does not drive again")
+            beside.until(lambda: beside.known > 500, "it shows no map")
     finally:
         beside.close()
 
