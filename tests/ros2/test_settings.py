@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+from tests.support.small_missions import TWO_ROOMS, drawn
 from vedette.cli import commands
 from vedette.errors import InputError
 from vedette.net.config import load_config
@@ -61,3 +62,13 @@ def test_without_rclpy_one_line_says_how_to_get_it(tmp_path: Path, command: list
     ended = CliRunner().invoke(commands, [*command, str(written(tmp_path, "{ros2: {}}"))])
     assert isinstance(ended.exception, InputError)
     assert "no rclpy; start it where ROS 2 is set up" in str(ended.exception)
+
+
+@pytest.mark.skipif(importlib.util.find_spec("rclpy") is not None, reason="this Python has rclpy")
+def test_without_rclpy_no_team_is_shown_and_one_line_says_what_it_needs(tmp_path: Path) -> None:
+    drawn(TWO_ROOMS).save(tmp_path)
+    options = ["--ros2", "--robots", "1", "--out", str(tmp_path / "out")]
+    ended = CliRunner().invoke(commands, ["team", "explore", str(tmp_path / "map.yaml"), *options])
+    assert isinstance(ended.exception, InputError)
+    assert "they need rclpy, nav2_msgs, tf2_msgs and the extra ros2-robots" in str(ended.exception)
+    assert "\n" not in str(ended.exception)

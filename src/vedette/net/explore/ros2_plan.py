@@ -110,7 +110,10 @@ def _await(process: subprocess.Popen[bytes], log: Path) -> None:
     while READY not in log.read_text(encoding="utf-8", errors="replace"):
         if process.poll() is not None or time.monotonic() > until:
             lines = log.read_text(encoding="utf-8", errors="replace").strip().splitlines()
-            raise InputError(f"the simulated ROS 2 robots do not start: {lines[-1] if lines else log}")
+            raise InputError(
+                f"the simulated ROS 2 robots do not start: {lines[-1] if lines else log}; they need rclpy, "
+                "nav2_msgs, tf2_msgs and the extra ros2-robots"
+            )
         time.sleep(0.1)
 
 
