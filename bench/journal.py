@@ -3,16 +3,35 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Hashable
 from dataclasses import asdict
 from pathlib import Path
+from typing import Protocol, TypeVar
 
-from bench.cases import Key, Result
 from vedette.errors import InputError
 from vedette.record.files import write_text
 
 
-def read(path: Path) -> dict[Key, Result]:
+class Ended(Protocol):
+    """What a table needs to know of a mission, whatever else it holds; a frozen dataclass."""
+
+    @property
+    def key(self) -> Hashable:
+        """What tells the mission from all others."""
+
+    @property
+    def outcome(self) -> str:
+        """How it ended."""
+
+    @property
+    def time_s(self) -> float:
+        """When, simulated [s]."""
+
+
+EndedT = TypeVar("EndedT", bound=Ended)
+
+
+def read(path: Path, kind: type[EndedT]) -> dict[Hashable, EndedT]:
     """Return the missions done so far; none if there is no file.
 
     Raises:
@@ -20,32 +39,32 @@ def read(path: Path) -> dict[Key, Result]:
     """
     if not path.exists():
         return {}
-    done: dict[Key, Result] = {}
+    done: dict[Hashable, EndedT] = {}
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"cannot read {path}: {error}; move it away") from error
     for number, line in enumerate(lines, start=1):
         try:
-            result = Result(**json.loads(line))
+            result = kind(**json.loads(line))
         except (ValueError, TypeError) as error:
             raise InputError(f"{path}, line {number}: not a result; delete the line or the file") from error
         done[result.key] = result
     return done
 
 
-def append(path: Path, result: Result) -> None:
+def append(path: Path, result: Ended) -> None:
     """Add a mission."""
     with path.open("a", encoding="utf-8") as file:
         file.write(_line(result))
 
 
-def forget(path: Path, keys: Collection[Key]) -> None:
+def forget(path: Path, keys: Collection[Hashable], kind: type[Ended]) -> None:
     """Take missions out of the file, to run them anew."""
     if path.exists():
-        kept: Mapping[Key, Result] = read(path)
+        kept = read(path, kind)
         write_text(path, "".join(_line(result) for key, result in kept.items() if key not in keys))
 
 
-def _line(result: Result) -> str:
-    return json.dumps(asdict(result), allow_nan=False) + "\n"
+def _line(result: Ended) -> str:
+    return json.dumps(asdict(result), allow_nan=False) + "\n"  # type: ignore[call-overload]

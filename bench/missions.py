@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from pathlib import Path
+from typing import Protocol, TypeVar
 
 import click
 from joblib import Parallel, delayed
 
 from bench import RESULTS, command, journal, machine
-from bench.cases import Case, Result, map_cases, office_cases, run_case
+from bench.cases import Result, map_cases, office_cases, run_case
 from bench.criteria import verdicts
 from bench.missions_table import JUDGED, judge, missions_table
 from vedette.domains.mapping.planners import planner
@@ -18,7 +19,16 @@ from vedette.errors import InputError
 from vedette.outcome import Outcome
 from vedette.record.files import write_text
 
-Run = Callable[[Case, str], Result]  # case, commit
+CaseT = TypeVar("CaseT", bound="Todo")
+EndedT = TypeVar("EndedT", bound=journal.Ended)
+
+
+class Todo(Protocol):
+    """A mission to run; as a word, it is named in a line of progress."""
+
+    @property
+    def key(self) -> Hashable:
+        """What tells it from all others, whatever the commit."""
 
 
 @click.command()
@@ -60,9 +70,9 @@ def missions(
     folder = command.results_folder(out)
     path = folder / "missions.jsonl"
     if fresh:
-        journal.forget(path, {case.key for case in cases})
-    broken = conduct(cases, path, jobs, click.echo)
-    done = journal.read(path)
+        journal.forget(path, {case.key for case in cases}, Result)
+    broken = conduct(cases, path, jobs, click.echo, run_case, Result)
+    done = journal.read(path, Result)
     results = [done[case.key] for case in cases if case.key in done]
     if results:
         text = report(results)
@@ -82,19 +92,23 @@ def planner_name(name: str) -> str:
 
 
 def conduct(
-    cases: Sequence[Case],
+    cases: Sequence[CaseT],
     path: Path,
     jobs: int,
     echo: Callable[[str], None],
-    run: Run = run_case,
+    run: Callable[[CaseT, str], EndedT],
+    kind: type[EndedT],
 ) -> int:
-    """Run the missions that ``path`` does not hold yet and add them to it; return how many broke."""
-    done = journal.read(path)
+    """Run the missions that ``path`` does not hold yet and add them to it; return how many broke.
+
+    ``run``: of a case and the commit.
+    """
+    done = journal.read(path, kind)
     left = [case for case in cases if case.key not in done]
     echo(f"{len(cases) - len(left)} of {len(cases)} missions done before; {len(left)} to run")
     began, broken = time.perf_counter(), 0
     for count, (case, end) in enumerate(_ends(left, jobs, run), start=1):
-        if isinstance(end, Result):
+        if isinstance(end, kind):
             journal.append(path, end)
             told = f"{end.outcome} after {end.time_s:.0f} s"
         else:
@@ -105,14 +119,18 @@ def conduct(
     return broken
 
 
-def _ends(cases: Sequence[Case], jobs: int, run: Run) -> Iterator[tuple[Case, Result | Exception]]:
+def _ends(
+    cases: Sequence[CaseT], jobs: int, run: Callable[[CaseT, str], EndedT]
+) -> Iterator[tuple[CaseT, EndedT | Exception]]:
     """Yield the missions as they end, in any order."""
     commit = machine.commit()
     parallel = Parallel(n_jobs=jobs, return_as="generator_unordered")
     yield from parallel(delayed(_guarded)(run, case, commit) for case in cases)
 
 
-def _guarded(run: Run, case: Case, commit: str) -> tuple[Case, Result | Exception]:
+def _guarded(
+    run: Callable[[CaseT, str], EndedT], case: CaseT, commit: str
+) -> tuple[CaseT, EndedT | Exception]:
     """Run one mission; one that breaks must not take the others with it."""
     try:
         result = run(case, commit)

@@ -15,6 +15,7 @@ from msgspec import inspect
 
 from bench.cases import Result
 from bench.criteria import BenchReport
+from bench.crowds import CrowdResult
 from bench.scale.report import ScaleReport
 from bench.stonesoup.__main__ import StoneSoupReport
 from vedette.net.status import TeamStatus
@@ -37,6 +38,7 @@ KINDS: Mapping[str, type] = {
     "bench-scale": ScaleReport,
     "bench-stonesoup": StoneSoupReport,
     "bench-mission": Result,
+    "bench-crowd": CrowdResult,
 }
 
 

@@ -235,17 +235,17 @@ def test_missions_done_before_are_not_run_again(tmp_path: Path) -> None:
         ran[0] += 1
         return fake(case, commit)
 
-    assert conduct(office_cases((0, 1), (3,), ("tours",)), path, 1, said.append, counted) == 0
-    assert conduct(office_cases((0, 1, 2), (3,), ("tours",)), path, 1, said.append, counted) == 0
+    assert conduct(office_cases((0, 1), (3,), ("tours",)), path, 1, said.append, counted, Result) == 0
+    assert conduct(office_cases((0, 1, 2), (3,), ("tours",)), path, 1, said.append, counted, Result) == 0
     assert ran[0] == 3
-    assert [key[3] for key in journal.read(path)] == [0, 1, 2]
+    assert [done.seed for done in journal.read(path, Result).values()] == [0, 1, 2]
     assert "2 of 3 missions done before; 1 to run" in said
 
 
 def test_a_mission_that_breaks_is_told_and_counted_and_the_others_go_on(tmp_path: Path) -> None:
     path, said = tmp_path / "missions.jsonl", [""]
-    assert conduct(office_cases((12, 13, 14), (3,), ("tours",)), path, 1, said.append, fake) == 1
-    assert [key[3] for key in journal.read(path)] == [12, 14]
+    assert conduct(office_cases((12, 13, 14), (3,), ("tours",)), path, 1, said.append, fake, Result) == 1
+    assert [done.seed for done in journal.read(path, Result).values()] == [12, 14]
     assert any("office 13, 3 robots, tours: broke: RuntimeError('unlucky')" in line for line in said)
 
 
@@ -253,9 +253,14 @@ def test_an_interrupted_mission_is_no_result(tmp_path: Path) -> None:
     path = tmp_path / "missions.jsonl"
     with pytest.raises(KeyboardInterrupt):
         conduct(
-            [Case(3, "tours")], path, 1, lambda _: None, lambda *_: replace(RESULT, outcome="interrupted")
+            [Case(3, "tours")],
+            path,
+            1,
+            lambda _: None,
+            lambda *_: replace(RESULT, outcome="interrupted"),
+            Result,
         )
-    assert journal.read(path) == {}
+    assert journal.read(path, Result) == {}
 
 
 def test_the_journal_gives_back_what_was_put_in_and_forgets_what_it_is_told_to(tmp_path: Path) -> None:
@@ -264,9 +269,9 @@ def test_the_journal_gives_back_what_was_put_in_and_forgets_what_it_is_told_to(t
     journal.append(path, RESULT)
     journal.append(path, other)
     assert [valid("bench-mission", line)["world"] for line in path.read_text().splitlines()]
-    assert journal.read(path) == {RESULT.key: RESULT, other.key: other}
-    journal.forget(path, {RESULT.key})
-    assert journal.read(path) == {other.key: other}
+    assert journal.read(path, Result) == {RESULT.key: RESULT, other.key: other}
+    journal.forget(path, {RESULT.key}, Result)
+    assert journal.read(path, Result) == {other.key: other}
 
 
 @pytest.mark.parametrize("line", ["{", "[]", '{"world": "office"}', json.dumps(asdict(RESULT))[:-9]])
@@ -276,7 +281,7 @@ def test_a_broken_line_in_the_journal_is_named(line: str, tmp_path: Path) -> Non
     with path.open("a") as file:
         file.write(line)
     with pytest.raises(InputError, match="line 2: not a result; delete the line"):
-        journal.read(path)
+        journal.read(path, Result)
 
 
 def test_the_table_has_a_row_a_group_and_planner_with_least_most_sum_and_mean() -> None:
