@@ -85,5 +85,6 @@ class ReplicatedEvidence(TeamMap):
         words = np.zeros((len(tiles), CELLS), np.int32)
         for copy in self._contributors.copies.values():
             held = np.flatnonzero(copy.values.holds(tiles))
-            words[held] += WORDS[copy.values.read(tiles[held])]
+            if len(held):
+                words[held] += WORDS.take(copy.values.read(tiles[held]))
         return self.show(tiles, classes_of(words))

@@ -31,7 +31,9 @@ class SharedTiles(Generic[CellT]):
 
     def holds(self, tiles: NDArray[np.int64]) -> NDArray[np.bool_]:
         """Tell of which of these tiles there are cells, ``(T,)``."""
-        return np.array([tile in self._tiles for tile in tiles.tolist()], np.bool_)
+        if self._tiles.keys().isdisjoint(numbers := tiles.tolist()):
+            return np.zeros(len(numbers), np.bool_)
+        return np.array([tile in self._tiles for tile in numbers], np.bool_)
 
     def read(self, tiles: NDArray[np.int64]) -> NDArray[CellT]:
         """Return a copy of these tiles' cells, ``(T, 1024)``."""
