@@ -55,6 +55,8 @@ def choose_starts(
             or cut off from the first; or the robots do not all fit.
     """
     everything, world = world, world.within(area)
+    if world.solid.all():
+        raise InputError(f"area: nothing of {world.name} that is free lies in it; its corners are in m")
     starts = np.zeros((len(specs), 3))
     given = [i for i, spec in enumerate(specs) if spec.start is not None]
     for i in given:

@@ -183,6 +183,12 @@ def test_a_start_beside_the_area_is_refused_in_one_line() -> None:
         prepare(hall, specs, ExploreSetup(area=HALF_THE_OFFICE))
 
 
+def test_an_area_elsewhere_is_refused_in_one_line() -> None:
+    far = tuple((x + 100.0, y) for x, y in HALF_THE_OFFICE)
+    with pytest.raises(InputError, match="area: nothing of office that is free lies in it"):
+        prepare(small_office(seed=1), robots(2), ExploreSetup(area=far))
+
+
 def memory_and_tiles(team: list[Exploring], places: NDArray[np.float64], seed: int) -> tuple[int, int]:
     """Let robots see some places in turn and tell each other; return bytes in use, and tiles seen by all."""
     angles = np.radians(np.arange(360.0))
