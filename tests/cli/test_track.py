@@ -118,7 +118,7 @@ def test_where_the_optimum_cannot_be_had_it_is_left_out_and_asking_for_it_is_ref
         (["--scheme", "tokens"], ["scheme", "token"]),
         (["--fusion", "sum"], ["fusion", "sums"]),
         (["--objective", "trajectroy"], ["objective", "trajectory"]),
-        (["--kill", "5@10"], ["no robot 5", "1 to 4"]),
+        (["--kill", "5@10"], ["no robot 5", "in a team of 4"]),
         (["--kill", "2"], ["robot@seconds"]),
         (["--max-time", "0"], ["--max-time"]),
         (["--max-time", "nan"], ["--max-time"]),
