@@ -55,6 +55,15 @@ def test_what_a_glance_from_afar_does_not_show_is_looked_at_from_close_by() -> N
     assert report.summary.collisions == 0
 
 
+@pytest.mark.parametrize("resolution", [0.03, 0.05])
+def test_what_a_visit_opens_beside_itself_is_gone_to_before_anything_is_concluded(resolution: float) -> None:
+    world = two_rooms(0.45, resolution, bent=True)
+    _, report = run(world, [PlatformSpec(start=(1.0, 1.0), beams=16)], seed=1)
+    assert report.summary.completed
+    assert report.summary.coverage >= 0.99
+    assert report.summary.collisions == 0
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("n", [1, 3])
 @pytest.mark.parametrize("resolution", [0.02, 0.03, 0.05, 0.07, 0.1])

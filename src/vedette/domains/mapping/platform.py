@@ -15,6 +15,7 @@ from vedette.domains.mapping.sightings import SightingModel, beam_model, measure
 from vedette.domains.mapping.stops import (
     CLEARANCES,
     LEFT_ALONE,
+    LEFT_ALONE_AT_LAST,
     Disc,
     Ground,
     Stops,
@@ -202,7 +203,7 @@ class MappingPlatform:
             for lot in by_way(found.only(~np.isin(found.clusters, tried)), ground):
                 stops = find_stops(belief, ground, self.spec, model, least, lot, tours=self.ahead > 1)
                 self.considered = np.concatenate((self.considered, stops.targets))
-                self.stops = self._without_left_alone(stops)
+                self.stops = self._without_left_alone(stops, LEFT_ALONE_AT_LAST if last else LEFT_ALONE)
                 if self.leads_anywhere:
                     self.cut_short = found.cut_short
                     return True
@@ -259,13 +260,13 @@ class MappingPlatform:
         k = int(np.searchsorted(belief.frontier_starts, int(np.argmin(away)), side="right")) - 1
         return bool(np.diff(belief.frontier_starts)[k] * cell <= 2.0 * self.spec.radius + 1e-9)
 
-    def _without_left_alone(self, stops: Stops) -> Stops:
-        """Make the stops at given-up or avoided places unreachable, which keeps the arrays aligned."""
+    def _without_left_alone(self, stops: Stops, within: float) -> Stops:
+        """Make the stops near given-up or avoided places unreachable, which keeps the arrays aligned."""
         self.avoided = [spot for spot in self.avoided if spot[2] > self.now]
         first_leg, legs = stops.first_leg.copy(), stops.legs.copy()
         places = [(spot.x, spot.y) for spot in (*self.given_up, *self.told)]
         for x, y in places + [spot[:2] for spot in self.avoided]:
-            near = np.hypot(stops.targets[:, 0] - x, stops.targets[:, 1] - y) < LEFT_ALONE
+            near = np.hypot(stops.targets[:, 0] - x, stops.targets[:, 1] - y) < within
             first_leg[near] = np.inf
             legs[:, near] = np.inf
         return replace(stops, first_leg=first_leg, legs=legs)
