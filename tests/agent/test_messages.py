@@ -194,15 +194,15 @@ def test_a_beacon_tells_where_a_mate_is_how_large_and_where_it_goes() -> None:
     ]
 
 
-def test_an_older_beacon_is_no_news_and_is_not_passed_on() -> None:
-    team, _, _ = toy_team(Tree.chain(3))
+def test_an_older_beacon_that_a_mate_passes_on_is_no_news_and_goes_no_farther() -> None:
+    team, _, _ = toy_team(Tree.chain(4))
     newer = msgspec.structs.replace(BEACON, robot=0, sequence=1000, x=7)
     older = msgspec.structs.replace(BEACON, robot=0, sequence=999, x=9)
     for beacon in (newer, older, newer):
-        team.tell(1, Message(0, messages.encode(beacon)))
-    passed_on = [post.message for post in team.log if post.sender == 1 and post.to == 2]
+        team.tell(2, Message(1, messages.encode(beacon)))
+    passed_on = [post.message for post in team.log if post.sender == 2 and post.to == 3]
     assert passed_on == [newer]
-    assert team.agents[1].mates.all()[0].x == 0.07
+    assert team.agents[2].mates.all()[0].x == 0.07
 
 
 def test_a_robot_maps_only_when_its_mates_have_been_heard_or_after_a_while() -> None:
@@ -235,8 +235,8 @@ def test_team_mates_beyond_the_largest_team_are_dropped_and_counted_and_those_kn
     agent = team.agents[0]
     for robot in range(1, MOST_MATES + 11):
         team.tell(0, Message(1, messages.encode(msgspec.structs.replace(BEACON, robot=robot))))
-    assert agent.dropped == 10
-    assert [mate.robot for mate in agent.mates.all()] == list(range(1, MOST_MATES + 1))
+    assert agent.dropped == 11  # a team has robots 0 to 1023
+    assert [mate.robot for mate in agent.mates.all()] == list(range(1, MOST_MATES))
     team.tell(0, Message(1, messages.encode(msgspec.structs.replace(BEACON, sequence=2, x=1500))))
-    assert agent.dropped == 10
+    assert agent.dropped == 11
     assert agent.mates.all()[0].x == 15.0

@@ -32,7 +32,7 @@ def test_the_command_writes_where_it_is_told_and_ends_with_130_when_interrupted(
 
     assert status() == 130
     said = capsys.readouterr()
-    assert "1 claims tried: 1 hold in part" in said.out
+    assert "1 claim tried: 1 hold in part" in said.out
     assert "missing: C9" in said.out
     assert "[ 1/2]" in said.err
     monkeypatch.setattr(module, "CONTENTS", {"Some": some_section})

@@ -181,7 +181,7 @@ def test_grey_that_savers_write_for_unknown_is_told_where_it_is_free(
 
 def test_a_plain_image_with_such_grey_is_told_too(tmp_path: Path) -> None:
     Image.fromarray(np.array([[0, 206, 254], [205, 206, 254]], np.uint8)).save(tmp_path / "m.png")
-    told = r"m\.png: .* grey 205 \(1 pixels\) and grey 206 \(2 pixels\) too, .* 'free_thresh: 0\.192'"
+    told = r"m\.png: .* grey 205 \(1 pixel\) and grey 206 \(2 pixels\) too, .* 'free_thresh: 0\.192'"
     with pytest.warns(InputWarning, match=told):
         assert read_map(tmp_path / "m.png", 0.1)[1].tolist() == [[F, F, F], [X, F, F]]
 
