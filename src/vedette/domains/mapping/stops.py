@@ -24,9 +24,7 @@ NEARBY = 0.6  # along either axis from a frontier's middle, a cell is near it [m
 LEAST_OF_SIGHT = 0.05  # of the area that one scan can see at most: enough for any stop
 GAP = 2.0  # a gap that the body does not fit through must promise so many times as much
 LEFT_ALONE = 0.5  # what holds for a place holds for frontiers this near it [m] ...
-LEFT_ALONE_AT_LAST = (
-    0.25  # ... or this near, for a robot with nothing else left: a visit opens others [m]
-)
+LEFT_ALONE_AT_LAST = 0.25  # ... or this near, for a robot with nothing else left: a visit opens others [m]
 VIEW_REACH = 0.8  # how far from a frontier to look for a place to see it from [sensor ranges]
 CLOSE_VIEW = 1.0  # the same where the farther place leads nowhere [m]
 CLEARANCES = (0.05, 0.01)  # kept to all that is not known free [m]; the second where the first leads nowhere
