@@ -53,6 +53,11 @@ class Slow(NetworkedAgent):
 class Dead(NetworkedAgent):
     """Says and does nothing: what the others are compared with."""
 
+    @property
+    def wake(self) -> float:
+        """Never."""
+        return NEVER
+
     def hear(self, sender: int, datagram: bytes, now: float) -> list[Output]:
         """Nothing."""
         return []
