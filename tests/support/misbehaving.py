@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
@@ -89,7 +90,7 @@ class Truncating(NetworkedAgent):
         return super()._say(send, now)
 
 
-class Hailing(NetworkedAgent):
+class Hailing(NetworkedAgent, ABC):
     """Changes its hellos."""
 
     def _datagram(self, to: int, payload: bytes, carried: int = 0) -> Datagram:
@@ -99,8 +100,9 @@ class Hailing(NetworkedAgent):
             payload = HELLO + msgspec.msgpack.encode(hello)
         return super()._datagram(to, payload, carried)
 
+    @abstractmethod
     def _change(self, hello: list[Any]) -> None:
-        raise NotImplementedError
+        """Change a hello in place."""
 
 
 class Echoing(Hailing):

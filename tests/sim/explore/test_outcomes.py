@@ -80,17 +80,25 @@ def test_what_lies_behind_a_dead_mate_in_the_only_way_is_unreached() -> None:
         (0.4, 0.3, 0.05),
         (0.5, 0.5, 0.02),
         (0.6, 0.5, 0.02),
-        (0.25, 0.1, 0.1),
         (0.35, 0.2, 0.1),
     ],
 )
-def test_a_lidar_that_sees_hardly_farther_than_its_robot_leaves_places_unreached_and_says_so(
+def test_a_lidar_that_sees_hardly_farther_than_its_robot_completes_nothing(
     reach: float, radius: float, resolution: float
 ) -> None:
     world = room_with_a_wall(resolution)
     _, report = run(world, robots(1, range=reach, radius=radius), seed=1, max_time=1800.0)
-    assert report.summary.coverage < 0.99
+    assert report.summary.coverage < 0.2
     assert report.summary.outcome in (Outcome.ENCLOSED, Outcome.UNREACHED)
+
+
+def test_a_robot_that_sees_two_cells_beyond_its_rim_explores_a_room_and_says_what_it_did_not_reach() -> None:
+    spec = robots(1, range=0.25, radius=0.1)
+    _, report = run(room_with_a_wall(0.1), spec, seed=1, max_time=1800.0)
+    summary = report.summary
+    assert 0.95 < summary.coverage < 0.99
+    assert summary.outcome is Outcome.UNREACHED
+    assert "unreached" in {spot.why for spot in summary.left_out}
 
 
 @pytest.mark.parametrize("bent", [False, True])
