@@ -12,13 +12,12 @@ from typing import Literal
 import click
 import numpy as np
 
-from bench import RESULTS, command, journal
+from bench import RESULTS, command
 from bench.idleness import Idleness
-from bench.missions import conduct
+from bench.missions import tabulate
 from bench.table import figure, markdown
 from vedette.errors import InputError
 from vedette.outcome import Outcome
-from vedette.record.files import write_text
 from vedette.record.summary import SCHEMA_VERSION
 from vedette.sim.explore.run import ExploreRun, prepare, views
 from vedette.sim.explore.simulation import ExploreSetup
@@ -141,18 +140,7 @@ def crowds(
         for seed in seeds or SEEDS[world]
         for team in robots
     ]
-    folder = command.results_folder(out)
-    path = folder / "crowds.jsonl"
-    if fresh:
-        journal.forget(path, {case.key for case in cases}, CrowdResult)
-    broken = conduct(cases, path, jobs, click.echo, run_crowd, CrowdResult)
-    done = journal.read(path, CrowdResult)
-    results = [done[case.key] for case in cases if case.key in done]
-    if results:
-        text = crowds_table(results)
-        write_text(folder / "crowds.md", text)
-        click.echo(f"\n{text}\nwritten: {folder / 'crowds.md'}")
-    raise SystemExit(1 if broken else 0)
+    tabulate(cases, out, "crowds", jobs, fresh, run_crowd, CrowdResult, crowds_table)
 
 
 def known_world(name: str) -> str:

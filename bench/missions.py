@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Hashable, Iterator, Sequence
 from pathlib import Path
-from typing import Protocol, TypeVar
+from typing import NoReturn, Protocol, TypeVar
 
 import click
 from joblib import Parallel, delayed
@@ -67,17 +67,31 @@ def missions(
     cases += [] if only_offices or maps is None else map_cases(maps, names)
     if not cases:
         raise InputError("nothing to run; --only-maps needs --maps DIR, and goes not with --only-offices")
+    tabulate(cases, out, "missions", jobs, fresh, run_case, Result, report)
+
+
+def tabulate(
+    cases: Sequence[CaseT],
+    out: Path,
+    stem: str,
+    jobs: int,
+    fresh: bool,
+    run: Callable[[CaseT, str], EndedT],
+    kind: type[EndedT],
+    table: Callable[[Sequence[EndedT]], str],
+) -> NoReturn:
+    """Run missions that ``STEM.jsonl`` does not hold, or all if ``fresh``; write ``STEM.md``; leave."""
     folder = command.results_folder(out)
-    path = folder / "missions.jsonl"
+    path, written = folder / f"{stem}.jsonl", folder / f"{stem}.md"
     if fresh:
-        journal.forget(path, {case.key for case in cases}, Result)
-    broken = conduct(cases, path, jobs, click.echo, run_case, Result)
-    done = journal.read(path, Result)
+        journal.forget(path, {case.key for case in cases}, kind)
+    broken = conduct(cases, path, jobs, click.echo, run, kind)
+    done = journal.read(path, kind)
     results = [done[case.key] for case in cases if case.key in done]
     if results:
-        text = report(results)
-        write_text(folder / "missions.md", text)
-        click.echo("\n" + text + f"\nwritten: {folder / 'missions.md'}")
+        text = table(results)
+        write_text(written, text)
+        click.echo(f"\n{text}\nwritten: {written}")
     raise SystemExit(1 if broken else 0)
 
 
