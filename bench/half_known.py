@@ -10,7 +10,7 @@ from vedette.kernels.lidar import cast_rays, integrate_scan
 from vedette.kernels.tiles import TiledGrid, Tiling
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.maps.world import World, standable
-from vedette.missions.explore.exploring import CLAMP, GAIN_HIT, GAIN_MISS, NUDGE
+from vedette.missions.explore.evidence import CLAMP, GAIN_HIT, GAIN_MISS, NUDGE
 from vedette.sim.components import largest
 from vedette.team import PlatformSpec
 

@@ -19,7 +19,7 @@ from vedette.kernels.frontier import find_frontiers
 from vedette.kernels.lidar import cast_rays, integrate_scan
 from vedette.kernels.tiles import TiledGrid, Tiling
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
-from vedette.missions.explore.exploring import CLAMP, GAIN_HIT, GAIN_MISS, NUDGE
+from vedette.missions.explore.evidence import CLAMP, GAIN_HIT, GAIN_MISS, NUDGE
 from vedette.problem import Reach
 from vedette.team import PlatformSpec
 

@@ -12,7 +12,7 @@ from vedette.kernels.lidar import cast_rays, count_sightings, integrate_scan
 from vedette.kernels.tiles import TiledGrid, Tiling
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.maps.world import World
-from vedette.missions.explore.exploring import CLAMP, GAIN_HIT, GAIN_MISS, NUDGE
+from vedette.missions.explore.evidence import CLAMP, GAIN_HIT, GAIN_MISS, NUDGE
 from vedette.team import PlatformSpec
 
 EVERY_BEAM = 1

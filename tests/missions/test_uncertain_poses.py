@@ -321,7 +321,7 @@ def test_a_certain_pose_gives_the_sharp_map() -> None:
     reach = mission.spec.range
     beams = (BEAMS, np.minimum(scan.ranges, reach), scan.ranges < reach)
     on_dense(lidar.integrate_scan, sharp, RESOLUTION, x, y, *beams, 4, 2, 20, 0.25 * RESOLUTION)
-    np.testing.assert_array_equal(mission.log_odds.window(), sharp)
+    np.testing.assert_array_equal(mission.own.log_odds.window(), sharp)
     assert explored([]).max() == UNKNOWN
 
 

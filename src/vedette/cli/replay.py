@@ -139,7 +139,7 @@ def _simulated(spec: PlatformSpec) -> NDArray[np.int64]:
     specs = [replace(spec, name=f"robot-{number}") for number in (1, 2, 3)]
     simulation = prepare(world, specs, ExploreSetup(max_time=_MISSION))
     explore(simulation)
-    return sum((mission.counts for mission in simulation.missions), empty_counts())
+    return sum((mission.own.counts for mission in simulation.missions), empty_counts())
 
 
 def _draw(done: list[Replayed], simulated: NDArray[np.int64], folder: OutputFolder) -> None:

@@ -75,7 +75,7 @@ def broken(error: BaseException) -> RunResult:
 def _figures(summary: ExploreSummary, simulation: ExploreSimulation) -> dict[str, Value]:
     """Return what is told of a mission; ``docs/how-to/study.md`` explains the names."""
     resolution = simulation.world.frame.resolution
-    seen = [np.count_nonzero(mission.log_odds.blocks) * resolution**2 for mission in simulation.missions]
+    seen = [np.count_nonzero(mission.own.log_odds.blocks) * resolution**2 for mission in simulation.missions]
     paths = list(summary.path_m.values())
 
     def told(*names: str) -> dict[str, Value]:

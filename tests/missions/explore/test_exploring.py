@@ -22,7 +22,8 @@ from vedette.kernels.frontier import traversable
 from vedette.kernels.tiles import TiledGrid
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.maps.lattice import Lattice
-from vedette.missions.explore.exploring import AVOID_TIME, CHANCES, TRIES, Exploring
+from vedette.missions.explore.exploring import Exploring
+from vedette.missions.explore.failures import AVOID_TIME, CHANCES, TRIES
 from vedette.team import PlatformSpec
 
 THERE = Pose(3.04, 7.08, 0.0)
@@ -75,13 +76,13 @@ def test_what_noisy_scans_show_is_right_up_to_one_cell_from_the_true_walls() -> 
 def test_sightings_are_counted_only_of_what_was_unknown() -> None:
     mission = explorer()
     look(mission, HERE, times=1)
-    first = mission.counts.copy()
+    first = mission.own.counts.copy()
     tried, seen = first[[0, 2]], first[[1, 3]]
     assert np.all(seen <= tried)
     assert np.all(seen[:, 0] == tried[:, 0])  # everything near was seen
     assert not tried[0, int(SPEC.range / 0.25) :].any()
     look(mission, HERE, times=1, seed=1)
-    assert (mission.counts[1] - first[1]).sum() < 0.2 * first[1].sum()
+    assert (mission.own.counts[1] - first[1]).sum() < 0.2 * first[1].sum()
 
 
 def test_two_robots_that_exchange_hold_the_same_map_and_freeze_the_same_belief() -> None:
@@ -91,13 +92,13 @@ def test_two_robots_that_exchange_hold_the_same_map_and_freeze_the_same_belief()
     assert one.fusion.digest != other.fusion.digest
     exchange(one, other)
     assert one.fusion.digest == other.fusion.digest
-    np.testing.assert_array_equal(one.fusion.counts, (one.counts + other.counts).ravel())
+    np.testing.assert_array_equal(one.fusion.counts, (one.own.counts + other.own.counts).ravel())
     a, b = one.freeze(0.0), other.freeze(0.0)
     for name in ("classes", "frontier_cells", "frontier_starts", "counts"):
         np.testing.assert_array_equal(getattr(a, name), getattr(b, name))
     np.testing.assert_array_equal(a.weights.window, b.weights.window)
     known = np.count_nonzero(one.fusion.classes.window() != UNKNOWN)
-    assert known > np.count_nonzero(one.log_odds.window()) > 0
+    assert known > np.count_nonzero(one.own.log_odds.window()) > 0
 
 
 def prepared(mission: Exploring, now: float = 0.0, mates: Sequence[Mate] = ()) -> None:
@@ -141,8 +142,8 @@ def test_a_goal_is_served_when_a_mate_has_seen_most_of_what_it_was_to_reveal() -
     x, y = mission.strategy.targets[0].tolist()
     row, col = FRAME.cell(x, y)
     near = np.arange(FRAME.size).reshape(FRAME.shape)[row - 6 : row + 7, col - 6 : col + 7].ravel()
-    mission.log_odds.put(near, np.full(len(near), -4, np.int8))
-    mission.fusion.publish(mission.log_odds, None, None)
+    mission.own.log_odds.put(near, np.full(len(near), -4, np.int8))
+    mission.fusion.publish(mission.own.log_odds, None, None)
     assert mission.served()
 
 

@@ -198,7 +198,7 @@ def memory_and_tiles(team: list[Exploring], places: NDArray[np.float64], seed: i
         mission.publish(time)
     for one, other in ((0, 1), (1, 2), (0, 1)):
         exchange(team[one], team[other])
-    return tracemalloc.get_traced_memory()[0], sum(len(mission.log_odds.held) for mission in team)
+    return tracemalloc.get_traced_memory()[0], sum(len(mission.own.log_odds.held) for mission in team)
 
 
 def test_three_robots_that_see_400_by_400_metres_piece_by_piece_use_memory_as_they_see_more() -> None:

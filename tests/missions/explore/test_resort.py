@@ -62,12 +62,12 @@ def test_where_a_robot_stands_is_free_to_it_and_to_its_mates_and_what_it_sees_st
     look(seen, HERE)
     exchange(mission, mate)
     under = cells_under(FRAME, HERE.x, HERE.y, NARROW.radius)
-    assert (seen.log_odds.take(under) == 0).any()
+    assert (seen.own.log_odds.take(under) == 0).any()
     assert (mate.fusion.classes.take(under) == FREE).all()
     elsewhere = np.setdiff1d(np.arange(FRAME.size), under)
-    np.testing.assert_array_equal(mission.log_odds.take(elsewhere), seen.log_odds.take(elsewhere))
-    known = np.flatnonzero(seen.log_odds.window())
-    np.testing.assert_array_equal(mission.log_odds.take(known), seen.log_odds.take(known))
+    np.testing.assert_array_equal(mission.own.log_odds.take(elsewhere), seen.own.log_odds.take(elsewhere))
+    known = np.flatnonzero(seen.own.log_odds.window())
+    np.testing.assert_array_equal(mission.own.log_odds.take(known), seen.own.log_odds.take(known))
 
 
 def test_a_robot_that_is_told_its_place_inexactly_claims_what_is_under_it_anyway() -> None:
@@ -75,8 +75,8 @@ def test_a_robot_that_is_told_its_place_inexactly_claims_what_is_under_it_anyway
     look(mission, Pose(HERE.x, HERE.y, HERE.heading, deviation=0.06))
     under = cells_under(FRAME, HERE.x, HERE.y, NARROW.radius)
     sure = cells_under(FRAME, HERE.x, HERE.y, NARROW.radius - 0.12)
-    assert (mission.log_odds.take(sure) < 0).all()
-    assert (mission.log_odds.take(under) == 0).any()
+    assert (mission.own.log_odds.take(sure) < 0).all()
+    assert (mission.own.log_odds.take(under) == 0).any()
 
 
 def turn_round(mission: Exploring, pose: Pose) -> list[Pose]:
@@ -110,8 +110,8 @@ def test_a_robot_that_has_seen_little_finds_a_way_by_turning_on_the_spot() -> No
 def knowing(classes: NDArray[np.uint8]) -> Exploring:
     """The mission of a robot that knows this much of the room."""
     mission = explorer(0, NARROW)
-    mission.log_odds.put(np.arange(FRAME.size), np.array([0, -20, 20], np.int8)[classes].ravel())
-    mission.fusion.publish(mission.log_odds, None, None)
+    mission.own.log_odds.put(np.arange(FRAME.size), np.array([0, -20, 20], np.int8)[classes].ravel())
+    mission.fusion.publish(mission.own.log_odds, None, None)
     return mission
 
 

@@ -220,7 +220,7 @@ def test_a_simulated_team_is_seen_as_it_is() -> None:
     team = views(simulation)
     for i, robot in enumerate(team):
         assert (robot.sample.x, robot.sample.y, robot.sample.heading) == simulation.pose(i)
-        own = simulation.missions[i].log_odds.window()
+        own = simulation.missions[i].own.log_odds.window()
         np.testing.assert_array_equal(robot.seen_on(simulation.world.frame), own != 0)
         assert (robot.classes[robot.seen] != UNKNOWN).all()
         assert not np.shares_memory(robot.classes, simulation.missions[i].fusion.classes.blocks)

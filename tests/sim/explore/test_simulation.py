@@ -82,7 +82,7 @@ def test_what_a_dead_robot_has_told_still_counts() -> None:
     report = explore(simulation)
     assert report.summary.coverage > 0.0
     before = simulation.missions[0].fusion.classes.window() != UNKNOWN
-    own = simulation.missions[0].log_odds.window() != 0
+    own = simulation.missions[0].own.log_odds.window() != 0
     assert (before & ~own).any()  # some of the survivor's map is the dead robot's
     covered = Reference(simulation.world, simulation.specs, simulation.starts).coverable
     assert report.summary.coverage == pytest.approx(float((before | own)[covered].mean()), abs=1e-6)

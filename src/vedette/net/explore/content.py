@@ -69,7 +69,7 @@ class ExploreTeller:
     def known(self) -> Known:
         """How much of the team's ground it knows."""
         mission, lattice, extent = self._mission, self._mission.lattice, self._mission.known
-        classes, _ = held(mission.fusion.classes, mission.log_odds, extent)
+        classes, _ = held(mission.fusion.classes, mission.own.log_odds, extent)
         if lattice.area is not None:
             classes *= lattice.area.holds(lattice.frame.window(*extent))
         cells = np.count_nonzero(classes)
@@ -87,7 +87,7 @@ class ExploreTeller:
         impact = None if decided is None else mission.codec.encode(decided)
         spots = tuple(Spot(each.x, each.y, each.unknown, each.why) for each in mission.left_out)
         rows, cols = mission.known
-        grids = held(mission.fusion.classes, mission.log_odds, (rows, cols))
+        grids = held(mission.fusion.classes, mission.own.log_odds, (rows, cols))
         return content((rows.start, cols.start), *grids, impact, spots[-1024:])
 
 

@@ -80,7 +80,7 @@ def _view(simulation: ExploreSimulation, i: int) -> RobotView:
     return RobotView(
         sample,
         mission.frame.window(*mission.known),
-        *held(mission.fusion.classes, mission.log_odds, mission.known),
+        *held(mission.fusion.classes, mission.own.log_odds, mission.known),
         simulation.network.agents[i].rounds.impact,
         GroundFigures(
             **vars(figures(simulation, i, float(bodies.travelled[i]))),

@@ -131,7 +131,7 @@ class Replay:
     def _replayed(self, times: Sequence[float], known: Sequence[float]) -> Replayed:
         missions = self.missions
         maps = [mission.fusion.classes.window() for mission in missions]
-        counts = sum((mission.counts for mission in missions), np.zeros((4, BINS), np.int64))
+        counts = sum((mission.own.counts for mission in missions), np.zeros((4, BINS), np.int64))
         return Replayed(
             name=self.log.name,
             frame=self.frame,

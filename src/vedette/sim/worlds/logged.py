@@ -13,7 +13,7 @@ from vedette.kernels.tiles import TiledGrid, Tiling
 from vedette.logs import RecordedLog, RecordedScan
 from vedette.maps import GridFrame
 from vedette.maps.world import World
-from vedette.missions.explore.exploring import CLAMP, GAIN_HIT, GAIN_MISS, NUDGE
+from vedette.missions.explore.evidence import CLAMP, GAIN_HIT, GAIN_MISS, NUDGE
 from vedette.sim.components import components, largest
 from vedette.sim.worlds.size import RESOLUTIONS, check_cells, check_length
 
