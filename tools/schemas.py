@@ -16,6 +16,7 @@ from msgspec import inspect
 from bench.cases import Result
 from bench.criteria import BenchReport
 from bench.crowds import CrowdResult
+from bench.large.cases import LargeResult
 from bench.scale.report import ScaleReport
 from bench.stonesoup.__main__ import StoneSoupReport
 from vedette.net.status import TeamStatus
@@ -39,6 +40,7 @@ KINDS: Mapping[str, type] = {
     "bench-stonesoup": StoneSoupReport,
     "bench-mission": Result,
     "bench-crowd": CrowdResult,
+    "bench-large": LargeResult,
 }
 
 

@@ -1,0 +1,1 @@
+"""Large worlds, fine cells and large teams, before and after a change."""
