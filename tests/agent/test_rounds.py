@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -13,6 +15,7 @@ from vedette import Tree, negotiate
 from vedette.agent import Pace, messages
 from vedette.agent.effects import TrafficKind
 from vedette.agent.events import Message, Stuck
+from vedette.agent.rounds import patience
 from vedette.negotiation import Chooser
 from vedette.problem import Coverage
 
@@ -51,6 +54,14 @@ def test_all_freeze_a_round_with_the_same_time_by_the_roots_clock() -> None:
     [t0] = {t0 for agent in team.agents for t0 in toy(agent).frozen_at}
     [sent] = {post.time for post in team.log if nested_kind(post) == "Freeze" and post.sender == 0}
     assert t0 == pytest.approx(sent, abs=5e-4)
+
+
+@pytest.mark.parametrize("size", [1, 2, 7, 64])
+def test_the_lower_a_robot_the_sooner_it_cuts_a_child_off_and_nobody_at_once(size: int) -> None:
+    waits = [patience(size, depth) for depth in range(size + 2)]
+    assert all(above >= below + 0.25 for above, below in pairwise(waits[:size]))
+    assert min(waits) == pytest.approx(1.3)
+    assert waits[0] == patience(size) == pytest.approx(1.0 + 0.3 * size)
 
 
 @pytest.mark.parametrize("kind", ["Begin", "Flushed", "Freeze", "Gather", "Token", "Stop"])

@@ -375,6 +375,23 @@ def test_the_larger_of_two_tracks_comes_out_unchanged() -> None:
         assert (merged.vector == large.vector).all()
 
 
+@pytest.mark.parametrize(("gain", "passed_on"), [(1e-1, True), (1e-5, True), (1e-7, False), (0.0, False)])
+def test_what_is_merged_is_passed_on_from_a_millionth_of_a_nat_on(gain: float, passed_on: bool) -> None:
+    of = static(targets=1)
+    net = team("intersection", of, 3, chain(3))
+    net.meet()
+    net.run(20)
+    assert all(net.robots[i].outgoing(k, 1e3) is None for i, k in ((0, 1), (1, 0), (1, 2), (2, 1)))
+    before = net.robots[2].estimate()[1].matrix.copy()
+    more = np.exp(gain) - 1.0  # of both axes' information: log det grows by twice the gain
+    prior = of.prior.matrix[0, 0, 0]
+    net.robots[0].observe(0, Information(more * prior * np.eye(2)[None], np.zeros((1, 2))))
+    net.run(20)
+    after = net.robots[2].estimate()[1].matrix
+    grown = float((np.linalg.slogdet(after)[1] - np.linalg.slogdet(before)[1])[0])
+    assert grown == pytest.approx(2.0 * gain if passed_on else 0.0, rel=1e-6, abs=1e-12)
+
+
 # -- bad input -------------------------------------------------------------------------------------------
 
 

@@ -83,7 +83,7 @@ def test_information_of_any_strength_keeps_its_digits(strength: float) -> None:
     own = (np.zeros(1, np.int64), strength * np.array([[[1.0, 0.0, 1.0]]]))
     [value] = chain_values(motion, "trajectory", nobody, np.array([0, 1]), own)
     exact = 0.5 * (np.log1p(4.0 * strength) + np.log1p(9.0 * strength))
-    assert value == pytest.approx(exact, rel=1e-14)
+    assert value == pytest.approx(exact, rel=1e-14, abs=0.0)
 
 
 def test_blocks_that_do_not_fit_the_tracks_are_refused() -> None:

@@ -304,6 +304,68 @@ def test_a_cut_takes_an_unknown_ceiling_off_without_a_bound_that_is_not_a_number
     assert (nodes[0].finished.value, nodes[0].finished.bound) == (-5.0, None)
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_after_a_cut_the_ceiling_is_what_those_left_could_have_alone(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    weights, candidates = rng.uniform(0.2, 1.0, CELLS), misses(rng, 4, 3, CELLS)
+    tree = Tree.chain(4)
+    parents = tree.parents()
+    team = [Chooser(Coverage(), weights, own) for own in candidates]
+    nodes = [TokenNode(tree.neighbours(i), parents[i], team[i], max_sweeps=1) for i in range(4)]
+    run = Round(tree, nodes, team, candidates, rng)
+    while not (run.log and isinstance(run.log[-1][1], Token) and run.log[-1][0] == 2):
+        run.happen()
+    run.dead.add(3)  # who has been sent the token, and is told of by two
+    outcome = run.finish()
+    alone = [max(float(np.sum(weights * (1.0 - own))) for own in candidates[i]) for i in range(3)]
+    assert outcome.bound is not None
+    assert outcome.bound <= sum(alone) + 1e-9
+
+
+class Diary(Chooser[Float, Float]):
+    """A chooser that writes down what it did in each iterate."""
+
+    def __init__(self, weights: Float, candidates: list[Float], start: int) -> None:
+        super().__init__(Coverage(), weights, candidates, start=start)
+        self.pages: list[int | None] = [start]
+
+    def reply(self, others: Float) -> bool:
+        """Choose, and write it down."""
+        changed = super().reply(others)
+        self.pages.append(self.index)
+        return changed
+
+
+@pytest.mark.parametrize("cut", range(1, 4))
+def test_after_a_cut_only_what_those_left_did_since_proves_a_cycle(cut: int) -> None:
+    ends: set[str] = set()
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        weights, candidates = rng.uniform(0.2, 1.0, 3), misses(rng, 3, 3, 3)
+        team = [Diary(weights, own, start=int(rng.integers(3))) for own in candidates]
+        tree = Tree.star(3)
+        nodes = [JacobiNode(tree.neighbours(i), tree.parents()[i], team[i]) for i in range(3)]
+        run = Round(tree, nodes, team, candidates, rng)
+        while len(nodes[0].values) < cut and run.happen():
+            pass
+        if nodes[0].finished:
+            continue
+        run.dead.add(2)
+        outcome = run.finish()
+        done = list(zip(team[0].pages, team[1].pages, strict=True))
+        since = done[cut if (0, 2) in run.cut else 0 :]
+        recurs = since.index(since[-1])
+        assert len(set(since[:-1])) == len(since) - 1, "an earlier iterate had ended it"
+        if recurs < len(since) - 1:
+            length = len(since) - 1 - recurs
+            assert outcome.cycle == (0 if length == 1 else length)
+            ends.add("cycle" if outcome.cycle else "fixed point")
+        else:
+            assert outcome.value == pytest.approx(outcome.bound, rel=1e-6), "nothing recurred"
+            ends.add("ceiling")
+    assert "fixed point" in ends
+
+
 def test_a_token_that_miscounts_the_team_is_refused() -> None:
     node = TokenNode([1, 2], None, Chooser(Coverage(), np.ones(2), [np.ones(2)]))
     node.start()

@@ -150,13 +150,13 @@ def test_messages_out_of_turn_are_refused() -> None:
     def node() -> JacobiNode[Float]:
         return JacobiNode([1, 2], 1, Chooser(Coverage(), WORTH, [A, B]))
 
-    stop = Stop(RoundOutcome(0.0, None, 1, True), iterate=4)
+    stop = Stop(RoundOutcome(0.0, None, 1, True), iterate=1)  # there is only iterate 0
     cases: list[tuple[int, Message[Float], str]] = [
         (7, Down(A), "7, who is not a neighbour"),
         (1, Up(A, 0.0, 0.0, ()), "Up from 1 is out of turn"),
         (2, Down(A), "Down from 2 is out of turn"),
         (1, Down(None), "never sent"),
-        (1, stop, "Stop at iterate 4, never reached"),
+        (1, stop, "Stop at iterate 1, never reached"),
     ]
     for sender, message, words in cases:
         fresh = node()

@@ -161,6 +161,15 @@ def test_an_impact_is_sent_again_only_if_something_in_it_has_changed() -> None:
     assert plain < again.bytes < plain + 64 * again.messages
 
 
+@pytest.mark.parametrize("tree", TREES)
+def test_who_alone_can_gain_is_asked_wherever_the_token_finds_it(tree: Tree) -> None:
+    for able in range(tree.n):
+        candidates = [[np.ones(2)] for _ in range(tree.n)]
+        candidates[able].append(np.zeros(2))
+        result = negotiate(Coverage(), np.ones(2), candidates, tree, start=[0] * tree.n)
+        assert (result.choice[able], result.value) == (1, 2.0)
+
+
 def test_one_platform_needs_no_message() -> None:
     result = negotiate(Coverage(), np.ones(2), [[np.ones(2), np.zeros(2)]], Tree.chain(1))
     assert (result.choice, result.value, result.bound, result.messages) == ((1,), 2.0, 2.0, 0)

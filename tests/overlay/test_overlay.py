@@ -212,6 +212,22 @@ def test_in_a_crowd_no_robot_gets_all_the_others_for_children() -> None:
     assert max(degrees) <= 12
 
 
+def test_who_has_found_a_parent_tells_it_first_however_many_neighbours_it_has() -> None:
+    child, parent = Overlay(0, 1, 0.0), Overlay(39, 1, 0.0)
+    child.peers(range(40), 0.0)
+    parent.peers([0], 0.0)
+    for now in np.arange(0.0, 3.0, 0.01).tolist():
+        for _, hello in parent.tick(now):
+            child.hear(39, hello, now)
+        hellos = dict(child.tick(now))
+        if child.place.parent == 39:
+            assert wire.decode(0, hellos[39]).flags & wire.PARENT
+            return
+        if 39 in hellos:
+            parent.hear(0, hellos[39], now)
+    pytest.fail("no parent found")
+
+
 def test_steady_hellos_take_less_than_200_bytes_a_second_and_link() -> None:
     edges = random_graph(8, np.random.default_rng(4), 1.0)
     net = whole(8, edges, skew=1e6)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -119,6 +121,24 @@ def test_a_joined_reach_holds_every_box_in_few(reaches: list[list[Box]]) -> None
     assert len(joined) <= MOST_BOXES
     for box in (box for boxes in reaches for box in boxes):
         assert any(j[0] <= box[0] and j[1] <= box[1] and box[2] <= j[2] and box[3] <= j[3] for j in joined)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_of_five_boxes_those_two_are_joined_that_waste_least(seed: int) -> None:
+    corners = np.sort(np.random.default_rng(seed).uniform(-50, 50, (5, 2, 2)), axis=1)
+    boxes: list[Box] = [(*low, *high) for low, high in corners.tolist()]
+
+    def around(one: Box, other: Box) -> Box:
+        return (*map(min, one[:2], other[:2]), *map(max, one[2:], other[2:]))  # type: ignore[return-value]
+
+    def area(reach: Reach) -> float:
+        return sum((box[2] - box[0]) * (box[3] - box[1]) for box in reach)
+
+    joined = [
+        (around(one, other), *(box for box in boxes if box not in (one, other)))
+        for one, other in combinations(boxes, 2)
+    ]
+    assert area(join(tuple(boxes))) == pytest.approx(min(map(area, joined)), rel=1e-12)
 
 
 def test_a_neighbour_is_told_of_everybody_but_those_beyond_it() -> None:
