@@ -17,8 +17,9 @@ from tests.support.faulty_world import FRAME, LEAST_GAIN, Life, SiteMission, Sit
 from tests.support.overlay_network import Edge, random_graph
 from tests.support.site_team import PACE, SiteTeam
 from vedette.agent import Agent, NetworkedAgent, State
+from vedette.agent.patience import patience
 from vedette.agent.round import Round
-from vedette.agent.rounds import CALL_AGAIN, patience
+from vedette.agent.rounds import CALL_AGAIN
 from vedette.negotiation import TokenNode
 from vedette.outcome import Outcome
 from vedette.sim.datagrams import Datagrams

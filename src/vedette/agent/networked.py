@@ -72,7 +72,7 @@ class NetworkedAgent:
             time_of_day: what the host's clock shows when the transport's shows ``now`` [s].
         """
         self.agent = agent
-        agent.rounds.tempo = tempo
+        agent.rounds.patience.tempo = tempo
         agent.rounds.admitted = agent.mates.admitted = admitted
         self.overlay = Overlay(agent.robot, agent.boot, now, lease, fingerprint_of(terms or {}))
         self._acquaintance = Acquaintance(terms or {}, time_of_day)

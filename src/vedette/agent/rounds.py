@@ -18,24 +18,15 @@ from vedette.agent.events import Pose, TreeChanged
 from vedette.agent.mates import Mate
 from vedette.agent.messages import Begin, Call, Flushed, Freeze, Negotiate
 from vedette.agent.mission import Mission
+from vedette.agent.opinion import Opinion
 from vedette.agent.pace import Pace
+from vedette.agent.patience import Patience
 from vedette.agent.round import Round, say, send_news
 from vedette.number import many
 
-IDLE = 1.0  # a robot that did not look after its rounds for longer did not want any [s of the transport]
 CALL_AGAIN = 1.0  # a call not answered is repeated after so long [s]
 SETTLING = 0.2  # a new tree is left alone for so long before a round [s]
-DOUBTS, ROUNDING = 3, 1e-9  # rounds in a row that are told to be worth more, and by what share at least
 CLOCKS_APART = 20.0  # that the root's may be from this robot's, where rounds keep to beats [s]
-
-
-def patience(size: int, depth: int = 0) -> float:
-    """Return how long a robot, ``depth`` links below the root of so many, waits for a child's answer [s].
-
-    At least, and by the transport's clock: members think in real time, however fast the mission is. The
-    lower a robot, the sooner it cuts a child off: before its own parent loses patience with it.
-    """
-    return 1.0 + 0.3 * max(size - depth, 1)
 
 
 @dataclass(frozen=True)
@@ -56,7 +47,7 @@ class Rounds:
     scheme: str  # "token" or "jacobi"
     decided: Callable[[Decision], None]
     pace: Pace = field(default_factory=Pace)
-    tempo: float = 1.0  # of the mission, in seconds a second of the transport's clock
+    patience: Patience = field(init=False)
     admitted: int = 1 << 16  # robots that there can be in the team
     tree: TreeChanged = field(default_factory=lambda: TreeChanged(0, None, (), 1))
     decisions: int = 0
@@ -74,12 +65,11 @@ class Rounds:
     _ended: float = -1e9
     _attendance: Attendance = field(default_factory=Attendance)
     _upwards: Upwards = field(default_factory=Upwards)
-    _prepares: float = -1e9  # since when [s]
-    _preparation: float = 0.0  # what its own last one took [s]
-    _together: float = -1e9  # when it last decided as others did, or wanted nothing [s]
-    _ticked: float = -1e9
-    _doubted: int = 0  # rounds in a row that were told to be worth more than is seen here
+    _opinion: Opinion = field(default_factory=Opinion)
     _solos: int = 0  # rounds that this robot began for itself alone
+
+    def __post_init__(self) -> None:
+        self.patience = Patience(self.pace)
 
     @property
     def busy(self) -> bool:
@@ -94,7 +84,7 @@ class Rounds:
     @property
     def absent(self) -> frozenset[int]:
         """Children that rounds go on without for a while, since they kept being cut."""
-        return self._attendance.absent(self._ticked)
+        return self._attendance.absent(self.patience.ticked)
 
     # -- when rounds begin and end --------------------------------------------------------------------
 
@@ -127,9 +117,7 @@ class Rounds:
 
     def tick(self, now: float) -> list[Effect]:
         """Do what is due: go on without who does not answer, call or begin a round that is wanted."""
-        if now > self._ticked + self.tempo * IDLE:
-            self._together = now
-        self._ticked = now
+        self.patience.tick(now)
         effects = self._hurry(now)
         if self.round or now < self._ended + self.pace.interval:
             return effects
@@ -138,16 +126,17 @@ class Rounds:
     def _hurry(self, now: float) -> list[Effect]:
         """Cut children that do not answer in time from the round; give it up if it is the parent."""
         round_ = self.round
-        if round_ is None or now <= round_.heard + self._patience(round_.depth):
+        if round_ is None or now <= round_.heard + self.patience.waits(self._size, round_.depth):
             return []
         effects: list[Effect] = []
         for silent in sorted(round_.awaited - {round_.tree.parent}):
             if self.round is not round_:  # cutting the one before has ended it
                 break
             self.cuts += 1
-            self._attendance.missed(silent, now, self.tempo)
+            self._attendance.missed(silent, now, self.patience.tempo)
             effects += self._after(round_.cut(silent, now), now)
-        most = self._base() if self._is_lonely(now) else 1.5 * self._patience()
+        lonely, size = self._is_lonely(now), self._size
+        most = self.patience.least(size) if lonely else 1.5 * self.patience.waits(size)
         if effects or now <= round_.heard + most:
             return effects
         return self._give_up(round_, now)
@@ -160,17 +149,14 @@ class Rounds:
         self._wanted = True
         return self._fail()
 
-    def _patience(self, depth: int = 0) -> float:
-        """Return how long this robot waits for others [s]: longer where its own preparation takes long."""
-        return self._base(depth) + self._preparation
-
-    def _base(self, depth: int = 0) -> float:
-        """Return how long a robot would wait whose own preparation takes no time [s]."""
-        return self.tempo * patience(min(self.tree.size, self.admitted), depth)
+    @property
+    def _size(self) -> int:
+        """Robots on the tree, as far as there can be so many."""
+        return min(self.tree.size, self.admitted)
 
     def _is_lonely(self, now: float) -> bool:
         """Tell whether this robot has decided with nobody for so long that it had better plan alone."""
-        return now > self._together + self.pace.overdue + 3.0 * self._base() + self._preparation
+        return self.patience.is_over(self._size, now)
 
     def _fail(self) -> list[Effect]:
         """Note that the parent let a round come to nothing."""
@@ -222,10 +208,10 @@ class Rounds:
         lonely = not round_.tree.neighbours and self.tree.parent is not None
         took_part = not lonely and round_.replied
         if took_part:
-            self._together = now
+            self.patience.together(now)
             self._attendance.attended(round_.children)
         self._end(now)
-        value = self._value(outcome.value, round_.value_seen)
+        value = self._opinion.of(outcome.value, round_.value_seen)
         self.decided(Decision(now, value, round_.approximate or not took_part, round_.blocked))
         if lonely:
             return effects
@@ -233,17 +219,6 @@ class Rounds:
         if not took_part:
             return [*effects, *self._fail()]
         return [*effects, *(self._shun() if self._upwards.ends(self.tree, round_.approximate) else [])]
-
-    def _value(self, told: float, seen: float | None) -> float:
-        """Return what the team's choice is worth: the more, of what is told of it and what is seen here.
-
-        A round may stop before its last change has come round; one robot's view that is below what is told
-        round after round is right all the same.
-        """
-        if seen is None:
-            return told
-        self._doubted = self._doubted + 1 if told > seen + ROUNDING * max(abs(seen), 1.0) else 0
-        return seen if self._doubted >= DOUBTS else max(told, seen)
 
     def _end(self, now: float) -> None:
         self.round = None
@@ -303,13 +278,12 @@ class Rounds:
     def preparation(self, pose: Pose, mates: list[Mate], now: float) -> Job:
         """Return the job to do on a belief just frozen; ``pose``: where the strategy will start."""
         assert self.round
-        self._prepares = now
+        self.patience.prepares(now)
         return self.round.prepare(pose, mates, self.blocked, now)
 
     def prepared(self, key: tuple[int, int], now: float) -> list[Effect]:
         """Start negotiating."""
-        self._preparation = now - self._prepares
-        self._ticked = now  # while it prepared, it could not
+        self.patience.prepared(now)
         round_ = self._of(*key)
         return [] if round_ is None else self._after(round_.start(now), now)
 
