@@ -130,4 +130,6 @@ def test_an_exact_sum_that_is_too_long_points_to_samples() -> None:
     model = FiniteModel(np.full(10, 0.1), [[sensor]] * 8)
     with pytest.raises(InputError, match="use sampled_value"):
         model.value([0] * 8)
-    assert model.sampled_value([0] * 8, np.random.default_rng(0), 100).estimate == pytest.approx(0.0, abs=1e-9)
+    assert model.sampled_value([0] * 8, np.random.default_rng(0), 100).estimate == pytest.approx(
+        0.0, abs=1e-9
+    )

@@ -12,7 +12,7 @@ from vedette.errors import InputError
 
 
 @dataclass(frozen=True)
-class Interval:
+class Between:
     """An estimate, and an interval that holds what is estimated with a stated probability."""
 
     estimate: float
@@ -25,7 +25,7 @@ class Interval:
         return self.high - self.low
 
 
-def bernstein(samples: NDArray[np.float64], span: float, miss: float) -> Interval:
+def bernstein(samples: NDArray[np.float64], span: float, miss: float) -> Between:
     """``mean +- [sqrt(2 v l / n) + 7 span l / (3 (n - 1))]``, ``l = ln(4 / miss)``: holds but for ``miss``.
 
     For independent samples of any distribution on an interval of length ``span``, with v their variance.
@@ -41,4 +41,4 @@ def bernstein(samples: NDArray[np.float64], span: float, miss: float) -> Interva
         raise InputError(f"miss must be a probability between 0 and 1; got {miss}")
     mean, variance, level = float(samples.mean()), float(samples.var(ddof=1)), math.log(4.0 / miss)
     half = math.sqrt(2.0 * variance * level / n) + 7.0 * span * level / (3.0 * (n - 1))
-    return Interval(mean, mean - half, mean + half)
+    return Between(mean, mean - half, mean + half)

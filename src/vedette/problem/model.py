@@ -16,7 +16,7 @@ from vedette.number import many
 from vedette.problem.arrays import misfit
 from vedette.problem.door import check_choice, check_list
 from vedette.problem.exhaustive import Exhaustive
-from vedette.problem.interval import Interval, bernstein
+from vedette.problem.interval import Between, bernstein
 
 Float = NDArray[np.float64]
 
@@ -69,14 +69,14 @@ class FiniteModel:
         Raises:
             InputError: not one index a platform, or what cannot be seen.
         """
-        actions, seen = check_choice(choice, self.sensors, "choice"), tuple(seen)
+        actions = check_choice(choice, self.sensors, "choice")
         likelihoods = [own[u] for own, u in zip(self.sensors, actions, strict=True)]
-        observations = check_choice(seen, likelihoods, "seen")
+        observations = check_choice(seen, [range(len(own)) for own in likelihoods], "seen")
         joint = self.predicted.copy()
         for likelihood, z in zip(likelihoods, observations, strict=True):
             joint *= likelihood[z]
         if not (chance := joint.sum()) > 0.0:
-            raise InputError(f"seen {seen} has probability 0 after choice {actions}")
+            raise InputError(f"seen {observations} has probability 0 after choice {actions}")
         return np.asarray(joint / chance)
 
     def value(self, choice: Sequence[int]) -> float:
@@ -104,7 +104,7 @@ class FiniteModel:
 
     def sampled_value(
         self, choice: Sequence[int], rng: np.random.Generator, samples: int = 10_000, miss: float = 0.05
-    ) -> Interval:
+    ) -> Between:
         """Return ``value`` from drawn states and observations, in an interval that holds it but for ``miss``.
 
         The interval is that of an empirical Bernstein bound: it holds for any model and any number of
@@ -125,7 +125,7 @@ class FiniteModel:
 
     def sampled_optimum(
         self, rng: np.random.Generator, samples: int = 10_000, miss: float = 0.05
-    ) -> tuple[tuple[int, ...], Interval]:
+    ) -> tuple[tuple[int, ...], Between]:
         """Return the joint action that looks best, and an interval that holds the optimum but for ``miss``.
 
         All joint actions' intervals hold at once but for ``miss``, so the largest of their ends do.
@@ -137,7 +137,7 @@ class FiniteModel:
         found = [self.sampled_value(choice, rng, samples, miss / len(choices)) for choice in choices]
         best = max(range(len(found)), key=lambda k: found[k].estimate)
         ends = max(each.low for each in found), max(each.high for each in found)
-        return choices[best], Interval(found[best].estimate, *ends)
+        return choices[best], Between(found[best].estimate, *ends)
 
     @cached_property
     def _entropy(self) -> float:
