@@ -15,7 +15,7 @@ from vedette import Tree, negotiate
 from vedette.agent import Pace, messages
 from vedette.agent.effects import TrafficKind
 from vedette.agent.events import Message, Stuck
-from vedette.agent.rounds import patience
+from vedette.agent.patience import patience
 from vedette.negotiation import Chooser
 from vedette.problem import Coverage
 
