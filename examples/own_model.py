@@ -6,8 +6,7 @@ robots' sensors. Then they agree by messages, on a partially separable objective
 
 import numpy as np
 
-from vedette import Coverage, Tree, negotiate
-from vedette.problem.model import FiniteModel
+from vedette import Coverage, FiniteModel, Tree, negotiate
 
 ROOMS = 6  # in a row; state 6: there is no leak
 prior = np.array([0.1, 0.1, 0.2, 0.2, 0.15, 0.05, 0.2])

@@ -12,15 +12,18 @@ if TYPE_CHECKING:
     from vedette.problem import (
         Clippable,
         Codec,
+        Controls,
         CountedCoverage,
         Coverage,
         Exhaustive,
+        FiniteModel,
         Invertible,
         LogDet,
         Objective,
         Platform,
         bound,
         counted,
+        diagonally_dominant,
         exhaustive,
     )
 
@@ -29,9 +32,11 @@ if TYPE_CHECKING:
 __all__ = [
     "Clippable",
     "Codec",
+    "Controls",
     "CountedCoverage",
     "Coverage",
     "Exhaustive",
+    "FiniteModel",
     "InputError",
     "Invertible",
     "LogDet",
@@ -42,6 +47,7 @@ __all__ = [
     "__version__",
     "bound",
     "counted",
+    "diagonally_dominant",
     "exhaustive",
     "negotiate",
 ]

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from typing import Generic
 
 import numpy as np
 
+from vedette.negotiation.valued import Valued
 from vedette.problem.bound import attains, slack_of
-from vedette.problem.checked import value_of, values_of
+from vedette.problem.checked import values_of
 from vedette.problem.objective import BeliefT, ImpactT, Objective
-from vedette.problem.reach import Clippable, Reach
 
 
-class Chooser(Generic[BeliefT, ImpactT]):
+class Chooser(Valued[BeliefT, ImpactT]):
     """``v_i = argmax_k psi(own_k * a_{-i})``, kept unless another is better by more than the share epsilon.
 
     A strategy is an index; without one the impact is nothing, and the first reply takes the best candidate
@@ -40,12 +39,10 @@ class Chooser(Generic[BeliefT, ImpactT]):
             epsilon: a share of the team's present value.
             base: ``psi`` of nothing, if that is not 0; values are gains over it.
         """
+        super().__init__(objective, belief, base)
         self.index = start
-        self._objective = objective
-        self._belief = belief
         self._candidates = candidates
         self._epsilon = epsilon
-        self._base = base
 
     @property
     def strategy(self) -> int | None:
@@ -71,25 +68,6 @@ class Chooser(Generic[BeliefT, ImpactT]):
         self.index = best
         return True
 
-    def nothing(self) -> ImpactT:
-        """Identity of ``*``."""
-        return self._objective.nothing(self._belief)
-
-    def combine(self, a: ImpactT, b: ImpactT) -> ImpactT:
-        """``a * b``."""
-        return self._objective.combine(a, b)
-
-    def value(self, team: ImpactT) -> float:
-        """``psi(team)``."""
-        return value_of(self._objective, self._belief, team) - self._base
-
     def slack(self, base: ImpactT) -> float:
         """Most that any candidate would add to ``base``; infinite unless monotone and submodular."""
         return slack_of(self._objective, self._belief, base, self._candidates)
-
-    def clip(self, impact: ImpactT, reach: Reach) -> ImpactT:
-        """Return what of an impact can matter within ``reach``; all of it if the objective cannot tell."""
-        if not isinstance(self._objective, Clippable):
-            return impact
-        clipped: ImpactT = self._objective.clip(self._belief, impact, reach)
-        return clipped

@@ -11,6 +11,7 @@ from vedette.errors import InputError, brief, check_word
 from vedette.negotiation.schemes import SCHEMES
 from vedette.negotiation.tree import Tree
 from vedette.number import is_number, is_whole, many
+from vedette.problem.controls import Controls
 from vedette.problem.door import check_list
 from vedette.problem.objective import BeliefT, Codec, ImpactT, Invertible, Objective
 from vedette.problem.reach import Box, Clippable, Reach
@@ -34,6 +35,12 @@ def check_round(
         raise InputError(f"max_sweeps must be at least 1; got {max_sweeps}")
     if not isinstance(inverse, bool | np.bool_):
         raise InputError(f"inverse must be True or False; got {brief(inverse)}")
+
+
+def listed_impacts(candidates: Sequence[Sequence[ImpactT] | Controls[ImpactT]]) -> list[Sequence[ImpactT]]:
+    """Return each platform's list, with examples in the place of controls; ``InputError`` for no list."""
+    check_list(candidates, "candidates", "a list of every platform's list of impacts, or its Controls")
+    return [own.examples if isinstance(own, Controls) else own for own in candidates]
 
 
 def remover(

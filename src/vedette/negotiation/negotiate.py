@@ -11,13 +11,15 @@ import msgspec
 
 from vedette.negotiation import messages
 from vedette.negotiation.chooser import Chooser
-from vedette.negotiation.door import check_codec, check_round, checked_reach, remover
+from vedette.negotiation.door import check_codec, check_round, checked_reach, listed_impacts, remover
 from vedette.negotiation.jacobi import JacobiNode
 from vedette.negotiation.node import Negotiator, Outgoing
+from vedette.negotiation.optimiser import Optimiser
 from vedette.negotiation.schemes import node_of
 from vedette.negotiation.token import TokenNode
 from vedette.negotiation.tree import Tree
 from vedette.problem.checked import value_of
+from vedette.problem.controls import Controls, Float
 from vedette.problem.door import check_choice, check_problem
 from vedette.problem.objective import BeliefT, Codec, ImpactT, Objective
 from vedette.problem.reach import Reach, behind, join
@@ -37,7 +39,7 @@ class Step:
 class Negotiation:
     """What a team agreed on, and what that took."""
 
-    choice: tuple[int, ...]  # candidate index of each platform
+    choice: tuple[int, ...]  # candidate index of each platform; -1 where it has controls instead
     value: float  # of the choice over nothing, in the objective's unit
     bound: float | None  # the optimum is no higher; None: the objective declares too little
     sweeps: int  # in which platforms replied
@@ -46,12 +48,13 @@ class Negotiation:
     history: tuple[Step, ...]
     converged: bool  # nobody can gain more than epsilon by changing alone
     cycle: int  # period of the cycle that Jacobi ran into, 0 if none
+    controls: tuple[Float | None, ...]  # each platform's, (d,); None where it has a list
 
 
 def negotiate(
     objective: Objective[BeliefT, ImpactT],
     belief: BeliefT,
-    candidates: Sequence[Sequence[ImpactT]],
+    candidates: Sequence[Sequence[ImpactT] | Controls[ImpactT]],
     tree: Tree,
     scheme: str = "token",
     *,
@@ -69,12 +72,14 @@ def negotiate(
     Args:
         objective: the team's ``*`` and ``psi``.
         belief: what the value depends on; the same for all.
-        candidates: ``candidates[i]`` is the list of platform i's impacts.
+        candidates: ``candidates[i]`` is the list of platform i's impacts, or its ``Controls``: it then
+            replies by optimising, until its control changes by less than its threshold.
         tree: who talks to whom.
         scheme: ``token``, one after the other, never lowers the value; ``jacobi``, all at once (paper,
             Table 1), ends at its best iterate.
-        start: everybody's first candidate index; without it nobody observes until its first reply, so
-            that the first token sweep is the sequential greedy choice.
+        start: everybody's first candidate index, 0 for Controls, which have a start of their own; without
+            it nobody with a list observes until its first reply, so that the first token sweep is the
+            sequential greedy choice.
         epsilon: a platform changes only for more than this share of the present value.
         max_sweeps: the round ends after so many.
         inverse: with ``jacobi`` on a chain, send the team's total down it and let everybody remove its
@@ -89,17 +94,20 @@ def negotiate(
             it is given, has another identity than nothing, or a value that is not a finite number. What an
             objective raises itself passes through.
     """
-    check_problem(objective, belief, candidates)
+    listed = listed_impacts(candidates)
+    check_problem(objective, belief, listed)
     check_round(tree, len(candidates), scheme, epsilon, max_sweeps, inverse)
-    begun = [None] * tree.n if start is None else check_choice(start, candidates, "start")
+    begun = [None] * tree.n if start is None else check_choice(start, listed, "start")
     reach = None if reach is None else checked_reach(objective, tree, scheme, reach)
     remove = remover(objective, tree, scheme) if inverse else None
     if codec is not None:
-        check_codec(objective, belief, codec, candidates[0][0])
-    _try_out(objective, belief, candidates, inverse, reach)
+        check_codec(objective, belief, codec, listed[0][0])
+    _try_out(objective, belief, listed, inverse, reach)
     base = value_of(objective, belief, objective.nothing(belief))
     seats = [
-        Chooser(objective, belief, own, start=first, epsilon=epsilon, base=base)
+        Optimiser(objective, belief, own, base=base)
+        if isinstance(own, Controls)
+        else Chooser(objective, belief, own, start=first, epsilon=epsilon, base=base)
         for own, first in zip(candidates, begun, strict=True)
     ]
     root = next(i for i in range(tree.n) if len(tree.neighbours(i)) <= 1) if inverse else 0  # a chain's end
@@ -123,7 +131,7 @@ def negotiate(
     outcome = nodes[root].finished
     assert outcome is not None  # max_sweeps ends every round
     return Negotiation(
-        choice=tuple(seat.index for seat in seats if seat.index is not None),
+        choice=tuple(_index(seat) for seat in seats),
         value=outcome.value,
         bound=outcome.bound,
         sweeps=outcome.sweeps,
@@ -132,7 +140,16 @@ def negotiate(
         history=(Step(0, None, seats[0].value(before)), *_steps(nodes)),
         converged=outcome.converged,
         cycle=outcome.cycle,
+        controls=tuple(seat.control if isinstance(seat, Optimiser) else None for seat in seats),
     )
+
+
+def _index(seat: Chooser[BeliefT, ImpactT] | Optimiser[BeliefT, ImpactT]) -> int:
+    """Return the candidate that a platform ended with, -1 where it has controls."""
+    if isinstance(seat, Optimiser):
+        return -1
+    assert seat.index is not None  # everybody has replied
+    return seat.index
 
 
 def _try_out(
