@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from enum import StrEnum
+from math import inf
 from typing import Self
 
 NO_PROGRESS = 300.0  # a team without a new route for so long has come to its end [s]
+AGREEING = 20.0  # for which robots that are done may hold different maps [s]
 
 
 class Outcome(StrEnum):
@@ -54,3 +56,22 @@ def together(endings: Iterable[str]) -> Outcome:
     if said == {Outcome.ENCLOSED}:
         return Outcome.ENCLOSED
     return Outcome.UNREACHED if Outcome.UNREACHED in said else Outcome.COMPLETE
+
+
+class Agreement:
+    """Waits, once all who live are done, until they hold one map: they have a while to tell each other."""
+
+    def __init__(self) -> None:
+        """Nobody is done yet."""
+        self._since = inf  # when all first were [s]
+
+    def off(self) -> None:
+        """Note that somebody is not done, or not any more."""
+        self._since = inf
+
+    def reached(self, held: Iterable[int], endings: Iterable[str], now: float) -> Outcome | None:
+        """Return how it ends for those who are done, by the digests of what they hold; None: not yet."""
+        self._since = min(self._since, now)
+        if len(set(held)) <= 1:
+            return together(endings)
+        return Outcome.MAPS_DIFFER if now > self._since + AGREEING else None

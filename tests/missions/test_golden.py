@@ -52,6 +52,7 @@ GOLDEN: dict[str, Any] = {
         "robot-1": {"negotiation": 21574, "fusion": 7135, "beacons": 7403, "overlay": 0},
         "robot-2": {"negotiation": 28308, "fusion": 7309, "beacons": 7528, "overlay": 0},
     },
+    "maps": [["robot-1", "robot-2"]],
     "left_out": [
         {"x": 1.55, "y": 9.65, "unknown_cells": 33, "why": "unseeable", "by": "robot-1"},
         {"x": 0.65, "y": 1.15, "unknown_cells": 76, "why": "unseeable", "by": "robot-1"},

@@ -30,6 +30,7 @@ def _summary(**changes: object) -> ExploreSummary:
         "min_clearance_m": 0.06, "rounds": 12, "sweeps": 30, "bound_ratio": None, "apart_s": 1.5,
         "messages": {"robot-1": Traffic(10, 5, 2, 1), "robot-2": Traffic(9, 5, 2)},
         "bytes": {"robot-1": Traffic(1000, 500, 20), "robot-2": Traffic(900, 500, 20)},
+        "maps": (("robot-1",), ("robot-2",)),
         "left_out": (LeftOut(3.0, -0.25, 12, "unseeable", "robot-1"),),
     }  # fmt: skip
     return ExploreSummary(**(figures | changes))  # type: ignore[arg-type]

@@ -20,6 +20,7 @@ from vedette.missions.explore.assemble import FUSIONS
 from vedette.missions.pairs import SCHEME
 from vedette.negotiation import SCHEMES
 from vedette.number import many
+from vedette.outcome import Outcome
 from vedette.record.explore.live import explore_display
 from vedette.record.explore.mcap import ExploreMcapWriter
 from vedette.record.explore.outputs import write_outputs
@@ -170,6 +171,9 @@ def closing(summary: ExploreSummary, folder: Path) -> list[str]:
         f"{many(summary.collisions, 'collision')}{_told_of_those_who_stayed(stayed)}",
         f"pictures: {folder / 'progress.png'}, {folder / 'curves.png'}; all else beside them",
     ]
+    if summary.outcome is Outcome.MAPS_DIFFER:
+        holders = (", ".join(names) for names in summary.maps)
+        lines.insert(1, f"maps held: one by {'; another by '.join(holders)}")
     if summary.left_out:
         count = Counter(spot.why for spot in summary.left_out)
         said = ", ".join(f"{number} {why}" for why, number in count.items())

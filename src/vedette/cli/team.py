@@ -38,7 +38,6 @@ from vedette.net.search.watch import SearchWatcher
 from vedette.net.team import TeamWatch, Watcher
 from vedette.net.track.watch import TrackWatcher
 from vedette.net.transport import Operator
-from vedette.outcome import Outcome
 from vedette.record.explore.log import ExploreScene
 from vedette.record.folder import OutputFolder
 from vedette.record.search.curves import ideal
@@ -254,9 +253,6 @@ def _remarks(watch: TeamWatch[Any], pace: float, speed: float) -> Iterator[str]:
     """Say what else whoever started the team should know."""
     for robot, said in watch.failures.items():
         yield f"{robot_name(robot)} failed: {said}; see {watch.team.log_of(robot)}"
-    if watch.outcome is Outcome.MAPS_DIFFER:
-        for robot in watch.odd:
-            yield f"{robot_name(robot)} holds another map than most"
     for (robot, other), what in sorted(watch.complaints.items()):
         yield f"{robot_name(robot)} of {robot_name(other)}: {what}"
     if 0 < pace < KEPT_UP * speed:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Generic, Protocol, TypeVar
@@ -74,7 +73,6 @@ class TeamWatch(Generic[ReportT_co]):
     stopped: bool = False
     malformed: int = 0  # reports that did not make sense
     conditions: dict[int, Condition] = field(default_factory=dict)  # the latest, by robot
-    outcome: Outcome | None = None  # None: it goes on
     complaints: dict[tuple[int, int], str] = field(default_factory=dict)  # by who and of whom; the latest
     _heard: dict[int, float] = field(default_factory=dict)  # when each robot last reported [s]
     _first: tuple[float, float] | None = None  # mission time when it was first known, and when [s]
@@ -91,7 +89,8 @@ class TeamWatch(Generic[ReportT_co]):
         """
         inbox, watcher = self.operator.inbox, self.watcher
         self.operator.subscribe(Topic.REPORT, inbox.put)
-        self._began, outcome, next_look = time.monotonic(), None, 0.0
+        self._began, next_look = time.monotonic(), 0.0
+        outcome: Outcome | None = None
         while outcome is None:
             self._hear(inbox, watcher.period / self.plan.speed / 4)
             self.befall(self.team.time)
@@ -99,7 +98,6 @@ class TeamWatch(Generic[ReportT_co]):
             if self._first is not None and self.now >= next_look:
                 watcher.look(self.now, self._fates, self._links())
                 next_look = self.now + watcher.period
-        self.outcome = outcome
         heard = self._heard_lately
         fates = [fate or (None if i in heard else DEAD) for i, fate in enumerate(self._fates)]
         watcher.finish(self.now, fates, self._links())
@@ -163,13 +161,6 @@ class TeamWatch(Generic[ReportT_co]):
         """The robots that run and have reported lately."""
         late = time.monotonic() - SILENT
         return [i for i in range(self.plan.size) if self.team.runs(i) and self._heard.get(i, late) > late]
-
-    @property
-    def odd(self) -> list[int]:
-        """The robots that hold another map than most of those who are heard."""
-        held = {i: self.conditions[i].digest for i in self._heard_lately}
-        most = Counter(held.values()).most_common(1)
-        return [i for i, digest in held.items() if digest != most[0][0]]
 
     @property
     def _fates(self) -> list[str | None]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import heapq
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
@@ -20,7 +20,7 @@ from vedette.agent.effects import Drive, Fly, Job
 from vedette.agent.events import Event, JobDone
 from vedette.maps import GridFrame
 from vedette.maps.world import World
-from vedette.outcome import Outcome, together
+from vedette.outcome import Agreement, Outcome
 from vedette.record.clock import Clock
 from vedette.sim.datagrams import Datagrams
 from vedette.sim.faults import Timeline
@@ -61,6 +61,7 @@ class Simulation:
         self._job_numbers = itertools.count()
         self._kills = sorted(setup.kills, key=lambda kill: kill[1])
         self._stopped = False
+        self._agreement = Agreement()
 
     def _planted(self, spawn: Spawn) -> Network:
         wires = Wires(len(self.field.alive), self.setup.link_delay)
@@ -134,13 +135,21 @@ class Simulation:
             return Outcome.TEAM_LOST
         agents = self.network.agents
         if all(agents[i].done for i in living):
-            return together(agents[i].ending for i in living)
+            ended = self._agreement.reached(self.held(living), [agents[i].ending for i in living], self.now)
+            if ended is not None:
+                return ended
+        else:
+            self._agreement.off()
         if self._stopped:
             return Outcome.INTERRUPTED
         outcome = self.field.over(self.now)
         if outcome is None and self.now >= self.setup.max_time:
             return Outcome.TIME_LIMIT
         return outcome
+
+    def held(self, robots: Sequence[int]) -> list[int]:
+        """Return a digest each of what these have to agree on before their mission ends: of nothing."""
+        return []
 
     def _tick(self) -> None:
         """Let faults happen, then tell every agent what its robot senses."""

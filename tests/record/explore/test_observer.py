@@ -49,13 +49,14 @@ def view(
     seen: NDArray[np.bool_] | None = None,
     impact: Impact | None = None,
     figures: GroundFigures | None = None,
+    digest: int = 0,
 ) -> RobotView:
     """A robot seen at its start."""
     x, y, heading = STARTS[i].tolist()
     sample = RobotSample(x, y, heading, "idle", alive, np.empty((0, 2)), SPECS[i].name, None)
     own = classes != UNKNOWN if seen is None else seen
     frame = GridFrame(WORLD.frame.resolution, *classes.shape)
-    return RobotView(sample, frame, classes, own, impact, figures or GroundFigures())
+    return RobotView(sample, frame, classes, own, impact, figures or GroundFigures(), digest)
 
 
 def columns(*known: int, kind: int = FREE) -> NDArray[np.uint8]:

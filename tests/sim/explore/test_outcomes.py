@@ -10,15 +10,17 @@ from msgspec import structs
 
 from tests.fuzz.decoders import conditions
 from tests.support.small_missions import robots, room_with_a_wall, run, two_rooms
+from vedette import outcome
 from vedette.maps import GridFrame
 from vedette.maps.world import World
 from vedette.missions.explore.options import ExploreOptions
-from vedette.net.explore import watch
 from vedette.net.explore.plan import ExplorePlan
 from vedette.net.explore.watch import ExploreWatcher
 from vedette.outcome import Outcome, together
 from vedette.record.explore.score import Reference
 from vedette.record.summary import Setting
+from vedette.sim.faults import Schedule
+from vedette.sim.faults.kinds import Heal, Partition
 from vedette.team import PlatformSpec
 
 
@@ -147,6 +149,20 @@ def test_a_team_ends_as_its_robots_say_in_the_simulator_and_in_the_watch_alike()
         assert ExploreWatcher(plan, Setting(seed=0)).over(1.0, heard, silent=False) is wanted
 
 
+def test_parts_that_are_cut_off_from_each_other_and_hold_other_maps_are_not_called_complete() -> None:
+    apart = Schedule((Partition(at=3.0, parts=((1, 2), (3,))),))
+    _, report = run(room_with_a_wall(0.1), robots(3), seed=1, faults=apart)
+    summary = report.summary
+    assert summary.outcome is Outcome.MAPS_DIFFER
+    assert not summary.completed
+    assert summary.coverage > 0.99  # though each part has seen all that it can
+    assert set(summary.maps) == {("robot-1", "robot-2"), ("robot-3",)}
+    healed = Schedule((*apart.faults, Heal(at=12.0)))
+    _, report = run(room_with_a_wall(0.1), robots(3), seed=1, faults=healed)
+    assert report.summary.outcome is Outcome.COMPLETE
+    assert report.summary.maps == (("robot-1", "robot-2", "robot-3"),)
+
+
 def test_a_watch_calls_a_mission_complete_only_if_all_who_live_are_heard_and_hold_one_map(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -159,5 +175,5 @@ def test_a_watch_calls_a_mission_complete_only_if_all_who_live_are_heard_and_hol
     assert watcher.over(1.0, [done], silent=True) is Outcome.UNHEARD
     assert watcher.over(2.0, [done, other], silent=False) is None  # they may still tell each other
     assert watcher.over(3.0, [done, done], silent=False) is Outcome.COMPLETE
-    monkeypatch.setattr(watch, "AGREEING", -1.0)
+    monkeypatch.setattr(outcome, "AGREEING", -1.0)
     assert watcher.over(4.0, [done, other], silent=False) is Outcome.MAPS_DIFFER

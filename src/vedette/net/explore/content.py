@@ -141,6 +141,7 @@ def view_of(
             collisions=condition.collisions,
             min_clearance_m=UNTOUCHED if condition.min_clearance is None else condition.min_clearance,
         ),
+        digest=condition.digest,
         left_out=left_out([Leftover(*spot) for spot in told.left_out], name),
     )
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import replace
-from math import inf
 
 import numpy as np
 
@@ -17,14 +16,13 @@ from vedette.net.explore.content import view_of
 from vedette.net.explore.plan import ExplorePlan
 from vedette.net.report import Condition
 from vedette.net.team import Fates, Links, as_it_is
-from vedette.outcome import NO_PROGRESS, Outcome, together
+from vedette.outcome import NO_PROGRESS, Agreement, Outcome
 from vedette.record.explore.log import ExploreSnapshot, RobotSample
 from vedette.record.explore.observer import ExploreObserver, ExploreReport
 from vedette.record.explore.views import GroundFigures, RobotView
 from vedette.record.log import Sink
 from vedette.record.summary import Setting, Timing
 
-AGREEING = 20.0  # for which robots that are done may hold different maps [s]
 MOVED = 0.1  # a team whose way grows by less makes no progress [m]
 
 
@@ -45,7 +43,7 @@ class ExploreWatcher:
             for spec, start in zip(plan.specs, plan.starts.tolist(), strict=True)
         ]
         self._ways: dict[int, float] = {}  # of each robot by now [m]
-        self._done_since = inf  # [s]
+        self._agreement = Agreement()
         self._moved = (0.0, 0.0)  # way of all robots [m], and when it last grew [s]
 
     @property
@@ -70,21 +68,15 @@ class ExploreWatcher:
     def over(self, now: float, heard: Sequence[Condition], silent: bool) -> Outcome | None:
         """Tell whether all are done and agree, or nobody gets on."""
         if heard and all(each.state == State.DONE.value for each in heard):
-            return self._done(heard, silent)
-        self._done_since = inf
+            ended = self._agreement.reached(
+                [each.digest for each in heard], [each.ending for each in heard], time.monotonic()
+            )
+            return Outcome.UNHEARD if silent else ended
+        self._agreement.off()
         way = sum(self._ways.values())
         if way > self._moved[0] + MOVED:
             self._moved = way, now
         return Outcome.NO_PROGRESS if now > self._moved[1] + NO_PROGRESS else None
-
-    def _done(self, heard: Sequence[Condition], silent: bool) -> Outcome | None:
-        """Tell how it ends once all who are heard are done; they have a while to tell each other the last."""
-        self._done_since = min(self._done_since, time.monotonic())
-        if silent:
-            return Outcome.UNHEARD
-        if len({each.digest for each in heard}) == 1:
-            return together(each.ending for each in heard)
-        return Outcome.MAPS_DIFFER if time.monotonic() > self._done_since + AGREEING else None
 
     def report(self, outcome: Outcome, timing: Timing, now: float) -> ExploreReport:
         """Return what ``vedette explore`` would."""
@@ -102,4 +94,4 @@ def _unheard(name: str, start: Sequence[float], frame: GridFrame) -> RobotView:
     sample = RobotSample(x, y, heading, "starting", True, np.empty((0, 2)), name, None)
     nothing, nowhere = np.zeros((0, 0), np.uint8), slice(0, 0)
     part = frame.window(nowhere, nowhere)
-    return RobotView(sample, part, nothing, nothing.astype(np.bool_), None, GroundFigures())
+    return RobotView(sample, part, nothing, nothing.astype(np.bool_), None, GroundFigures(), 0)

@@ -58,8 +58,10 @@ class TrackWatcher:
         self._observer.finish(self._seen(fates))
 
     def over(self, now: float, heard: Sequence[Condition], silent: bool) -> Outcome | None:
-        """Tell whether the scenario's time is up."""
-        return Outcome.COMPLETE if now >= self._duration - 1e-9 else None
+        """Tell whether the scenario's time is up, and whether all who live are there in the end."""
+        if now < self._duration - 1e-9:
+            return None
+        return Outcome.UNHEARD if silent else Outcome.COMPLETE
 
     def report(self, outcome: Outcome, timing: Timing, now: float) -> TrackReport:
         """Return what ``vedette track`` would."""

@@ -23,7 +23,7 @@ from vedette.outcome import Outcome
 from vedette.record.explore.log import ExploreLog, ExploreScene, ExploreSnapshot
 from vedette.record.explore.score import CoverageProgress, Reference, coverage, map_errors, overlap
 from vedette.record.explore.summary import ExploreSummary, LeftOut
-from vedette.record.explore.views import RobotView, union_map
+from vedette.record.explore.views import RobotView, by_map, union_map
 from vedette.record.figures import TeamFigures
 from vedette.record.links import Link, parts
 from vedette.record.log import Sink
@@ -163,6 +163,7 @@ class ExploreObserver:
             collisions=sum(each.collisions for each in team),
             min_clearance_m=min(each.min_clearance_m for each in team),
             apart_s=self.apart_s,
+            maps=by_map(views),
             left_out=self._left_out(),
             **vars(self._setting),
             **vars(TeamFigures.of(self.log.scene.vehicles, team, samples)),

@@ -50,4 +50,5 @@ class ExploreSummary(MissionSummary):
     apart_s: float
     messages: Mapping[str, Traffic]
     bytes: Mapping[str, Traffic]
+    maps: tuple[tuple[str, ...], ...]  # who lives, by the map that they hold: of one group, all hold one
     left_out: tuple[LeftOut, ...]

@@ -37,6 +37,7 @@ class RobotView:
     seen: NDArray[np.bool_]  # (R, C) what its own sensor has observed there
     impact: Impact | None  # of its last decision, over planning cells; None: it has not decided yet
     figures: GroundFigures
+    digest: int  # of what it holds, equal for two that hold the same
     left_out: tuple[LeftOut, ...] = ()
 
     def classes_on(self, frame: GridFrame) -> NDArray[np.uint8]:
@@ -78,6 +79,15 @@ def union_map(views: Sequence[RobotView], frame: GridFrame) -> NDArray[np.uint8]
     for view in living[1:]:
         np.maximum(union, view.classes_on(frame), out=union)  # UNKNOWN < FREE < OCCUPIED
     return union
+
+
+def by_map(views: Sequence[RobotView]) -> tuple[tuple[str, ...], ...]:
+    """Return the names of the living robots by the map that they hold, those that hold most robots' first."""
+    holders: dict[int, list[str]] = {}
+    for view in views:
+        if view.sample.alive:
+            holders.setdefault(view.digest, []).append(view.sample.name)
+    return tuple(map(tuple, sorted(holders.values(), key=len, reverse=True)))
 
 
 def left_out(left: Sequence[Leftover], by: str) -> tuple[LeftOut, ...]:

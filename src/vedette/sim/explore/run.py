@@ -87,6 +87,7 @@ def _view(simulation: ExploreSimulation, i: int) -> RobotView:
             collisions=int(bodies.collisions[i]),
             min_clearance_m=float(bodies.min_clearance[i]),
         ),
+        mission.fusion.digest,
         left_out(mission.left_out, sample.name),
     )
 

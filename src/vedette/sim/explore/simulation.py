@@ -69,6 +69,10 @@ class ExploreSimulation(Simulation):
         options, most = self.setup.options, Most.of(specs)
         return assemble(self.lattice, specs[robot], options, robot, boot, robots=len(specs), most=most)
 
+    def held(self, robots: Sequence[int]) -> list[int]:
+        """Return the digests of their maps."""
+        return [self.missions[i].fusion.digest for i in robots]
+
     @property
     def missions(self) -> list[Exploring]:
         """Everybody's share of the mission, by index."""
