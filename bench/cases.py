@@ -102,6 +102,7 @@ def run_case(case: Case, commit: str) -> Result:
     max_time = COARSE_MAX_TIME if coarse else MAX_TIME
     setup = ExploreSetup(planner=case.planner, seed=case.seed, max_time=max_time)
     summary = explore(prepare(world, specs, setup)).summary
+    assert summary.coverage is not None, "the ground is known"
     return Result(
         *case.key,
         outcome=summary.outcome.value,

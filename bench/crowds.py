@@ -99,6 +99,7 @@ def run_crowd(case: Crowd, commit: str) -> CrowdResult:
             standing += LOOK
         before = here
     summary = mission.report.summary
+    assert summary.coverage is not None, "the ground is known"
     return CrowdResult(
         *case.key,
         outcome=summary.outcome.value,

@@ -78,6 +78,7 @@ class _Ticker:
     def update(self, snapshot: ExploreSnapshot) -> None:
         """Tell it every few simulated seconds."""
         if snapshot.t >= self._next:
+            assert snapshot.coverage is not None, "the ground is known"
             self._next = snapshot.t + 5.0
             self.tell(
                 f"mission with {self.case.planner}, seed {self.case.seed}: {snapshot.t:.0f} s, "

@@ -19,10 +19,11 @@ def summary(outcome: Outcome, left_out: tuple[LeftOut, ...] = ()) -> ExploreSumm
     return ExploreSummary(
         completed=outcome.completed, outcome=outcome, lost=(), left=(), seed=1, robots=1, planner="tours",
         scheme="token", fusion="replicated", world="hall", radio=None, faults=None, time_s=60.0,
-        t50_s=20.0, t90_s=50.0, t95_s=None, t99_s=None, auc_s=30.0, coverage=0.92, map_errors=0,
+        t50_s=20.0, t90_s=50.0, t95_s=None, t99_s=None, auc_s=30.0, coverage=0.92, known_m2=120.0,
+        rate_m2_s=2.0, frontiers=3, map_errors=0,
         map_error_share=0.0,
         path_m={"robot-1": 12.0}, overlap=0.0, collisions=0, min_clearance_m=0.2, rounds=9, sweeps=9,
-        bound_ratio=None, apart_s=0.0, messages={}, bytes={}, left_out=left_out,
+        bound_ratio=None, apart_s=0.0, messages={}, bytes={}, maps=(), left_out=left_out,
     )  # fmt: skip
 
 
@@ -39,6 +40,13 @@ def test_file_screen_and_exit_status_agree(outcome: Outcome, capsys: pytest.Capt
         else:
             assert said.startswith(f"{outcome.value.replace('_', ' ')}: 92.0 % of hall")
             assert (outcome.meaning in said) != outcome.completed
+
+
+def test_of_ground_that_nobody_knows_area_rate_and_frontiers_are_told_and_never_a_share() -> None:
+    open_ended = replace(summary(Outcome.COMPLETE), coverage=None, auc_s=None, t50_s=None, t90_s=None)
+    line = closing(open_ended, Path("runs"))[0]
+    assert line.startswith("complete: 120 m2 of hall known after 60 s (2.00 m2/s, 3 frontiers left), longest")
+    assert "%" not in line
 
 
 def test_only_ends_with_status_0_are_completed_or_ordered() -> None:

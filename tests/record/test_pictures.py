@@ -121,7 +121,8 @@ def summary(count: int, long: bool, **more: Any) -> Any:
     plain = {
         "world": WORLD if long else "office", "scenario": WORLD if long else "bay", "robots": count,
         "vehicles": count, "planner": "tours", "seed": 2**32 - 1, "apart_s": 1234.5, "t50_s": 1234.5,
-        "t90_s": None, "t95_s": 29.0, "t99_s": None, "auc_s": 12345.6, "coordination": "negotiated",
+        "t90_s": None, "t95_s": 29.0, "t99_s": None, "auc_s": 12345.6, "coverage": 0.96,
+        "coordination": "negotiated",
         "outcome": Outcome.COMPLETE, "found_by": names(count, long)[0], "found_s": 12.0, "counted": None,
         "comparison": {}, "declare": None,
     }  # fmt: skip

@@ -155,6 +155,7 @@ class _Fate:
         """Let the next fault come when it is due; the first, once all robots have reported."""
         if len(self.diary.by_robot) < len(snapshot.robots):
             return
+        assert snapshot.coverage is not None, "the ground is known"
         while self.faults and snapshot.coverage >= self.faults[0].coverage:
             fault = self.faults.pop(0)
             self.diary.kept.append((time.monotonic(), fault.what))

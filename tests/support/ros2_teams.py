@@ -12,7 +12,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from tests.support.small_missions import robots
+from tests.support.small_missions import covered, robots
 from vedette.maps import UNKNOWN
 from vedette.maps.world import World
 from vedette.missions.explore.options import ExploreOptions
@@ -53,15 +53,20 @@ class Tried:
     """How a team did."""
 
     report: ExploreReport
-    world: World
+    plan: TriedPlan
     robots_said: str  # by the strangers, in the end
 
     @property
     def wrong(self) -> float:
         """Share of the known cells that are other ones in truth."""
-        told, true = self.report.classes, self.world.classes()
+        told, true = self.report.classes, self.plan.world.classes()
         known = told != UNKNOWN
         return float(np.mean(told[known] != true[known]))
+
+    @property
+    def covered(self) -> float:
+        """Share of the cells known that the team could see."""
+        return covered(self.plan.world, self.plan.specs, self.plan.starts, self.report)
 
 
 def plan(world: World, count: int, speed: float = 3.0, **told: Any) -> TriedPlan:
@@ -93,4 +98,4 @@ def tried(plan: TriedPlan, folder: Path, max_time: float = 300.0) -> Tried:
         operator = stack.enter_context(Operator(team.operator))
         watcher = ExploreWatcher(plan, Setting(seed=0))
         report = TeamWatch(plan, team, operator, watcher, max_time).run()
-    return Tried(report, plan.world, (folder / "logs" / "robots.log").read_text())
+    return Tried(report, plan, (folder / "logs" / "robots.log").read_text())

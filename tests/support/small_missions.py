@@ -7,10 +7,12 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from vedette.maps import GridFrame
 from vedette.maps.world import World
 from vedette.record.explore.observer import ExploreReport
+from vedette.record.explore.score import Reference, coverage
 from vedette.sim.explore.run import explore, prepare
 from vedette.sim.explore.simulation import ExploreSetup, ExploreSimulation
 from vedette.sim.worlds import maze, office
@@ -85,11 +87,19 @@ def run(world: World, specs: Sequence[PlatformSpec], **setup: Any) -> tuple[Expl
     return simulation, explore(simulation)
 
 
+def covered(
+    world: World, specs: Sequence[PlatformSpec], starts: NDArray[np.float64], report: ExploreReport
+) -> float:
+    """The share known, in truth, of what such a team can see of a world, whatever it knows of its extent."""
+    return coverage(Reference(world, specs, starts), report.classes)
+
+
 def check_complete(report: ExploreReport) -> None:
     """The mission is complete, the map whole and true, nobody touched anything."""
     summary = report.summary
     assert summary.outcome.value == "complete"
     assert summary.completed
+    assert summary.coverage is not None
     assert summary.coverage >= 0.995
     assert summary.map_errors == 0
     assert summary.collisions == 0

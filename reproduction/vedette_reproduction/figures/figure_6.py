@@ -117,6 +117,7 @@ def _draw(missions: Sequence[ReproducedMission], run: ReproductionRun) -> None:
         for column, stage in enumerate(mission.report.log.stages()):
             left = _MARGIN + column * (_PANEL + _GAP)
             axes = figure.add_axes((left / width, bottom / whole, _PANEL / width, height / whole))
+            assert stage.coverage is not None, "the ground is known"
             _panel(axes, mission, stage, window, (round(_PANEL * DPI), round(height * DPI)))
             axes.set_title(
                 f"({'abc'[column]})  {stage.t:.0f} s, {100 * stage.coverage:.0f} % covered",

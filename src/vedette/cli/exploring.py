@@ -162,12 +162,10 @@ def _say(text: str) -> None:
 
 def closing(summary: ExploreSummary, folder: Path) -> list[str]:
     """Say in a few lines how it went, what was left out, and where the pictures are."""
-    t90 = "-" if summary.t90_s is None else f"{summary.t90_s:.0f} s"
     longest = max(summary.path_m.values())
     stayed = sum(way < STAYED for way in summary.path_m.values())
     lines = [
-        f"{summary.outcome.said}: {100 * summary.coverage:.1f} % of {summary.world} known after "
-        f"{summary.time_s:.0f} s (90 % after {t90}), longest way {longest:.0f} m, "
+        f"{summary.outcome.said}: {_known(summary)}, longest way {longest:.0f} m, "
         f"{many(summary.collisions, 'collision')}{_told_of_those_who_stayed(stayed)}",
         f"pictures: {folder / 'progress.png'}, {folder / 'curves.png'}; all else beside them",
     ]
@@ -179,6 +177,16 @@ def closing(summary: ExploreSummary, folder: Path) -> list[str]:
         said = ", ".join(f"{number} {why}" for why, number in count.items())
         lines.insert(1, f"frontiers left out: {said}; summary.json lists them")
     return lines
+
+
+def _known(summary: ExploreSummary) -> str:
+    """Say how much is known of the world, and since when; of ground without a known end how fast it grew."""
+    after = f"of {summary.world} known after {summary.time_s:.0f} s"
+    if summary.coverage is None:
+        left = "" if summary.frontiers is None else f", {many(summary.frontiers, 'frontier')} left"
+        return f"{summary.known_m2:.0f} m2 {after} ({summary.rate_m2_s:.2f} m2/s{left})"
+    t90 = "-" if summary.t90_s is None else f"{summary.t90_s:.0f} s"
+    return f"{100 * summary.coverage:.1f} % {after} (90 % after {t90})"
 
 
 def _told_of_those_who_stayed(robots: int) -> str:

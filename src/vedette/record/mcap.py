@@ -99,9 +99,10 @@ class McapFile(Generic[RosT]):
         self._write(f"/{name}/pose", stamp, self._ros.pose(stamp, vehicle.x, vehicle.y, vehicle.heading))
 
     def _write_metrics(self, stamp: int, snapshot: Timed, names: Iterable[str]) -> None:
-        """Write figures of a snapshot by the names of its fields."""
+        """Write figures of a snapshot by the names of its fields; None is none."""
         for name in names:
-            self._write(f"/metrics/{name}", stamp, self._ros.number(getattr(snapshot, name)))
+            if (value := getattr(snapshot, name)) is not None:
+                self._write(f"/metrics/{name}", stamp, self._ros.number(value))
 
 
 @contextmanager

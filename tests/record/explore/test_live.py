@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import itertools
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -60,6 +61,21 @@ def test_without_a_terminal_there_is_a_line_every_ten_seconds_and_at_last(
     assert f"entropy {snapshots[10].entropy:.0f} nat" in lines[1]
     assert "ada driving" in lines[1]
     assert "bob dead" in lines[3]
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_of_ground_that_nobody_knows_the_view_tells_area_rate_and_frontiers_and_no_share(
+    snapshots: list[ExploreSnapshot], terminal: bool
+) -> None:
+    nobody_knows = {"coverage": None, "known_fraction": None, "entropy": None}
+    shown = replace(snapshots[10], **nobody_knows, known_m2=45.0, frontiers=7)
+    console = _terminal() if terminal else Console(file=io.StringIO(), width=200)
+    with explore_display(SCENE, console=console) as view:
+        view.update(shown)
+    text = _text(console)
+    for said in ("known 45.0 m²", "rate 4.50 m²/s", "frontiers left 7"):
+        assert said in text
+    assert "%" not in text
 
 
 def _with_links(snapshot: ExploreSnapshot, *links: Link) -> ExploreSnapshot:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ from tests.support.record_mission import frames, mission, rooms, scene
 from vedette.errors import InputError
 from vedette.maps import FREE, OCCUPIED
 from vedette.record.explore.log import ExploreSnapshot
-from vedette.record.explore.mcap import ExploreMcapWriter
+from vedette.record.explore.mcap import OF_OPEN, ExploreMcapWriter
 from vedette.record.links import Link
 from vedette.record.ros import corners, ros_names
 from vedette.team import PlatformSpec
@@ -80,6 +81,24 @@ def test_maps_come_every_five_seconds_and_at_the_end(
         assert (grid.info.origin.position.x, grid.info.origin.position.y) == ORIGIN
         assert grid.header.frame_id == "map"
         assert grid.header.stamp.sec + grid.header.stamp.nanosec / 1e9 == t
+
+
+def test_of_ground_that_nobody_knows_the_metrics_are_area_rate_and_frontiers(
+    tmp_path: Path, snapshots: list[ExploreSnapshot]
+) -> None:
+    nobody_knows = {"coverage": None, "known_fraction": None, "entropy": None}
+    told = [
+        replace(snapshot, **nobody_knows, known_m2=9.0, frontiers=None if snapshot.t < 2.0 else 3)
+        for snapshot in snapshots[:5]
+    ]
+    topics = _read(_write(tmp_path / "run.mcap", told))
+    metrics = {
+        name: [(t, message.data) for t, message in topics[name]] for name in topics if "metrics" in name
+    }
+    assert metrics.keys() == {"/metrics/known_m2", "/metrics/rate_m2_s", "/metrics/frontiers"}
+    assert metrics["/metrics/known_m2"][-1] == (told[-1].t, 9.0)
+    assert metrics["/metrics/rate_m2_s"][-1] == (told[-1].t, 9.0 / told[-1].t)
+    assert metrics["/metrics/frontiers"] == [(s.t, 3.0) for s in told if s.t >= 2.0]
 
 
 def test_the_team_impact_is_in_per_cent_of_planning_cells(
@@ -170,7 +189,8 @@ def test_the_documentation_lists_exactly_the_topics(topics: dict[str, list[Any]]
     docs = (ROOT / "docs" / "outputs.md").read_text(encoding="utf-8")
     docs = docs.partition("\n## `run.mcap`")[2].partition("\n## ")[0]
     listed = {line.split("`")[1] for line in docs.splitlines() if line.startswith("| `/")}
-    assert listed == {topic.replace("robot_1", "<robot>") for topic in topics if "2nd" not in topic}
+    written = {topic.replace("robot_1", "<robot>") for topic in topics if "2nd" not in topic}
+    assert listed == written | {f"/metrics/{name}" for name in OF_OPEN}
 
 
 def test_the_same_mission_gives_the_same_bytes(tmp_path: Path, snapshots: list[ExploreSnapshot]) -> None:

@@ -18,6 +18,7 @@ from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.leftovers import Leftover
 from vedette.kernels.coverage import LAYERS
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
+from vedette.maps.lattice import Lattice
 from vedette.maps.world import World
 from vedette.missions.explore.options import ExploreOptions
 from vedette.outcome import Outcome
@@ -66,9 +67,9 @@ def columns(*known: int, kind: int = FREE) -> NDArray[np.uint8]:
     return classes
 
 
-def observer() -> ExploreObserver:
+def observer(lattice: Lattice | None = None) -> ExploreObserver:
     """Of a team that has not begun."""
-    return ExploreObserver(WORLD, SPECS, STARTS, OPTIONS, SETTING)
+    return ExploreObserver(WORLD, SPECS, STARTS, OPTIONS, SETTING, lattice=lattice)
 
 
 def test_a_robot_holds_what_is_fused_and_its_own_cells_that_are_not_published_yet() -> None:
@@ -103,6 +104,24 @@ def test_coverage_and_entropy_are_those_of_the_living() -> None:
     assert last.known_fraction == pytest.approx(3 / COLS)
     assert last.entropy == pytest.approx((COLS - 3) * ROWS * LN2)
     assert last.links is None
+
+
+def test_of_ground_that_nobody_knows_area_frontiers_and_rate_are_told_and_never_a_share() -> None:
+    looking = observer(lattice=Lattice.open(WORLD.frame.resolution))
+    rounds = replace(view(0, columns(0, 1, 2)), frontiers=4), replace(view(1, columns(2)), frontiers=5)
+    dead = replace(view(2, columns(*range(COLS)), alive=False), frontiers=9)
+    looking.look(0.0, [view(0), view(1), dead], None)
+    looking.finish(4.0, [*rounds, dead], None)
+    known = 3 * ROWS * 0.01
+    last, summary = looking.log.last, looking.summary(Outcome.COMPLETE)
+    assert (last.coverage, last.known_fraction, last.entropy) == (None, None, None)
+    assert (last.known_m2, last.rate_m2_s, last.frontiers) == pytest.approx((known, known / 4.0, 5))
+    assert np.isnan(looking.log.coverage).all()
+    assert np.isnan(looking.log.frontiers[0])  # there has been no round
+    for figure in ("coverage", "t50_s", "t90_s", "t95_s", "t99_s", "auc_s"):
+        assert getattr(summary, figure) is None
+    assert (summary.known_m2, summary.rate_m2_s, summary.frontiers) == pytest.approx((known, known / 4.0, 5))
+    assert [stage.known_m2 for stage in looking.log.stages()] == pytest.approx([known] * 3)
 
 
 def test_every_second_look_is_logged_and_so_is_the_end() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib
@@ -20,6 +21,7 @@ from vedette.record.explore.log import ExploreLog, ExploreSnapshot, RobotSample
 from vedette.record.explore.progress import progress_png
 from vedette.record.explore.raster import enlarge, fit, known_window, paint, pool
 from vedette.record.explore.summary import ExploreSummary
+from vedette.record.explore.told import caption
 from vedette.record.links import Link
 from vedette.record.summary import Traffic
 
@@ -38,6 +40,7 @@ def _summary(log: ExploreLog, **changes: object) -> ExploreSummary:
         "scheme": "token", "fusion": "evidence", "world": log.scene.name, "radio": None, "faults": None,
         "apart_s": 0.0, "time_s": float(log.times[-1]),
         "t50_s": 5.0, "t90_s": 12.0, "t95_s": 15.0, "t99_s": None, "auc_s": 12.0, "coverage": 0.98,
+        "known_m2": 90.0, "rate_m2_s": 3.0, "frontiers": 2,
         "map_errors": 0, "map_error_share": 0.0, "path_m": dict.fromkeys(names, 1.0), "overlap": 0.2,
         "collisions": 0, "min_clearance_m": 0.06, "rounds": 12, "sweeps": 30, "bound_ratio": None,
         "messages": traffic, "bytes": traffic, "maps": (), "left_out": (),
@@ -149,6 +152,22 @@ def test_odd_shapes_and_an_unknown_world_are_drawn(rows: int, cols: int, robots:
     for file in tmp_path.iterdir():
         with Image.open(file) as image:
             assert max(image.size) <= 2400
+
+
+def test_of_ground_that_nobody_knows_pictures_say_no_share(log: ExploreLog, tmp_path: Path) -> None:
+    """And are drawn, though no round has been and though there are only figures that nobody has."""
+    nobody_knows = {"coverage": None, "known_fraction": None, "entropy": None}
+    open_ended = ExploreLog(log.scene)
+    for snapshot in log.snapshots():
+        frontiers = None if snapshot.t < 3.0 else 4
+        open_ended.add(replace(snapshot, **nobody_knows, known_m2=snapshot.t, frontiers=frontiers))
+    summary = _summary(log, coverage=None, auc_s=None, t50_s=None, t90_s=None, t95_s=None, t99_s=None)
+    progress_png(open_ended, tmp_path / "progress.png")
+    curves_png(open_ended, summary, tmp_path / "curves.png")
+    explore_gif(open_ended, tmp_path / "mission.gif")
+    assert caption(open_ended.last) == f"{log.times[-1]:.0f} s    {log.times[-1]:.0f} m² known"
+    with Image.open(tmp_path / "curves.png") as image, Image.open(tmp_path / "progress.png") as stages:
+        assert min(*image.size, *stages.size) > 300
 
 
 def _linked(links: tuple[Link, ...] | None) -> ExploreLog:

@@ -143,6 +143,7 @@ def view_of(
         ),
         digest=condition.digest,
         left_out=left_out([Leftover(*spot) for spot in told.left_out], name),
+        frontiers=condition.frontiers,
     )
 
 

@@ -1,4 +1,4 @@
-"""``curves.png``: how coverage, entropy and distance went with time."""
+"""``curves.png``: how coverage, entropy and distance went with time; or known area and frontiers."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import EngFormatter, PercentFormatter
+from numpy.typing import NDArray
 
 from vedette.number import many
 from vedette.record import palette
@@ -28,7 +29,10 @@ _DASHES = ((), (6, 2), (2, 1.5), (6, 2, 2, 2), (1, 1))  # a robot's line differs
 
 
 def curves_png(log: ExploreLog, summary: ExploreSummary, path: Path | str) -> None:
-    """Draw coverage with t50 to t99, the entropy of the map and each robot's distance against time."""
+    """Draw coverage with t50 to t99, the entropy of the map and each robot's distance against time.
+
+    Where nobody knows how much ground there is: the area that is known, and the frontiers that are left.
+    """
     team = Key.of(log.scene.vehicles, WIDTH - LEFT - RIGHT)
     with picture():
         strips = Strips.make(
@@ -37,15 +41,16 @@ def curves_png(log: ExploreLog, summary: ExploreSummary, path: Path | str) -> No
             f"seed {summary.seed}",
             LINE * team.lines,
         )
-        coverage, entropy, distance = strips.axes
+        known, left, distance = strips.axes
         apart = _apart(strips.axes, log, summary)
-        legend_above(coverage, [*_coverage(coverage, log, summary), *apart], 3)
-        entropy.plot(log.times, log.entropy, color=_ENTROPY, lw=1.8)
-        entropy.fill_between(log.times, log.entropy, color=_ENTROPY, alpha=0.1, lw=0)
-        entropy.set(ylabel="map entropy [nat]", ylim=(0, 1.05 * max(1.0, float(log.entropy.max()))))
-        entropy.yaxis.set_major_formatter(EngFormatter(sep=""))
+        if summary.coverage is None:
+            legend_above(known, [*_area(known, log, summary), *apart], 3)
+            _under(left, log, np.nan_to_num(log.frontiers), "frontiers left")
+        else:
+            legend_above(known, [*_coverage(known, log, summary), *apart], 3)
+            _under(left, log, log.entropy, "map entropy [nat]")
         lines = _distance(distance, log)
-        coverage.set_xlim(0, max(1.0, float(log.times[-1])))
+        known.set_xlim(0, max(1.0, float(log.times[-1])))
         team.write(strips.figure, LEFT, strips.below - LINE / 3, lines)
         save(strips.figure, path)
 
@@ -70,6 +75,24 @@ def _coverage(axes: Axes, log: ExploreLog, summary: ExploreSummary) -> list[Any]
     axes.yaxis.set_major_formatter(PercentFormatter(1.0))
     area = Patch(color=_FAINT, alpha=0.5, lw=0, label=f"area above = {summary.auc_s:.1f} s")
     return [*signs, area]
+
+
+def _area(axes: Axes, log: ExploreLog, summary: ExploreSummary) -> list[Any]:
+    """Draw how much is known; return what explains it."""
+    label = f"{summary.known_m2:.0f} m² in the end, {summary.rate_m2_s:.2f} m²/s"
+    lines = axes.plot(
+        log.times, log.known_m2, color=_COVERAGE, lw=2.0, drawstyle="steps-post", zorder=3, label=label
+    )
+    axes.set(ylabel="known [m²]", ylim=(0, 1.05 * max(1.0, float(log.known_m2.max()))))
+    return lines
+
+
+def _under(axes: Axes, log: ExploreLog, values: NDArray[np.float64], name: str) -> None:
+    """Draw a curve with what is under it tinted."""
+    axes.plot(log.times, values, color=_ENTROPY, lw=1.8)
+    axes.fill_between(log.times, values, color=_ENTROPY, alpha=0.1, lw=0)
+    axes.set(ylabel=name, ylim=(0, 1.05 * max(1.0, float(values.max()))))
+    axes.yaxis.set_major_formatter(EngFormatter(sep=""))
 
 
 def _distance(axes: Axes, log: ExploreLog) -> list[Line2D]:

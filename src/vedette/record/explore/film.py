@@ -14,6 +14,7 @@ from vedette.maps import UNKNOWN
 from vedette.record import palette
 from vedette.record.explore.log import ExploreLog, ExploreSnapshot, RobotSample
 from vedette.record.explore.raster import enlarge, known_window, paint
+from vedette.record.explore.told import caption
 from vedette.record.film import write_gif
 from vedette.record.log import evenly
 
@@ -65,8 +66,7 @@ class _Film:
         colours = paint(snapshot, self._log.scene.planning, self._window, self._size[::-1])[::-1]
         image.paste(enlarge(np.ascontiguousarray(colours), self._size), (0, _CAPTION))
         draw = ImageDraw.Draw(image)
-        caption = f"{snapshot.t:.0f} s    {100 * snapshot.coverage:.1f} % covered"
-        draw.text((8, _CAPTION / 2), caption, palette.INK, self._fonts[0], anchor="lm")
+        draw.text((8, _CAPTION / 2), caption(snapshot), palette.INK, self._fonts[0], anchor="lm")
         self._draw_links(draw, snapshot)
         so_far = int(np.searchsorted(self._times, snapshot.t, side="right"))
         for i, robot in enumerate(snapshot.robots):

@@ -11,6 +11,7 @@ from rich.console import Console
 from vedette.record.display import Display
 from vedette.record.explore.log import ExploreScene, ExploreSnapshot
 from vedette.record.explore.screen import screen
+from vedette.record.explore.told import progress
 from vedette.record.marks import together
 from vedette.record.view import states
 
@@ -28,7 +29,12 @@ def explore_display(
 def line(scene: ExploreScene, snapshot: ExploreSnapshot) -> str:
     """Return a snapshot in one line."""
     robots = states(scene.vehicles, snapshot.robots)
-    known, covered = 100 * snapshot.known_fraction, 100 * snapshot.coverage
-    entropy = f"entropy {snapshot.entropy:.0f} nat"
     team = "" if snapshot.links is None else f"  {together(snapshot.parts)}"
-    return f"{snapshot.t:7.1f} s  known {known:5.1f} %  covered {covered:5.1f} %  {entropy}  {robots}{team}"
+    return f"{snapshot.t:7.1f} s  {_known(snapshot)}  {robots}{team}"
+
+
+def _known(snapshot: ExploreSnapshot) -> str:
+    if snapshot.coverage is None or snapshot.known_fraction is None:
+        return "  ".join(f"{name} {value}" for name, value in progress(snapshot))
+    known, covered = 100 * snapshot.known_fraction, 100 * snapshot.coverage
+    return f"known {known:5.1f} %  covered {covered:5.1f} %  entropy {snapshot.entropy:.0f} nat"

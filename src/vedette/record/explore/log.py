@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import zlib
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -47,14 +48,21 @@ class ExploreSnapshot:
 
     t: float  # [s]
     robots: tuple[RobotSample, ...]  # in the order of the team
-    coverage: float  # share of the coverable cells that the living robots know, 0..1
-    known_fraction: float  # share of all cells of the frame that are known, 0..1
-    entropy: float  # of the team map [nat]
+    coverage: float | None  # share of the coverable cells that the living robots know, 0..1; None: as below
+    known_fraction: float | None  # share of all cells of the frame that are known, 0..1
+    entropy: float | None  # of the team map [nat]; None: nobody knows how much ground there is
     classes: NDArray[np.uint8]  # (R, C) UNKNOWN, FREE or OCCUPIED
     impact: (
         NDArray[np.float32] | None
     )  # (r, c) probability that the present strategies observe a planning cell
     links: tuple[Link, ...] | None = None  # None: the network is ideal
+    known_m2: float = 0.0  # that the living robots know
+    frontiers: int | None = None  # where to go on, as of the latest round; None: there has been none
+
+    @property
+    def rate_m2_s(self) -> float:
+        """Ground that has become known in a second, from the beginning on [m^2/s]."""
+        return self.known_m2 / self.t if self.t > 0.0 else 0.0
 
     @property
     def parts(self) -> tuple[tuple[int, ...], ...]:
@@ -93,7 +101,7 @@ class ExploreLog:
         self.scene = scene
         self._sinks = tuple(sinks)
         self._budget = budget
-        self._curves: list[tuple[float, float, float, float, float]] = []
+        self._curves: list[tuple[float, ...]] = []
         self._poses: list[list[tuple[float, float, float]]] = []
         self._driven: list[list[float]] = []
         self._stored: list[_Packed] = []  # every `_stride`-th snapshot
@@ -114,10 +122,12 @@ class ExploreLog:
         self._curves.append(
             (
                 snapshot.t,
-                snapshot.coverage,
-                snapshot.known_fraction,
-                snapshot.entropy,
+                _or_nan(snapshot.coverage),
+                _or_nan(snapshot.known_fraction),
+                _or_nan(snapshot.entropy),
                 len(snapshot.parts) > 1,
+                snapshot.known_m2,
+                _or_nan(snapshot.frontiers),
             )
         )
         self._poses.append([(robot.x, robot.y, robot.heading) for robot in snapshot.robots])
@@ -136,7 +146,7 @@ class ExploreLog:
 
     @property
     def coverage(self) -> NDArray[np.float64]:
-        """``(T,)`` coverage of all snapshots, 0..1."""
+        """``(T,)`` coverage of all snapshots, 0..1; NaN where nobody knows the ground, as below."""
         return self._curve(1)
 
     @property
@@ -153,6 +163,16 @@ class ExploreLog:
     def apart(self) -> NDArray[np.bool_]:
         """``(T,)`` whether the living robots were on more than one tree, of all snapshots."""
         return self._curve(4) > 0
+
+    @property
+    def known_m2(self) -> NDArray[np.float64]:
+        """``(T,)`` ground that the living robots know in all snapshots [m^2]."""
+        return self._curve(5)
+
+    @property
+    def frontiers(self) -> NDArray[np.float64]:
+        """``(T,)`` where to go on as of the latest round, in all snapshots; NaN before the first."""
+        return self._curve(6)
 
     @property
     def poses(self) -> NDArray[np.float64]:
@@ -181,11 +201,14 @@ class ExploreLog:
         return len(self._kept())
 
     def stages(self, n: int = 3) -> list[ExploreSnapshot]:
-        """Return the first stored snapshot at each of 1/n, 2/n, ... of the final coverage, then the last."""
+        """Return the first stored snapshot at each of 1/n, 2/n, ... of what is known last, then the last.
+
+        Known is the coverage, or where nobody knows it the area.
+        """
         last, kept = self.last, self._kept()
-        coverage = np.maximum.accumulate([packed.snapshot.coverage for packed in kept])
-        levels = coverage[-1] * np.arange(1, n) / n
-        first = np.searchsorted(coverage, levels - 1e-12)
+        known = np.maximum.accumulate([_known(packed.snapshot) for packed in kept])
+        levels = known[-1] * np.arange(1, n) / n
+        first = np.searchsorted(known, levels - 1e-12)
         return [*(self._unpack(kept[i]) for i in first), last]
 
     def _check(self, snapshot: ExploreSnapshot) -> None:
@@ -215,7 +238,7 @@ class ExploreLog:
         return [*self._stored, self._last]
 
     def _curve(self, column: int) -> NDArray[np.float64]:
-        return np.array(self._curves, dtype=np.float64).reshape(-1, 5)[:, column]
+        return np.array(self._curves, dtype=np.float64).reshape(-1, 7)[:, column]
 
     def _unpack(self, packed: _Packed) -> ExploreSnapshot:
         classes = np.frombuffer(zlib.decompress(packed.classes), np.uint8).reshape(self.scene.frame.shape)
@@ -227,6 +250,14 @@ class ExploreLog:
 
 
 _EMPTY = np.empty((0, 0), np.uint8)
+
+
+def _or_nan(value: float | None) -> float:
+    return math.nan if value is None else value
+
+
+def _known(snapshot: ExploreSnapshot) -> float:
+    return snapshot.known_m2 if snapshot.coverage is None else snapshot.coverage
 
 
 def _pack(snapshot: ExploreSnapshot) -> _Packed:

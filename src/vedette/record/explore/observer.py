@@ -23,7 +23,7 @@ from vedette.outcome import Outcome
 from vedette.record.explore.log import ExploreLog, ExploreScene, ExploreSnapshot
 from vedette.record.explore.score import CoverageProgress, Reference, coverage, map_errors, overlap
 from vedette.record.explore.summary import ExploreSummary, LeftOut
-from vedette.record.explore.views import RobotView, by_map, union_map
+from vedette.record.explore.views import RobotView, by_map, frontiers_left, union_map
 from vedette.record.figures import TeamFigures
 from vedette.record.links import Link, parts
 from vedette.record.log import Sink
@@ -63,6 +63,7 @@ class ExploreObserver:
         """
         lattice = lattice or Lattice(world.frame)
         ground = lattice.frame
+        self._open = lattice.cells is None  # nobody knows how much ground there is
         self._planning = ground.coarse(planning_factor(ground.resolution))  # of the robots' impacts
         self._world, self._options, self._setting = world, options, setting
         self._reference = Reference(world.within(lattice.area), specs, starts)
@@ -72,6 +73,7 @@ class ExploreObserver:
         self.apart_s = 0.0  # time during which the living robots were not all on one tree
         self._apart = False  # since the last look
         self._views: tuple[RobotView, ...] = ()  # of the last look
+        self._now = 0.0  # when that was [s]
         self._looks = 0
         self._logged = -1.0  # time of the last snapshot [s]
 
@@ -91,10 +93,12 @@ class ExploreObserver:
         self, now: float, views: Sequence[RobotView], links: Sequence[Link] | None, log: bool
     ) -> None:
         classes = union_map(views, self._world.frame)
-        share = coverage(self._reference, classes)
+        share = None if self._open else coverage(self._reference, classes)
         if self._apart:
-            self.apart_s += now - self._progress.times[-1]
-        self._progress.add(now, share)
+            self.apart_s += now - self._now
+        self._now = now
+        if share is not None:
+            self._progress.add(now, share)
         self._views = tuple(views)
         self._apart = len(parts([view.sample.alive for view in views], links)) > 1
         if log and now > self._logged:
@@ -102,19 +106,24 @@ class ExploreObserver:
             self._logged = now
 
     def _snapshot(
-        self, now: float, classes: NDArray[np.uint8], share: float, links: Sequence[Link] | None
+        self, now: float, classes: NDArray[np.uint8], share: float | None, links: Sequence[Link] | None
     ) -> ExploreSnapshot:
         unknown = int(np.count_nonzero(classes == UNKNOWN))
         return ExploreSnapshot(
             t=now,
             robots=tuple(replace(view.sample, driven=view.figures.travelled_m) for view in self._views),
             coverage=share,
-            known_fraction=1.0 - unknown / classes.size,
-            entropy=unknown * LN2,
+            known_fraction=None if self._open else 1.0 - unknown / classes.size,
+            entropy=None if self._open else unknown * LN2,
+            known_m2=self._known_m2(classes),
             classes=classes,
             impact=self._team_impact(),
             links=None if links is None else tuple(links),
+            frontiers=frontiers_left(self._views),
         )
+
+    def _known_m2(self, classes: NDArray[np.uint8]) -> float:
+        return float(np.count_nonzero(classes != UNKNOWN)) * self._world.frame.resolution**2
 
     def _team_impact(self) -> NDArray[np.float32]:
         """Probability that the strategies decided on last will observe each planning cell."""
@@ -140,7 +149,7 @@ class ExploreObserver:
         """Return the figures of the mission, in simulated time; not before the first look."""
         progress, views = self._progress, self._views
         team, samples = zip(*((view.figures, view.sample) for view in views), strict=True)
-        time = progress.times[-1]
+        time, known_m2 = self._now, self._known_m2(union_map(views, self._world.frame))
         wrong, known = map_errors(self._world, self.delivered_map())
         return ExploreSummary(
             completed=outcome.completed,
@@ -155,8 +164,11 @@ class ExploreObserver:
             t90_s=progress.t_at(0.90),
             t95_s=progress.t_at(0.95),
             t99_s=progress.t_at(0.99),
-            auc_s=progress.auc(time),
-            coverage=progress.coverages[-1],
+            auc_s=None if self._open else progress.auc(time),
+            coverage=None if self._open else progress.coverages[-1],
+            known_m2=known_m2,
+            rate_m2_s=known_m2 / time if time > 0.0 else 0.0,
+            frontiers=frontiers_left(views),
             map_errors=wrong,
             map_error_share=wrong / known if known else 0.0,
             overlap=overlap([view.seen_on(self._world.frame) for view in views]),

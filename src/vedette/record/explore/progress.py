@@ -15,6 +15,7 @@ from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save
 from vedette.record.explore.log import ExploreLog, ExploreSnapshot, RobotSample
 from vedette.record.explore.raster import Window, enlarge, known_window, paint
+from vedette.record.explore.told import caption
 from vedette.record.key import LINE, Key, badges, with_fate
 from vedette.record.panels import MARGIN, STACKED, Panels
 from vedette.record.signs import (
@@ -75,7 +76,7 @@ def _panel(
         zorder=0,
     )
     axes.set(xticks=(), yticks=(), xlim=window.frame.extent[:2], ylim=window.frame.extent[2:])
-    axes.set_title(f"{stage.t:.0f} s    {100 * stage.coverage:.1f} % covered", fontsize=10, loc="left", pad=5)
+    axes.set_title(caption(stage), fontsize=10, loc="left", pad=5)
     so_far = int(np.searchsorted(log.times, stage.t, side="right"))
     trails = log.poses[:so_far, :, :2]
     for i, robot in enumerate(stage.robots):

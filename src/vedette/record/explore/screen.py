@@ -19,6 +19,7 @@ from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
 from vedette.record import palette
 from vedette.record.explore.log import ExploreScene, ExploreSnapshot, RobotSample
 from vedette.record.explore.raster import Window, paint, pool
+from vedette.record.explore.told import progress
 from vedette.record.marks import badge, sign, together, two_colours
 from vedette.record.view import Size, TeamTable, arranged, explained, figure, flowing, share_bar
 
@@ -35,11 +36,7 @@ _GLYPHS = (("·", "", "free"), ("█", "", "wall"), ("×", "", "lost"))
 
 def screen(scene: ExploreScene, console: Console, snapshot: ExploreSnapshot) -> RenderableType:
     """Return the picture of a snapshot, fitted to the console."""
-    figures = [
-        figure("time", f"{snapshot.t:.1f} s"),
-        figure("known", f"{100 * snapshot.known_fraction:.1f} %"),
-        figure("entropy", f"{snapshot.entropy:,.0f} nat"),
-    ]
+    figures = [figure("time", f"{snapshot.t:.1f} s"), *(figure(*each) for each in progress(snapshot))]
     if snapshot.links is not None:
         style = "bold" if len(snapshot.parts) < 2 else "bold yellow"
         figures += [Text.assemble(("team ", "dim"), (together(snapshot.parts), style))]
@@ -47,10 +44,11 @@ def screen(scene: ExploreScene, console: Console, snapshot: ExploreSnapshot) -> 
     goals = ["" if robot.goal is None else f"{robot.goal[0]:.1f}, {robot.goal[1]:.1f}" for robot in robots]
     columns = [("driven (m)", [f"{robot.driven:.1f}" for robot in robots]), ("goal (m)", goals)]
     width = console.width - 4
+    bar = () if snapshot.coverage is None else (share_bar("covered", snapshot.coverage, width),)
     return arranged(
         console,
         scene,
-        [flowing(figures, width), share_bar("covered", snapshot.coverage, width)],
+        [flowing(figures, width), *bar],
         partial(HalfBlocks.of, console, scene, snapshot),
         lambda room: (-(-_size(scene.frame, room)[0] // 2), _size(scene.frame, room)[1]),
         TeamTable("robot", scene, robots, columns),

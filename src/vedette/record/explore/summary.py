@@ -36,8 +36,11 @@ class ExploreSummary(MissionSummary):
     t90_s: float | None
     t95_s: float | None
     t99_s: float | None
-    auc_s: float
-    coverage: float
+    auc_s: float | None
+    coverage: float | None  # like the times above and the area over it None where nobody knows the ground
+    known_m2: float
+    rate_m2_s: float
+    frontiers: int | None
     map_errors: int
     map_error_share: float
     path_m: Mapping[str, float]

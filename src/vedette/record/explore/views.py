@@ -39,6 +39,7 @@ class RobotView:
     figures: GroundFigures
     digest: int  # of what it holds, equal for two that hold the same
     left_out: tuple[LeftOut, ...] = ()
+    frontiers: int | None = None  # of its latest round; None: there has been none
 
     def classes_on(self, frame: GridFrame) -> NDArray[np.uint8]:
         """Return its map as ``(R, C)`` of a grid of the observer's."""
@@ -88,6 +89,13 @@ def by_map(views: Sequence[RobotView]) -> tuple[tuple[str, ...], ...]:
         if view.sample.alive:
             holders.setdefault(view.digest, []).append(view.sample.name)
     return tuple(map(tuple, sorted(holders.values(), key=len, reverse=True)))
+
+
+def frontiers_left(views: Sequence[RobotView]) -> int | None:
+    """Return how many frontiers the living robots have left, as of the rounds that they were in last."""
+    return max(
+        (view.frontiers for view in views if view.sample.alive and view.frontiers is not None), default=None
+    )
 
 
 def left_out(left: Sequence[Leftover], by: str) -> tuple[LeftOut, ...]:

@@ -89,6 +89,7 @@ def _view(simulation: ExploreSimulation, i: int) -> RobotView:
         ),
         mission.fusion.digest,
         left_out(mission.left_out, sample.name),
+        mission.frontiers,
     )
 
 
