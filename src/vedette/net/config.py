@@ -24,6 +24,7 @@ from vedette.negotiation import SCHEMES
 from vedette.net.access import Access
 from vedette.net.credentials import credentials
 from vedette.net.names import MOST_ROBOTS
+from vedette.net.own import OwnSettings
 from vedette.ros2.settings import Ros2Settings
 from vedette.scenario import load_scenario
 from vedette.team import PlatformSpec
@@ -58,9 +59,10 @@ class LinkSettings(Struct, forbid_unknown_fields=True, frozen=True):
 
 
 class BodySettings(Struct, forbid_unknown_fields=True, frozen=True):
-    """The robot itself: a real one that runs ROS 2, or a simulated one."""
+    """The robot itself: one that runs ROS 2, a class of one's own, or a simulated one."""
 
     ros2: Ros2Settings | None = None  # how a real one is reached; its lidar is what it tells of it
+    own: OwnSettings | None = None  # a class of one's own for a robot of any kind
     map: str | None = None  # the world: a map_server .yaml beside this file, or an image
     start: tuple[float, float, float] | None = None  # x, y, heading [m, m, deg], team frame
     resolution: float | None = None  # of an image [m]
@@ -171,15 +173,7 @@ def _check_explore(config: AgentConfig) -> None:
             "body.ros2.evidence: a channel filter cannot take back what an older map said; leave out "
             "explore.fusion, or evidence: map"
         )
-    if config.body.ros2 is not None:
-        if config.body.map is not None:
-            raise InputError("body.map: is the world of a simulated robot; leave it, or body.ros2, out")
-    elif config.body.map is None:
-        raise InputError(
-            "body.map: missing; name the world that the robot is simulated in, or give a real one's body.ros2"
-        )
-    elif config.body.start is None:
-        raise InputError("body.start: missing; give x, y and heading [m, m, deg]")
+    _check_kind(config.body)
     config.body.spec(f"robot-{config.robot}")
     if config.scenario is not None:
         raise InputError("scenario: is for vehicles that track or search; leave it out")
@@ -189,12 +183,27 @@ def _check_explore(config: AgentConfig) -> None:
         raise InputError("begins: missing; faults need the time at which the mission begins")
 
 
+def _check_kind(body: BodySettings) -> None:
+    """Refuse what is not one of the three: a world to be simulated in, ROS 2, a class of one's own."""
+    given = [name for name in ("ros2", "own", "map") if getattr(body, name) is not None]
+    if len(given) > 1:
+        what = "is the world of a simulated robot" if given[1] == "map" else "is a robot of another kind"
+        raise InputError(f"body.{given[1]}: {what}; leave it, or body.{given[0]}, out")
+    if not given:
+        raise InputError(
+            "body.map: missing; name the world that the robot is simulated in, or give body.ros2 or body.own "
+            "of a real one"
+        )
+    if body.map is not None and body.start is None:
+        raise InputError("body.start: missing; give x, y and heading [m, m, deg]")
+
+
 def _check_ground(body: BodySettings, options: ExploreOptions) -> None:
     try:
         options.lattice(body.resolution or 1.0)
     except InputError as error:
         raise InputError(f"explore.{error}") from error
-    if options.unbounded and body.ros2 is not None:
+    if options.unbounded and body.map is None:
         raise InputError("explore.unbounded: no real robot is told how far its ground goes; leave it out")
 
 
@@ -216,6 +225,9 @@ def _check_flight(config: AgentConfig) -> None:
         )
     if config.body.map is not None:
         raise InputError("body.map: vehicles fly over their scenario's area; leave it out")
+    for name in ("ros2", "own"):
+        if getattr(config.body, name) is not None:
+            raise InputError(f"body.{name}: is for robots that explore; vehicles are simulated: leave it out")
     for name in ("resolution", *OF_BODY):
         if getattr(config.body, name) != getattr(BodySettings(), name):
             raise InputError(f"body.{name}: the scenario says how each vehicle is; leave it out")

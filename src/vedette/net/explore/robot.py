@@ -15,8 +15,10 @@ from vedette.maps.lattice import Lattice
 from vedette.maps.world import World
 from vedette.missions.explore.assemble import assemble, terms_of
 from vedette.missions.explore.options import ExploreOptions
-from vedette.net.config import AgentConfig
+from vedette.net.config import AgentConfig, BodySettings
 from vedette.net.explore.content import ExploreTeller
+from vedette.net.names import robot_name
+from vedette.net.own import OwnSettings
 from vedette.net.real import RESOLUTION, real_robot, shows
 from vedette.net.robot import Robot
 from vedette.net.simulated import simulated_robot
@@ -42,8 +44,12 @@ def explorer(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robo
         InputError: the map or the start cannot be used, or the robot does not tell what is needed.
     """
     best, options = config.best, config.explore or ExploreOptions()
-    real = config.body.ros2 is not None
-    place = _real(config, options) if real else _simulated(config, folder, options)
+    if config.body.ros2 is not None:
+        place = _real(config, options)
+    elif config.body.own is not None:
+        place = _own(config.body, config.body.own, robot_name(config.robot - 1), folder, options)
+    else:
+        place = _simulated(config, folder, options)
     agent = assemble(
         place.lattice,
         place.hull,
@@ -71,6 +77,11 @@ def _real(config: AgentConfig, options: ExploreOptions) -> _Place:
     lattice = options.lattice(config.body.resolution or RESOLUTION)
     body = real_robot(config)
     return _Place(lattice, body.hull, body, None, {}, body.time, shows(config, body))
+
+
+def _own(body: BodySettings, own: OwnSettings, name: str, folder: Path, options: ExploreOptions) -> _Place:
+    spec = body.spec(name)
+    return _Place(options.lattice(body.resolution or RESOLUTION), spec, own.body(spec, folder), None, {})
 
 
 def _fingerprint(world: World) -> str:

@@ -1,0 +1,162 @@
+"""A class of one's own as a robot's body: a pair of real processes, and what is refused in one line."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner
+from msgspec import yaml
+
+from tests.support.net_team import real_time, wait_until
+from tests.support.places import ROOT
+from tests.support.schemas import valid
+from vedette.cli.status import status as status_command
+from vedette.errors import InputError
+from vedette.net.config import load_config
+from vedette.net.endpoints import free_port
+from vedette.net.own import OwnSettings
+from vedette.team import PlatformSpec
+
+EXAMPLE = ROOT / "examples" / "own_body.py"
+WIDTH, HEIGHT = 9.0, 6.0  # of its hall [m]
+SPEC = PlatformSpec(start=(1.0, 1.0, 0.0))
+
+
+def write(folder: Path, robot: int, ports: list[int], **body: Any) -> Path:
+    """A robot's file beside the example."""
+    own = {"make": "own_body:HallRobot", "settings": {"size": [WIDTH, HEIGHT]}}
+    fields = {
+        "team": "hall",
+        "robot": robot,
+        "robots": 2,
+        "links": {
+            "insecure": True,
+            "listen": [f"tcp/127.0.0.1:{ports[robot - 1]}"],
+            "connect": [f"tcp/127.0.0.1:{port}" for port in ports[: robot - 1]],
+        },
+        "body": {"own": own, "start": [1.0, float(robot), 0.0], "range": 3.0, "beams": 180, **body},
+    }
+    path = folder / f"robot-{robot}.yaml"
+    path.write_bytes(yaml.encode(fields))
+    return path
+
+
+def told(paths: list[Path]) -> list[dict[str, Any] | None]:
+    """What each robot says of itself; None: no answer."""
+    shown = CliRunner().invoke(status_command, [*map(str, paths), "--json", "--wait", "2"])
+    return list(valid("status", shown.output)["robots"].values())
+
+
+@real_time
+def test_two_processes_with_bodies_of_ones_own_explore_a_hall_together(tmp_path: Path) -> None:
+    (tmp_path / "own_body.py").write_text(EXAMPLE.read_text())
+    ports = [free_port(), free_port()]
+    paths = [write(tmp_path, robot, ports) for robot in (1, 2)]
+    with ExitStack() as stack:
+        agents = [
+            stack.enter_context(
+                subprocess.Popen(
+                    [sys.executable, "-m", "vedette", "agent", str(path), "--speed", "10"],
+                    stdout=subprocess.PIPE,
+                    stderr=subprocess.PIPE,
+                    text=True,
+                )
+            )
+            for path in paths
+        ]
+        try:
+            wait_until(lambda: [said and said["state"] for said in told(paths)] == ["done", "done"], 90.0)
+            robots = told(paths)
+        finally:
+            for agent in agents:
+                agent.terminate()
+        ends = [agent.communicate(timeout=30.0) for agent in agents]
+    assert [agent.returncode for agent in agents] == [0, 0], ends
+    one, other = robots
+    assert one is not None
+    assert other is not None
+    assert one["digest"] == other["digest"]
+    assert one["known"] is None  # nobody has told them how far their ground goes
+    ring = 2 * 0.1 * (WIDTH + HEIGHT)  # of walls, a cell thick
+    assert WIDTH * HEIGHT <= one["known_m2"] <= WIDTH * HEIGHT + 2.0 * ring
+    assert one["frontiers"] == 0
+
+
+def test_the_example_takes_at_most_forty_lines_and_is_the_one_that_is_explained() -> None:
+    code = EXAMPLE.read_text(encoding="utf-8")
+    assert len(code.splitlines()) <= 40
+    assert f"```python\n{code}```" in (ROOT / "docs" / "how-to" / "own-body.md").read_text(encoding="utf-8")
+
+
+BODIES = """
+from vedette.errors import InputError
+
+class Wheels:
+    hull = pose = figures = None
+    def __init__(self, spec): pass
+    def carry_out(self, motion, now): pass
+
+def refused(spec, port): raise InputError(f"port {port}: no robot there")
+
+def broken(spec): raise OSError("no such\\nport")
+"""
+
+
+@pytest.mark.parametrize(
+    ("make", "settings", "said"),
+    [
+        ("Wheels", {}, "body.own.make: 'Wheels' must be module:NAME, as my_robot:MyRobot"),
+        ("own_bodys:Wheels", {}, "cannot import own_bodys: ModuleNotFoundError: No module named 'own_bodys'"),
+        ("bodies:Weels", {}, "body.own.make: bodies has no 'Weels'; did you mean 'Wheels'?"),
+        ("bodies:Wheels", {}, "what bodies:Wheels makes is no body: it lacks sense, stop; see docs/how-to"),
+        ("bodies:Wheels", {"port": 3}, "bodies:Wheels cannot be made: TypeError: Wheels.__init__() got an"),
+        ("bodies:refused", {"port": 3}, "port 3: no robot there"),
+        ("bodies:broken", {}, "bodies:broken cannot be made: OSError: no such port; mend body.own.settings"),
+        ("halved:Wheels", {}, "cannot import halved: SyntaxError: "),
+    ],
+)
+def test_what_is_no_body_is_told_in_a_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, make: str, settings: dict[str, Any], said: str
+) -> None:
+    (tmp_path / "bodies.py").write_text(BODIES)
+    (tmp_path / "halved.py").write_text("class Wheels(:\n")
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    monkeypatch.delitem(sys.modules, "bodies", raising=False)
+    with pytest.raises(InputError) as told:
+        OwnSettings(make, settings).body(SPEC, tmp_path)
+    assert said in str(told.value)
+    assert "\n" not in str(told.value)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"map": "map.yaml"}, "body.map: is the world of a simulated robot; leave it, or body.own, out"),
+        ({"ros2": {}}, "body.own: is a robot of another kind; leave it, or body.ros2, out"),
+        ({"own": {"settings": {}}}, "body.own"),
+        ({"own": {"make": "a:B", "setings": {}}}, "did you mean 'settings'?"),
+        ({"speed": 0.0}, "speed must be 0.01 to 10 m/s"),
+    ],
+)
+def test_what_does_not_go_with_a_body_of_ones_own_is_told_with_the_file(
+    tmp_path: Path, changes: dict[str, Any], said: str
+) -> None:
+    path = write(tmp_path, 1, [17551], **changes)
+    with pytest.raises(InputError) as told:
+        load_config(path)
+    assert str(path) in str(told.value)
+    assert said in str(told.value)
+
+
+def test_vehicles_that_fly_have_no_body_of_ones_own(tmp_path: Path) -> None:
+    path = tmp_path / "robot.yaml"
+    path.write_text(
+        '{team: a, robot: 1, track: {}, begins: 2027-01-31T12:00:00Z, body: {own: {make: "a:B"}}}'
+    )
+    with pytest.raises(InputError, match=r"body\.own: is for robots that explore"):
+        load_config(path)
