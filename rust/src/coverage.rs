@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 
 use footprint::{footprints, Sensor};
 use impact::{combine, marginal, miss_table};
-use tours::{best_tour, most_any_tour_adds, Stops};
+use tours::{best_tour, most_any_tour_adds, number_cells, Stops};
 use viewpoints::{viewpoints, Ground};
 use worth::Worth;
 
@@ -138,6 +138,13 @@ fn py_marginals<'py>(
     Ok(gains.into_pyarray(py))
 }
 
+#[pyfunction(name = "number_cells")]
+fn py_number_cells<'py>(py: Python<'py>, cells: PyReadonlyArray1<'py, u32>) -> PyResult<PyNumbers<'py>> {
+    let (distinct, local) = number_cells(cells.as_slice()?);
+    Ok((distinct.into_pyarray(py), local.into_pyarray(py)))
+}
+
+type PyNumbers<'py> = (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray1<u32>>);
 type PyReply<'py> = (Bound<'py, PyArray1<i64>>, f64, f64);
 
 #[pyfunction(name = "best_tour")]
@@ -150,6 +157,7 @@ fn py_best_tour<'py>(
     others_misses: PyReadonlyArray1<'py, u8>,
     starts: PyReadonlyArray1<'py, i64>,
     cells: PyReadonlyArray1<'py, u32>,
+    local: PyReadonlyArray1<'py, u32>,
     misses: PyReadonlyArray1<'py, u8>,
     first_leg: PyReadonlyArray1<'py, f32>,
     legs: PyReadonlyArray2<'py, f32>,
@@ -160,6 +168,7 @@ fn py_best_tour<'py>(
     let stops = Stops {
         starts: starts.as_slice()?,
         cells: cells.as_slice()?,
+        local: local.as_slice()?,
         misses: misses.as_slice()?,
         first_leg: first_leg.as_slice()?,
         legs: legs.as_slice()?,
@@ -181,6 +190,7 @@ fn py_most_any_tour_adds(
     team_misses: PyReadonlyArray1<'_, u8>,
     starts: PyReadonlyArray1<'_, i64>,
     cells: PyReadonlyArray1<'_, u32>,
+    local: PyReadonlyArray1<'_, u32>,
     misses: PyReadonlyArray1<'_, u8>,
     first_leg: PyReadonlyArray1<'_, f32>,
     legs: PyReadonlyArray2<'_, f32>,
@@ -189,6 +199,7 @@ fn py_most_any_tour_adds(
     let stops = Stops {
         starts: starts.as_slice()?,
         cells: cells.as_slice()?,
+        local: local.as_slice()?,
         misses: misses.as_slice()?,
         first_leg: first_leg.as_slice()?,
         legs: legs.as_slice()?,
@@ -205,6 +216,7 @@ pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(py_footprints, m)?)?;
     m.add_function(wrap_pyfunction!(py_combine, m)?)?;
     m.add_function(wrap_pyfunction!(py_marginals, m)?)?;
+    m.add_function(wrap_pyfunction!(py_number_cells, m)?)?;
     m.add_function(wrap_pyfunction!(py_best_tour, m)?)?;
     m.add_function(wrap_pyfunction!(py_most_any_tour_adds, m)?)?;
     Ok(())

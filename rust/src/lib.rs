@@ -6,6 +6,7 @@ pub mod coverage;
 pub mod distance;
 pub mod frontier;
 pub mod lidar;
+pub mod misses;
 pub mod motion;
 pub mod planes;
 pub mod search;
@@ -19,6 +20,7 @@ fn _kernels(m: &Bound<'_, PyModule>) -> PyResult<()> {
     distance::register(m)?;
     frontier::register(m)?;
     lidar::register(m)?;
+    misses::register(m)?;
     motion::register(m)?;
     search::register(m)?;
     tracking::register(m)?;

@@ -130,6 +130,12 @@ def combine(
     keys_b: NDArray[np.uint32],
     misses_b: NDArray[np.uint8],
 ) -> tuple[NDArray[np.uint32], NDArray[np.uint8]]: ...
+def pack_misses(
+    keys: NDArray[np.uint32], misses: NDArray[np.uint8], cells: int, layers: int, runs: int
+) -> bytes: ...
+def unpack_misses(
+    body: bytes, cells: int, layers: int, runs: int
+) -> tuple[NDArray[np.uint32], NDArray[np.uint8]]: ...
 def marginals(
     worth: _Worth,
     layer_weights: NDArray[np.float64],
@@ -139,6 +145,7 @@ def marginals(
     keys: NDArray[np.uint32],
     misses: NDArray[np.uint8],
 ) -> NDArray[np.float64]: ...
+def number_cells(cells: NDArray[np.uint32]) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]: ...
 def best_tour(
     worth: _Worth,
     layer_weights: NDArray[np.float64],
@@ -147,6 +154,7 @@ def best_tour(
     others_misses: NDArray[np.uint8],
     starts: NDArray[np.int64],
     cells: NDArray[np.uint32],
+    local: NDArray[np.uint32],
     misses: NDArray[np.uint8],
     first_leg: NDArray[np.float32],
     legs: NDArray[np.float32],
@@ -162,6 +170,7 @@ def most_any_tour_adds(
     team_misses: NDArray[np.uint8],
     starts: NDArray[np.int64],
     cells: NDArray[np.uint32],
+    local: NDArray[np.uint32],
     misses: NDArray[np.uint8],
     first_leg: NDArray[np.float32],
     legs: NDArray[np.float32],

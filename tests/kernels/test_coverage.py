@@ -18,6 +18,7 @@ from vedette.kernels.distance import distance_field
 from vedette.kernels.frontier import find_frontiers
 from vedette.kernels.reference import coverage as reference
 from vedette.kernels.reference.coverage import Sparse
+from vedette.kernels.reference.tours import EagerTours
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 
 seeds = st.integers(0, 2**32 - 1)
@@ -341,3 +342,22 @@ def test_a_frontier_whose_middle_nobody_can_see_is_seen_by_another_of_its_cells(
     row, col = divmod(int(middle), 60)
     assert row == 10
     assert col > 45  # not the middle, which is behind the wall
+
+
+@settings(deadline=None, max_examples=150)
+@given(seeds, st.integers(1, 6), st.booleans(), st.sampled_from([0.0, 0.1]))
+def test_best_tour_prices_stops_only_where_they_can_matter_and_finds_what_pricing_all_finds(
+    seed: int, max_stops: int, alike: bool, stickiness: float
+) -> None:
+    rng = np.random.default_rng(seed)
+    problem = random_problem(rng, 8)
+    if alike:  # many a stop is worth as much as another, and as near
+        misses = np.full_like(problem.footprints.misses, 11)
+        marks = dataclasses.replace(problem.footprints, misses=misses)
+        whole = CellWeights.whole(np.ones(CELLS, np.float32))
+        near = np.where(np.isfinite(problem.first_leg), 2, np.inf).astype(np.float32)
+        legs = np.where(np.isfinite(problem.legs), 4, np.inf).astype(np.float32)
+        problem = dataclasses.replace(problem, weights=whole, footprints=marks, first_leg=near, legs=legs)
+    current = random_tour(problem, rng, max_stops)
+    tour, gain, present = coverage.best_tour(problem, np.array(current, np.int64), max_stops, stickiness)
+    assert (tour.tolist(), gain, present) == EagerTours(problem, max_stops).best(current, stickiness)

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import zlib
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from vedette import _kernels
 from vedette.kernels.misses import MissesCodec, SparseMisses
+from vedette.kernels.reference import misses as reference
 
 
 def written_by_loops(impact: SparseMisses, cells: int, layers: int, runs: int) -> bytes:
@@ -45,6 +48,44 @@ def test_an_impact_has_the_bytes_that_plain_loops_write_and_comes_back(
     assert zlib.decompress(data, wbits=-15) == written_by_loops(impact, cells, layers, runs)
     assert codec.decode(data) == impact
     assert len(data) <= codec.bound
+
+
+def outcome(unpack: Callable[[], SparseMisses]) -> SparseMisses | str:
+    try:
+        return unpack()
+    except ValueError as error:
+        return str(error)
+
+
+@settings(deadline=None, max_examples=300)
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    cells=st.integers(1, 300),
+    layers=st.integers(1, 8),
+    share=st.sampled_from([0.01, 0.3]),
+    by_layer=st.booleans(),
+)
+def test_damaged_bytes_are_read_or_refused_as_their_twin_reads_or_refuses_them(
+    seed: int, cells: int, layers: int, share: float, by_layer: bool
+) -> None:
+    rng = np.random.default_rng(seed)
+    keys = np.flatnonzero(rng.random(cells * layers) < share).astype(np.uint32)
+    impact = SparseMisses(keys, rng.integers(1, 256, len(keys)).astype(np.uint8))
+    grid = cells, layers, layers if by_layer else 1
+    body = _kernels.pack_misses(*impact.sparse, *grid)
+    assert body == reference.pack_misses(impact, *grid)
+    for _ in range(8):
+        damaged = bytearray(body)
+        for at in rng.integers(0, len(damaged), rng.integers(0, 3)):
+            damaged[at] = int(rng.choice([0, 1, 254, 255, damaged[at] ^ 1]))
+        data = bytes(damaged[: rng.choice([len(damaged), rng.integers(len(damaged) + 1)])])
+        read = outcome(lambda data=data: SparseMisses(*_kernels.unpack_misses(data, *grid)))
+        assert read == outcome(lambda data=data: reference.unpack_misses(data, *grid))
+
+
+def test_a_key_outside_the_grid_is_not_packed() -> None:
+    with pytest.raises(ValueError, match="outside the map"):
+        _kernels.pack_misses(np.array([12], np.uint32), np.array([9], np.uint8), 4, 3, 3)
 
 
 @pytest.mark.parametrize("seed", range(20))

@@ -11,7 +11,8 @@ use super::LAYERS;
 #[derive(Clone, Copy)]
 pub struct Stops<'a> {
     pub starts: &'a [i64],    // (K + 1) CSR bounds of each stop's footprint
-    pub cells: &'a [u32],     // planning cells
+    pub cells: &'a [u32],     // (C) planning cells in any footprint, ascending
+    pub local: &'a [u32],     // where among them each entry's is
     pub misses: &'a [u8],     // their log-miss
     pub first_leg: &'a [f32], // (K) seconds from here to each stop
     pub legs: &'a [f32],      // (K, K) seconds between stops
@@ -49,11 +50,30 @@ impl Stops<'_> {
     }
 }
 
+/// The cells that occur, ascending, and where among them each is.
+pub fn number_cells(cells: &[u32]) -> (Vec<u32>, Vec<u32>) {
+    let (Some(&first), Some(&last)) = (cells.iter().min(), cells.iter().max()) else {
+        return (Vec::new(), Vec::new());
+    };
+    let mut numbers = vec![0_u32; (last - first) as usize + 1];
+    for &cell in cells {
+        numbers[(cell - first) as usize] = 1;
+    }
+    let mut distinct = Vec::new();
+    for (number, cell) in numbers.iter_mut().zip(first..=last) {
+        if *number > 0 {
+            *number = distinct.len() as u32;
+            distinct.push(cell);
+        }
+    }
+    let local = cells.iter().map(|&cell| numbers[(cell - first) as usize]).collect();
+    (distinct, local)
+}
+
 /// The gains of one best reply. What a certain sighting of a cell in a layer would add to the rest of the
 /// team's impact is `left[cell] * discounts[discount[cell]][layer]`, less as the platform's own tour sees it.
 struct Tours<'a> {
     stops: Stops<'a>,
-    local: Vec<u32>,               // the local cell of each footprint entry
     seen: [f32; 256],              // probability of being seen, by log-miss
     weight: Vec<f32>,              // (local cell) its worth
     left: Vec<f32>,                // (local cell) scratch: its worth times own miss so far
@@ -68,6 +88,8 @@ struct Tours<'a> {
 
 /// Bounds the time of a reply where footprints are vast; in an office it is never used up.
 const BUDGET: usize = 75_000;
+/// No sum over a footprint is larger by another order of its terms.
+const OVER: f32 = 1.001;
 
 impl<'a> Tours<'a> {
     fn new(
@@ -78,54 +100,35 @@ impl<'a> Tours<'a> {
         max_stops: usize,
     ) -> Self {
         let miss = miss_table();
-        let first = stops.cells.iter().min().copied().unwrap_or(0);
-        let last = stops.cells.iter().max().copied().unwrap_or(0);
-        let mut numbers = vec![0_u32; (last - first) as usize + 1]; // local number of a cell, from 1; 0: none
-        let mut weight: Vec<f32> = Vec::new();
-        let mut local = Vec::with_capacity(stops.cells.len());
-        for &cell in stops.cells {
-            let number = &mut numbers[(cell - first) as usize];
-            if *number == 0 {
-                weight.push(worth.of(cell));
-                *number = weight.len() as u32;
-            }
-            local.push(*number - 1);
-        }
+        let weight: Vec<f32> = stops.cells.iter().map(|&cell| worth.of(cell)).collect();
         let mut discount = vec![0_u32; weight.len()];
         let mut discounts = vec![suffix_sums(layer_weights, &[0; LAYERS], &miss)];
         let mut rows: HashMap<[u8; LAYERS], u32, BuildHasherDefault<Mixer>> = HashMap::default();
-        let mut at = others.0.partition_point(|&key| key / (LAYERS as u32) < first);
-        while at < others.0.len() && others.0[at] / LAYERS as u32 <= last {
-            let cell = others.0[at] / LAYERS as u32;
+        rows.insert([0; LAYERS], 0);
+        let (mut last, mut row) = ([0_u8; LAYERS], 0); // neighbours are mostly seen alike
+        let cell_of = |key: u32| key / LAYERS as u32;
+        let mut at = 0;
+        for (discount, &cell) in discount.iter_mut().zip(stops.cells) {
+            while at < others.0.len() && cell_of(others.0[at]) < cell {
+                at += 1;
+            }
             let mut added = [0_u8; LAYERS];
-            while at < others.0.len() && others.0[at] / LAYERS as u32 == cell {
+            while at < others.0.len() && cell_of(others.0[at]) == cell {
                 added[(others.0[at] % LAYERS as u32) as usize] = others.1[at];
                 at += 1;
             }
-            let number = numbers[(cell - first) as usize];
-            if number > 0 {
-                discount[number as usize - 1] = *rows.entry(added).or_insert_with(|| {
+            if added != last {
+                last = added;
+                row = *rows.entry(added).or_insert_with(|| {
                     discounts.push(suffix_sums(layer_weights, &added, &miss));
                     discounts.len() as u32 - 1
                 });
             }
+            *discount = row;
         }
         let seen = miss.map(|miss| (1.0 - miss) as f32);
         let (left, sums, rows) = (weight.clone(), vec![0.0; discounts.len()], Vec::new());
-        Tours {
-            stops,
-            local,
-            seen,
-            weight,
-            left,
-            discount,
-            discounts,
-            sums,
-            rows,
-            max_stops,
-            held: 0,
-            budget: 0,
-        }
+        Tours { stops, seen, weight, left, discount, discounts, sums, rows, max_stops, held: 0, budget: 0 }
     }
 
     fn entries(&self, stop: usize) -> std::ops::Range<usize> {
@@ -145,7 +148,7 @@ impl<'a> Tours<'a> {
     fn sum_by_layer(&mut self, entries: impl Iterator<Item = usize>) -> [f32; LAYERS] {
         self.rows.clear();
         for entry in entries {
-            let cell = self.local[entry] as usize;
+            let cell = self.stops.local[entry] as usize;
             let row = self.discount[cell];
             let sum = &mut self.sums[row as usize];
             if *sum == 0.0 {
@@ -166,32 +169,31 @@ impl<'a> Tours<'a> {
     fn in_layer(&self, stop: usize, layer: usize) -> f32 {
         self.entries(stop)
             .map(|entry| {
-                let cell = self.local[entry] as usize;
+                let cell = self.stops.local[entry] as usize;
                 self.seen(entry) * self.left[cell] * self.discounts[self.discount[cell] as usize][layer]
             })
             .sum()
     }
 
-    /// For each stop and layer, at least what a visit adds: what it adds alone and as early as can be.
-    fn ceilings(&self) -> Vec<[f32; LAYERS]> {
-        let earliest = self.stops.earliest();
-        let most = |(stop, arrival): (usize, &f32)| match arrival.is_finite() {
-            true => [self.in_layer(stop, self.stops.layer(*arrival)); LAYERS],
-            false => [0.0; LAYERS],
+    /// For each stop, at least what a visit adds: what it adds alone and as early as can be.
+    fn ceilings(&self) -> Vec<f32> {
+        let most = |(stop, &arrival): (usize, &f32)| match arrival.is_finite() {
+            true => self.in_layer(stop, self.stops.layer(arrival)),
+            false => 0.0,
         };
-        earliest.iter().enumerate().map(most).collect()
+        self.stops.earliest().iter().enumerate().map(most).collect()
     }
 
     fn observe(&mut self, stop: usize) {
         for entry in self.entries(stop) {
-            self.left[self.local[entry] as usize] *= 1.0 - self.seen(entry);
+            self.left[self.stops.local[entry] as usize] *= 1.0 - self.seen(entry);
         }
     }
 
     fn forget(&mut self, tour: &[usize]) {
         for &stop in tour {
             for entry in self.entries(stop) {
-                let cell = self.local[entry] as usize;
+                let cell = self.stops.local[entry] as usize;
                 self.left[cell] = self.weight[cell];
             }
         }
@@ -209,7 +211,7 @@ impl<'a> Tours<'a> {
             let layer = self.stops.layer(now);
             let mut sum = 0.0_f32;
             for entry in self.entries(stop) {
-                let cell = self.local[entry] as usize;
+                let cell = self.stops.local[entry] as usize;
                 let p = self.seen(entry) * self.left[cell];
                 sum += p * self.discounts[self.discount[cell] as usize][layer];
                 self.left[cell] -= p;
@@ -227,9 +229,15 @@ impl<'a> Tours<'a> {
     }
 
     /// Complete and improve a tour, leaving its first `held` stops in place.
-    fn search(&mut self, mut tour: Vec<usize>, held: usize, ceilings: &[[f32; LAYERS]]) -> Vec<usize> {
+    ///
+    /// `alone` holds at least what each stop adds in every layer before any other; where a search that starts from
+    /// nothing looks more closely, the next search has the exact figure.
+    fn search(&mut self, mut tour: Vec<usize>, held: usize, alone: &mut [[f32; LAYERS]]) -> Vec<usize> {
         (self.held, self.budget) = (held, BUDGET);
-        let mut tables = ceilings.to_vec();
+        if tour.is_empty() {
+            self.best_insertion(&tour, alone);
+        }
+        let mut tables = alone.to_vec();
         self.insert_greedily(&mut tour, &mut tables);
         self.improve(&mut tour);
         self.insert_greedily(&mut tour, &mut tables);
@@ -325,12 +333,13 @@ impl<'a> Tours<'a> {
     fn parts(&mut self, tour: &[usize]) -> Vec<Part> {
         let mut visits = vec![0_u8; self.weight.len()];
         for entry in tour.iter().flat_map(|&stop| self.entries(stop)) {
-            visits[self.local[entry] as usize] += 1;
+            visits[self.stops.local[entry] as usize] += 1;
         }
         let part = |&stop: &usize| {
             let (alone, shared): (Vec<usize>, Vec<usize>) =
-                self.entries(stop).partition(|&entry| visits[self.local[entry] as usize] == 1);
-            let shared = shared.into_iter().map(|entry| (self.local[entry], self.seen(entry))).collect();
+                self.entries(stop).partition(|&entry| visits[self.stops.local[entry] as usize] == 1);
+            let shared =
+                shared.into_iter().map(|entry| (self.stops.local[entry], self.seen(entry))).collect();
             let most = self.by_layer(stop);
             Part { stop, most, alone: self.sum_by_layer(alone.into_iter()), shared }
         };
@@ -384,7 +393,7 @@ impl<'a> Tours<'a> {
 
     /// An upper bound on any tour's marginal value: its best stops, each as early as can be, no overlap.
     fn relaxed(&self) -> f64 {
-        let mut gains: Vec<f32> = self.ceilings().iter().map(|layers| layers[0]).collect();
+        let mut gains = self.ceilings();
         gains.sort_unstable_by(|a, b| b.total_cmp(a));
         gains.iter().take(self.max_stops).map(|&g| f64::from(g)).sum()
     }
@@ -497,10 +506,10 @@ pub fn best_tour(
     let mut tours = Tours::new(stops, worth, layer_weights, others, max_stops);
     let current: Vec<usize> = current.iter().map(|&stop| stop as usize).collect();
     let current_gain = tours.value(&current).0;
-    let ceilings = tours.ceilings();
-    let mut best = tours.search(Vec::new(), 0, &ceilings);
+    let mut alone: Vec<_> = tours.ceilings().iter().map(|gain| [gain * OVER; LAYERS]).collect();
+    let mut best = tours.search(Vec::new(), 0, &mut alone);
     if !current.is_empty() {
-        let kept = tours.search(current, 1, &ceilings);
+        let kept = tours.search(current, 1, &mut alone);
         if tours.score(&best) <= tours.score(&kept) * (1.0 + stickiness) {
             best = kept;
         }

@@ -8,6 +8,7 @@ A sparse impact is two parallel arrays: ``keys`` uint32, strictly increasing,
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +23,7 @@ _Doubles = NDArray[np.float64]
 _Beyond = tuple[float, float, float, float]
 _CellWeights = tuple[_Singles, tuple[int, int], tuple[int, int], _Beyond]
 _Arrays = tuple[
-    _CellWeights, _Doubles, _Doubles, Keys, Misses, NDArray[np.int64], Keys, Misses, _Singles, _Singles
+    _CellWeights, _Doubles, _Doubles, Keys, Misses, NDArray[np.int64], Keys, Keys, Misses, _Singles, _Singles
 ]
 
 
@@ -64,6 +65,11 @@ class Footprints:
     cells: NDArray[np.uint32]  # (M,) planning cells, ascending in each row
     misses: Misses  # (M,) log-miss
 
+    @cached_property
+    def numbers(self) -> tuple[Keys, Keys]:
+        """The planning cells that any of them reveals, ascending, and where among these each entry's is."""
+        return _kernels.number_cells(self.cells)
+
 
 @dataclass(frozen=True, eq=False)
 class Viewpoints:
@@ -102,7 +108,7 @@ class TourProblem:
         marks = self.footprints
         return (
             self.weights.arrays, self.layer_weights, self.edges, *self.others,
-            marks.starts, marks.cells, marks.misses, self.first_leg, self.legs,
+            marks.starts, *marks.numbers, marks.misses, self.first_leg, self.legs,
         )  # fmt: skip
 
 

@@ -29,7 +29,6 @@ from vedette.domains.mapping.stops import (
 from vedette.domains.mapping.views import by_way, look
 from vedette.kernels import coverage
 from vedette.kernels.coverage import LAYERS
-from vedette.kernels.misses import CERTAIN
 from vedette.team import PlatformSpec
 
 LEAST_AREA = 0.08  # a stop must promise this much [m^2]
@@ -307,14 +306,12 @@ class MappingPlatform:
             return NOTHING
         assert self.stops is not None
         marks = self.stops.footprints
-        keys, misses = [], []
+        total = NOTHING.sparse
         for stop, arrival in zip(strategy.stops, strategy.arrivals, strict=True):
             row = slice(marks.starts[stop], marks.starts[stop + 1])
-            keys.append(marks.cells[row] * np.uint32(LAYERS) + np.uint32(belief.layers.layer(arrival)))
-            misses.append(marks.misses[row])
-        distinct, where = np.unique(np.concatenate(keys), return_inverse=True)
-        total = np.bincount(where, np.concatenate(misses), minlength=len(distinct))
-        return Impact(distinct.astype(np.uint32), np.minimum(total, CERTAIN).astype(np.uint8))
+            keys = marks.cells[row] * np.uint32(LAYERS) + np.uint32(belief.layers.layer(arrival))
+            total = coverage.combine(*total, keys, marks.misses[row])
+        return Impact(*total)
 
     def reply(self, belief: MapBelief, others: Impact, current: Tour) -> Tour:
         """Best tour found against the rest of the team, if clearly better than the present one.
