@@ -145,6 +145,7 @@ fn py_number_cells<'py>(py: Python<'py>, cells: PyReadonlyArray1<'py, u32>) -> P
 }
 
 type PyNumbers<'py> = (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray1<u32>>);
+type PyCells<'py> = (PyReadonlyArray1<'py, u32>, PyReadonlyArray1<'py, u32>);
 type PyReply<'py> = (Bound<'py, PyArray1<i64>>, f64, f64);
 
 #[pyfunction(name = "best_tour")]
@@ -156,8 +157,7 @@ fn py_best_tour<'py>(
     others_keys: PyReadonlyArray1<'py, u32>,
     others_misses: PyReadonlyArray1<'py, u8>,
     starts: PyReadonlyArray1<'py, i64>,
-    cells: PyReadonlyArray1<'py, u32>,
-    local: PyReadonlyArray1<'py, u32>,
+    cells: PyCells<'py>,
     misses: PyReadonlyArray1<'py, u8>,
     first_leg: PyReadonlyArray1<'py, f32>,
     legs: PyReadonlyArray2<'py, f32>,
@@ -167,8 +167,8 @@ fn py_best_tour<'py>(
 ) -> PyResult<PyReply<'py>> {
     let stops = Stops {
         starts: starts.as_slice()?,
-        cells: cells.as_slice()?,
-        local: local.as_slice()?,
+        cells: cells.0.as_slice()?,
+        local: cells.1.as_slice()?,
         misses: misses.as_slice()?,
         first_leg: first_leg.as_slice()?,
         legs: legs.as_slice()?,
@@ -189,8 +189,7 @@ fn py_most_any_tour_adds(
     team_keys: PyReadonlyArray1<'_, u32>,
     team_misses: PyReadonlyArray1<'_, u8>,
     starts: PyReadonlyArray1<'_, i64>,
-    cells: PyReadonlyArray1<'_, u32>,
-    local: PyReadonlyArray1<'_, u32>,
+    cells: PyCells<'_>,
     misses: PyReadonlyArray1<'_, u8>,
     first_leg: PyReadonlyArray1<'_, f32>,
     legs: PyReadonlyArray2<'_, f32>,
@@ -198,8 +197,8 @@ fn py_most_any_tour_adds(
 ) -> PyResult<f64> {
     let stops = Stops {
         starts: starts.as_slice()?,
-        cells: cells.as_slice()?,
-        local: local.as_slice()?,
+        cells: cells.0.as_slice()?,
+        local: cells.1.as_slice()?,
         misses: misses.as_slice()?,
         first_leg: first_leg.as_slice()?,
         legs: legs.as_slice()?,

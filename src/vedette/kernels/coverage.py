@@ -23,8 +23,9 @@ _Doubles = NDArray[np.float64]
 _Beyond = tuple[float, float, float, float]
 _CellWeights = tuple[_Singles, tuple[int, int], tuple[int, int], _Beyond]
 _Arrays = tuple[
-    _CellWeights, _Doubles, _Doubles, Keys, Misses, NDArray[np.int64], Keys, Keys, Misses, _Singles, _Singles
-]
+    _CellWeights, _Doubles, _Doubles, Keys, Misses, NDArray[np.int64], tuple[Keys, Keys], Misses,
+    _Singles, _Singles,
+]  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +109,7 @@ class TourProblem:
         marks = self.footprints
         return (
             self.weights.arrays, self.layer_weights, self.edges, *self.others,
-            marks.starts, *marks.numbers, marks.misses, self.first_leg, self.legs,
+            marks.starts, marks.numbers, marks.misses, self.first_leg, self.legs,
         )  # fmt: skip
 
 
