@@ -2,48 +2,22 @@
 
 from __future__ import annotations
 
-import sys
-from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar
 
 import pytest
 
-from tests.support.net_processes import Mission, plan_of, run
+from tests.support.net_processes import misbehaving, plan_of, run
 from tests.support.small_missions import small_office
-from vedette.net.launch import TeamProcesses
 from vedette.net.names import robot_name
 
 ROBOTS, BAD = 3, 2  # the one with the highest number becomes the root
 
 
-@dataclass
-class WithBadMember(TeamProcesses):
-    """A team whose last robot misbehaves."""
-
-    mode: ClassVar[str]
-
-    def _command(self, i: int) -> list[str]:
-        command = super()._command(i)
-        if i != BAD:
-            return command
-        return [sys.executable, "-m", "tests.support.bad_agent", self.mode, *command[3:]]
-
-
-def mission_with(mode: str, folder: Path, max_time: float = 600.0) -> Mission:
-    """A mission at five times real time, one of its robots misbehaving."""
-
-    class Team(WithBadMember):
-        pass
-
-    Team.mode = mode
-    return run(plan_of(small_office(), ROBOTS), folder, team=Team, max_time=max_time)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("mode", ["slow=0.7", "slow=3", "slow=100000", "mute", "wrong map", "echo", "epoch"])
 def test_a_member_that_misbehaves_stops_nobody(mode: str, tmp_path: Path) -> None:
-    mission = mission_with(mode, tmp_path)
+    team = misbehaving(mode, BAD)
+    mission = run(plan_of(small_office(), ROBOTS), tmp_path, team=team, max_time=600.0)
     summary, diary = mission.report.summary, mission.diary
     honest = [i for i in range(ROBOTS) if i != BAD]
     known = [diary.last(i).known for i in honest]

@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 import zenoh
 
-from tests.support.net_team import TEAM, Ports, issue, real_time, wait_until
+from tests.support.net_team import TEAM, Ports, issue, issue_for, real_time, wait_until
 from vedette.errors import InputError, InputWarning
 from vedette.net import (
     Access,
@@ -300,7 +300,7 @@ def test_without_a_valid_certificate_of_the_team_nothing_is_read_or_written(
     issue(tmp_path / "foreign")
     issue_team(TEAM, tmp_path / "expired", 3, yesterday, days=1)
     # Expired keys of the team's own authority: its old leaf certificates under the same root.
-    expired = expired_of(keys, tmp_path / "old")
+    expired = issue_for(keys, tmp_path / "old" / "robot-2", -timedelta(days=1))
     tls = settings(ports.access(1), 1)["transport/link/tls"]
     own = {name: value for name, value in tls.items() if name.startswith("root")}
     attempts: dict[str, object] = {
@@ -342,17 +342,6 @@ def with_keys(tls: dict[str, object], folder: Path, change: dict[str, object]) -
         f"{end}_{what}": str(folder / file) for end in ("listen", "connect") for what, file in files.items()
     }
     return {**tls, **its, "root_ca_certificate": str(folder / "ca.pem"), **change}
-
-
-def expired_of(keys: Path, folder: Path) -> Path:
-    """Let the team's own authority issue a certificate for robot 2 that expired yesterday."""
-    from vedette.net.keys import _issue_one, _load_authority
-
-    now = datetime.now(UTC) - timedelta(days=2)
-    authority = _load_authority(keys, TEAM, now, 1)
-    folder.mkdir()
-    _issue_one(authority, folder / "robot-2")
-    return folder / "robot-2"
 
 
 def test_a_robot_speaks_for_itself_alone_and_hears_what_is_meant_for_it(keys: Path) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import signal
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from dataclasses import replace
@@ -19,6 +21,7 @@ from vedette.agent.networked import BEACON, HELLO, Output
 NEVER = float("inf")
 EPOCH, ECHO = 4, -1  # fields of a hello
 BEACONS_EVERY, BEACONS_AT_ONCE = 0.1, 40  # [s]
+ROUNDS = 3  # that a member whose process ends has taken part in
 
 
 class Slow(NetworkedAgent):
@@ -77,6 +80,19 @@ class Mute(NetworkedAgent):
 
     def _say(self, send: Send, now: float) -> list[Output]:
         return [] if send.traffic is TrafficKind.NEGOTIATION else super()._say(send, now)
+
+
+class Ending(NetworkedAgent):
+    """Ends its own process by a signal in the middle of a round, when it has decided a few times."""
+
+    def __init__(self, agent: Agent, now: float, *, number: signal.Signals, **how: Any) -> None:
+        super().__init__(agent, now, **how)
+        self._number = number
+
+    def _say(self, send: Send, now: float) -> list[Output]:
+        if self.agent.rounds.decisions >= ROUNDS and isinstance(messages.decode(send.payload), Negotiate):
+            os.kill(os.getpid(), self._number)
+        return super()._say(send, now)
 
 
 class Truncating(NetworkedAgent):

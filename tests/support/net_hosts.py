@@ -19,7 +19,7 @@ Cable = tuple[int, int]
 
 def missing() -> str | None:
     """Say what keeps this machine from having hosts of its own; None: nothing does."""
-    for tool, package in (("ip", "iproute2"), ("nft", "nftables")):
+    for tool, package in (("ip", "iproute2"), ("tc", "iproute2"), ("nft", "nftables")):
         if shutil.which(tool) is None:
             return f"no {tool!r} command; it comes with the package {package}"
     trial = f"vedette-trial-{os.getpid()}"
@@ -84,9 +84,19 @@ class Hosts:
     def lose(self, percent: int, cables: Iterable[Cable] | None = None) -> None:
         """Let some cables, or all, lose a share of all packets, both ways: 100 cuts them without a word."""
         for a, b in self.cables if cables is None else cables:
-            number = self._number(a, b)
-            for host in (a, b):
-                self.inside(host, "nft", "-f", "-", text=_rules(f"c{number}", percent))
+            for host, peer in ((a, b), (b, a)):
+                self.deafen(host, peer, percent)
+
+    def deafen(self, host: int, peer: int, percent: int = 100) -> None:
+        """Let a host lose a share of what comes from a peer; the way back is as it was."""
+        self.inside(host, "nft", "-f", "-", text=_rules(f"c{self._number(host, peer)}", percent))
+
+    def limit(self, kbit: int) -> None:
+        """Let every cable carry so much a second, each way, and keep what waits for half a second."""
+        for number, ends in enumerate(self.cables):
+            for host in ends:
+                rate = ("rate", f"{kbit}kbit", "burst", "4kb", "latency", "500ms")
+                self.inside(host, "tc", "qdisc", "replace", "dev", f"c{number}", "root", "tbf", *rate)
 
     def _number(self, a: int, b: int) -> int:
         return next(k for k, cable in enumerate(self.cables) if set(cable) == {a, b})

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
 import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
@@ -142,6 +143,19 @@ class Ring(TeamProcesses):
 
     def _links(self, i: int) -> dict[str, Any]:
         return super()._links(i) | {"connect": [self.endpoints[(i + 1) % len(self.endpoints)]]}
+
+
+def misbehaving(mode: str, who: int, kind: type[TeamProcesses] = TeamProcesses) -> type[TeamProcesses]:
+    """A team of a kind, one of whose robots misbehaves: ``tests.support.bad_agent``."""
+
+    class Team(kind):  # type: ignore[misc,valid-type]
+        def _command(self, i: int) -> list[str]:
+            command: list[str] = super()._command(i)
+            if i != who:
+                return command
+            return [sys.executable, "-m", "tests.support.bad_agent", mode, *command[3:]]
+
+    return Team
 
 
 @dataclass

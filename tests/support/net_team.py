@@ -5,17 +5,18 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import pytest
 
 from vedette.net import Access, credentials
 from vedette.net.endpoints import free_port
-from vedette.net.keys import issue_team
+from vedette.net.keys import _issue_one, issue_team, load_authority
 from vedette.net.names import robot_name
 
 TEAM = "office"
+DAY = timedelta(days=1)
 
 # Real sockets and clocks on a host that other work may keep busy: what fails three times is no accident.
 real_time = pytest.mark.flaky(reruns=2, reruns_delay=2)
@@ -50,6 +51,14 @@ class Ports:
 def issue(folder: Path, robots: int = 3) -> Path:
     """Make the keys of a team that are valid today."""
     issue_team(TEAM, folder, robots, datetime.now(UTC))
+    return folder
+
+
+def issue_for(keys: Path, folder: Path, lasts: timedelta, team: str = TEAM) -> Path:
+    """Let a team's authority issue a certificate that lasts so long from now, or has expired so long ago."""
+    authority = load_authority(keys, team, datetime.now(UTC) - DAY + lasts, 1)
+    folder.parent.mkdir(exist_ok=True)
+    _issue_one(authority, folder)
     return folder
 
 

@@ -7,7 +7,7 @@ sent. A datagram may be lost, repeated, late or out of order; what it says is ch
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -88,6 +88,8 @@ class NetworkedAgent:
         self._links: dict[int, ReliableLink] = {}
         self._sessions: dict[int, tuple[int, int]] = {}  # boot and epoch that each link is open to
         self._waiting: list[Event] = []
+        self._reached: frozenset[int] = frozenset()  # robots that the transport reaches
+        self._excluded: dict[int, str] = {}  # robots to have nothing to do with, and why
 
     @property
     def wake(self) -> float:
@@ -102,14 +104,22 @@ class NetworkedAgent:
         """What is wrong with whom, by robot; this robot's own number among them."""
         absent = dict.fromkeys(self.agent.rounds.absent, "rounds go on without it: it does not answer")
         known = self._acquaintance
-        return known.warnings | absent | self.overlay.complaints | known.complaints
+        return known.warnings | absent | self.overlay.complaints | known.complaints | self._excluded
 
     # -- what happens --------------------------------------------------------------------------------
 
     def peers(self, robots: Iterable[int], now: float) -> list[Output]:
         """Take these as the robots that the transport reaches."""
-        self.overlay.peers(robots, now)
+        self._reached = frozenset(robots)
+        self.overlay.peers(self._reached - self._excluded.keys(), now)
         return self.step((), now)
+
+    def exclude(self, robots: Mapping[int, str], now: float) -> list[Output]:
+        """Have nothing to do with these robots from now on, whatever the transport reaches; and why."""
+        for robot in robots.keys() - self._excluded.keys():
+            self.overlay.lost(robot, now)
+        self._excluded = dict(robots)
+        return self.peers(self._reached, now)
 
     def lost(self, robot: int, now: float) -> list[Output]:
         """Note that the transport has lost a robot."""
@@ -118,6 +128,8 @@ class NetworkedAgent:
 
     def hear(self, sender: int, datagram: bytes, now: float) -> list[Output]:
         """Take in a datagram; one that makes no sense is counted and dropped."""
+        if sender in self._excluded:
+            return []
         events: list[Event] = []
         answers: list[bytes] = []
         kind, data, boot = datagram[:1], datagram[1:], self.agent.boot

@@ -7,6 +7,7 @@ import signal
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import click
@@ -38,7 +39,7 @@ def agent(config_path: Path, speed: float, starter: int | None) -> None:
     config = load_config(config_path)
     try:
         process = agent_process(
-            config, config_path.resolve().parent, speed, lambda line: click.echo(f"vedette: {line}", err=True)
+            config, config_path.resolve().parent, speed, lambda line: _tell(f"vedette: {line}", err=True)
         )
     except InputError as error:
         raise InputError(f"{config_path}: {error}") from error
@@ -48,15 +49,21 @@ def agent(config_path: Path, speed: float, starter: int | None) -> None:
     if starter is not None:
         threading.Thread(target=_outlive, args=(starter, process.stop), daemon=True).start()
     if config.links.insecure:
-        click.echo("vedette: links are plain TCP: whoever reaches the port can read and write", err=True)
+        _tell("vedette: links are plain TCP: whoever reaches the port can read and write", err=True)
     links = config.links
-    click.echo(
+    _tell(
         f"robot {config.robot} of team {config.team}: listens on {', '.join(links.listen) or 'nothing'}, "
         f"connects to {', '.join(links.connect) or 'nobody'}; stop it with Ctrl-C"
     )
     with process.transport:
         process.run()
-    click.echo(f"robot {config.robot}: stopped")
+    _tell(f"robot {config.robot}: stopped")
+
+
+def _tell(line: str, err: bool = False) -> None:
+    """Print a line; a robot goes on where that fails, as on a full disk."""
+    with suppress(InputError):
+        click.echo(line, err=err)
 
 
 def _outlive(starter: int, stop: Callable[[], None]) -> None:

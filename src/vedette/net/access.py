@@ -107,7 +107,9 @@ def settings(access: Access, robot: int | None) -> Settings:
         if access.credentials.robot != robot:
             raise InputError(f"{access.credentials.folder} is for {access.credentials.name}, not for {who}")
         result["transport/link/tls"] = _tls(access.credentials)
-        result["access_control"] = access_control(access.names, robot, access.robots)
+        result["access_control"] = access_control(
+            access.names, robot, access.robots, access.credentials.revoked.robots
+        )
     return result
 
 
@@ -129,15 +131,18 @@ def _tls(credentials: Credentials) -> Settings:
     }
 
 
-def access_control(names: Names, robot: int | None, robots: int) -> Settings:
+def access_control(
+    names: Names, robot: int | None, robots: int, revoked: frozenset[int] = frozenset()
+) -> Settings:
     """Return the rules by which a session judges the others: deny all but what each needs.
 
     A robot's own rules protect it from everybody else, whatever rules those have: robot j takes from robot i
-    only what i may say in its own name and to j.
+    only what i may say in its own name and to j, and nothing from one whose certificate is ``revoked``.
     """
+    others = [i for i in range(robots) if i != robot and i not in revoked]
     if robot is None:
-        return _as_policy(names, [(i, _robot_to_operator(names, i)) for i in range(robots)])
-    mates = [(i, _robot_to_robot(names, robot, i)) for i in range(robots) if i != robot]
+        return _as_policy(names, [(i, _robot_to_operator(names, i)) for i in others])
+    mates = [(i, _robot_to_robot(names, robot, i)) for i in others]
     return _as_policy(names, [*mates, (None, _operator_to_robot(names, robot))])
 
 

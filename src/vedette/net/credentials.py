@@ -16,6 +16,7 @@ from cryptography.x509.oid import NameOID
 from vedette.errors import InputError
 from vedette.input_file import open_input
 from vedette.net.names import OPERATOR, Names, check_team, robot_of
+from vedette.net.revoked import NONE, Revoked, load_revoked
 
 CA, CERT, KEY = "ca.pem", "cert.pem", "key.pem"
 MOST_FILE = 100_000  # [bytes]
@@ -30,6 +31,7 @@ class Credentials:
     team: str
     robot: int | None  # None: the operator
     expires: datetime
+    revoked: Revoked = NONE  # whose certificates of this team count no more
 
     @property
     def name(self) -> str:
@@ -42,7 +44,7 @@ def credentials(folder: Path | str, now: datetime) -> Credentials:
 
     Raises:
         InputError: a file is missing, unreadable or not what it should be, the certificate is not valid now
-            or not of this authority, or the key is another's; the line says which.
+            or revoked, or not of this authority, or the key is another's; the line says which.
     """
     folder = Path(folder)
     authority, certificate = load_certificate(folder / CA), load_certificate(folder / CERT)
@@ -62,8 +64,11 @@ def credentials(folder: Path | str, now: datetime) -> Credentials:
     robot = robot_of(found[1]) if found and found[1] else None
     if found is None or (robot is None and holder != OPERATOR):
         raise InputError(f"{folder / CERT} names neither a robot nor the operator; use 'vedette keys'")
+    revoked = load_revoked(folder, authority, team)
+    if robot in revoked.robots:
+        raise InputError(f"{folder / CERT} has been revoked; ask whoever keeps the team's keys for new ones")
     expires = min(certificate.not_valid_after_utc, authority.not_valid_after_utc)
-    return Credentials(folder, check_team(team), robot, expires)
+    return Credentials(folder, check_team(team), robot, expires, revoked)
 
 
 def _check_time(path: Path, certificate: x509.Certificate, now: datetime) -> None:

@@ -20,6 +20,7 @@ from vedette.errors import InputError
 from vedette.maps.atomic import atomic_path
 from vedette.net.credentials import CA, CERT, KEY, common_name, load_certificate, load_key, read
 from vedette.net.names import MOST_ROBOTS, OPERATOR, check_team, robot_name
+from vedette.net.revoked import put_beside_keys
 from vedette.number import many
 
 CA_KEY, ISSUED = "ca-key.pem", "issued.txt"
@@ -31,7 +32,7 @@ _RECORD = re.compile(rf"(?:robot-([1-9]\d*)|{OPERATOR}) [0-9a-f]+ \d{{4}}-\d\d-\
 
 
 @dataclass(frozen=True)
-class _Authority:
+class Authority:
     """Who signs a team's certificates, and for how long from when."""
 
     key: ec.EllipticCurvePrivateKey
@@ -85,8 +86,8 @@ def add_robots(team: str, folder: Path | str, robots: int, now: datetime, days: 
     folder = Path(folder)
     check_team(team)
     _check_numbers(robots, days)
-    authority = _load_authority(folder, team, now, days)
-    issued = read(folder / ISSUED, most=MOST_ROBOTS * 128).decode(errors="replace")
+    authority = load_authority(folder, team, now, days)
+    issued = _issued(folder)
     first = _last_number(issued, folder / ISSUED)
     if first + robots > MOST_ROBOTS:
         raise InputError(f"team {team!r} has {many(first, 'robot')} already; at most {MOST_ROBOTS} can be")
@@ -100,6 +101,7 @@ def add_robots(team: str, folder: Path | str, robots: int, now: datetime, days: 
             part.write_text(issued)
         for name in names:
             (scratch / name).rename(folder / name)
+    put_beside_keys(folder)
     return [folder / name for name in names]
 
 
@@ -108,6 +110,19 @@ def _check_numbers(robots: int, days: int) -> None:
         raise InputError(f"robots must lie in 1..{MOST_AT_ONCE} at a time; got {robots}")
     if not 1 <= days <= MOST_DAYS:
         raise InputError(f"days must lie in 1..{MOST_DAYS}; got {days}")
+
+
+def last_number(folder: Path) -> int:
+    """Return the highest number of a robot that an authority has issued a certificate to.
+
+    Raises:
+        InputError: its records cannot be read.
+    """
+    return _last_number(_issued(folder), folder / ISSUED)
+
+
+def _issued(folder: Path) -> str:
+    return read(folder / ISSUED, most=MOST_ROBOTS * 128).decode(errors="replace")
 
 
 def _last_number(issued: str, path: Path) -> int:
@@ -123,7 +138,7 @@ def _last_number(issued: str, path: Path) -> int:
 # -- certificates ----------------------------------------------------------------------------------------
 
 
-def _new_authority(team: str, now: datetime, days: int) -> _Authority:
+def _new_authority(team: str, now: datetime, days: int) -> Authority:
     key = ec.generate_private_key(ec.SECP256R1())
     name = _name(f"{team}/authority")
     certificate = (
@@ -133,11 +148,16 @@ def _new_authority(team: str, now: datetime, days: int) -> _Authority:
         .add_extension(x509.SubjectKeyIdentifier.from_public_key(key.public_key()), critical=False)
         .sign(key, hashes.SHA256())
     )
-    return _Authority(key, certificate, now, days)
+    return Authority(key, certificate, now, days)
 
 
-def _load_authority(folder: Path, team: str, now: datetime, days: int) -> _Authority:
-    authority = _Authority(load_key(folder / CA_KEY), load_certificate(folder / CA), now, days)
+def load_authority(folder: Path, team: str, now: datetime, days: int = 0) -> Authority:
+    """Return the authority of a team, which can sign what lasts so many days from now.
+
+    Raises:
+        InputError: ``folder`` holds none of this team, or one that expires before.
+    """
+    authority = Authority(load_key(folder / CA_KEY), load_certificate(folder / CA), now, days)
     if authority.certificate.public_key() != authority.key.public_key():
         raise InputError(f"{folder / CA_KEY} is not the key of {folder / CA}; restore both from one copy")
     if common_name(authority.certificate) != f"{team}/authority":
@@ -148,12 +168,12 @@ def _load_authority(folder: Path, team: str, now: datetime, days: int) -> _Autho
     return authority
 
 
-def _issue(authority: _Authority, parent: Path, names: Sequence[str]) -> str:
+def _issue(authority: Authority, parent: Path, names: Sequence[str]) -> str:
     """Write a folder of three files for each name; return their records."""
     return "".join(f"{name} {_issue_one(authority, parent / name)}\n" for name in names)
 
 
-def _issue_one(authority: _Authority, folder: Path) -> str:
+def _issue_one(authority: Authority, folder: Path) -> str:
     key = ec.generate_private_key(ec.SECP256R1())
     roles = [ExtendedKeyUsageOID.CLIENT_AUTH, ExtendedKeyUsageOID.SERVER_AUTH]
     issuer = x509.AuthorityKeyIdentifier.from_issuer_public_key(authority.key.public_key())

@@ -18,6 +18,8 @@ from vedette.net.clock import Clockwork
 from vedette.net.inbox import Inbox, PeerGone, PeerSeen
 from vedette.net.inbox import ReceivedDatagram as Received
 from vedette.net.names import Topic, robot_name
+from vedette.net.revocations import KIND as REVOKED
+from vedette.net.revocations import Revocations
 from vedette.net.transport import Published, Transport
 from vedette.net.witness import Witness
 
@@ -61,12 +63,14 @@ class AgentProcess:
     mission: Clockwork
     show: Callable[[float], None] | None  # the robot to those beside it, at a mission's time [s]
     say: Callable[[str], None]  # tells whoever watches this process, a line each
+    revocations: Revocations | None = None  # of certificates; None: links are open to everybody
     staged: Staged | None = None  # what befalls its links, to try a team
     clock: Callable[[], float] = time.monotonic
     stopped: bool = False
     _reported: float = -1e9  # [s]
     _reported_at: float = -1e9  # mission time [s]
     _said: dict[int, str] = field(default_factory=dict)  # complaints, by robot
+    _heeded: int = 0  # number of the list of revoked certificates
 
     def stop(self) -> None:
         """End ``run`` soon; may be called from a signal handler."""
@@ -110,6 +114,8 @@ class AgentProcess:
     def _take(self, event: object) -> None:
         now = self.clock()
         match event:
+            case Received(robot, payload) if payload.startswith(REVOKED):
+                self._hear_of_revoked(robot, payload, now)
             case Received(robot, payload):
                 self._do(partial(self.node.hear, robot, payload, now))
             case PeerSeen():
@@ -136,6 +142,28 @@ class AgentProcess:
         if at >= self._reported_at + REPORT_PERIOD and now >= self._reported + LEAST_REPORTS:
             self._report(now)
 
+    def _hear_of_revoked(self, robot: int, payload: bytes, now: float) -> None:
+        if self.revocations is None:
+            return
+        try:
+            for to, answer in self.revocations.hear(robot, payload[1:]):
+                self.transport.send(to, answer)
+        except ValueError:
+            self.witness.malformed += 1
+        self._heed_revoked(now)
+
+    def _heed_revoked(self, now: float) -> None:
+        """Have nothing to do with whose certificate has been revoked, and let the neighbours know."""
+        revocations = self.revocations
+        if revocations is None:
+            return
+        revocations.look(now)
+        if revocations.latest.number > self._heeded:
+            self._heeded = revocations.latest.number
+            self._do(partial(self.node.exclude, revocations.complaints, now))
+        for to, told in revocations.tell(self.transport.peers, now):
+            self.transport.send(to, told)
+
     def _see(self, robot: int, payload: bytes, now: float) -> None:
         if self.shown is None:
             return
@@ -148,6 +176,7 @@ class AgentProcess:
         """Tell the operator, if any, how it goes; not while the agent is at work in another thread."""
         if self.node.hold:
             return
+        self._heed_revoked(now)
         at = self.mission.shows(now)
         self._reported, self._reported_at = now, at
         if self.show is not None:

@@ -16,6 +16,7 @@ from vedette.net.explore.robot import explorer
 from vedette.net.inbox import Inbox
 from vedette.net.names import robot_name
 from vedette.net.process import AgentProcess
+from vedette.net.revocations import Revocations
 from vedette.net.robot import Robot
 from vedette.net.search.robot import searcher
 from vedette.net.simulated import staged_faults
@@ -76,8 +77,10 @@ def agent_process(
         admitted=access.robots,
     )
     witness = Witness(node, robot.body, transport, robot.teller, robot_name(index))
+    keys = access.credentials
+    revocations = None if keys is None else Revocations(keys, say)
     return AgentProcess(
-        node, robot.body, robot.shown, transport, inbox, witness, clock, robot.show, say, staged
+        node, robot.body, robot.shown, transport, inbox, witness, clock, robot.show, say, revocations, staged
     )
 
 
