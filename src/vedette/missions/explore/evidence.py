@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from math import hypot
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +28,8 @@ NUDGE_OF_NOISE = 2.5  # ... or, where noise asks for more, so many of its deviat
 MOST_NUDGE = 0.5  # ... but no more than that [cells]
 BLUR = 1.0  # a return lies within so many deviations of where it seems to [1]
 MATE_MARGIN = 0.15  # a return this near a mate's rim is the mate; more by two deviations of the pose [m]
+
+Place = tuple[float, float]  # x, y [m]
 
 _NOTHING = np.empty(0, np.int64)
 
@@ -83,9 +86,7 @@ class OwnEvidence:
         angles, told = scan.angles[says], scan.ranges[says]
         ranges, hits = np.minimum(told, self.spec.range), told < self.spec.range
         lidar_x, lidar_y = pose.x + scan.offset[0], pose.y + scan.offset[1]
-        for mate in mates:
-            away = mate.x - lidar_x, mate.y - lidar_y
-            self._leave_out(mate, away, pose.deviation, angles, ranges, hits, now - mate.heard, scan.age)
+        self._leave_out(mates, (lidar_x, lidar_y), pose.deviation, angles, ranges, hits, now, scan.age)
         x, y = lidar_x - self.frame.origin_x, lidar_y - self.frame.origin_y
         nudge = self._nudge
         self.learning.scan(self.log_odds, angles, ranges, hits, x, y)
@@ -120,32 +121,37 @@ class OwnEvidence:
 
     def _leave_out(
         self,
-        mate: Mate,
-        away: tuple[float, float],
+        mates: Sequence[Mate],
+        place: Place,
         deviation: float,
         angles: NDArray[np.float64],
         ranges: NDArray[np.float64],
         hits: NDArray[np.bool_],
-        unheard: float,
+        now: float,
         age: float,
     ) -> None:
-        """Turn returns from a mate's body into free space up to just before it.
+        """Turn returns from mates' bodies into free space up to just before them.
 
         Args:
-            mate: the team-mate.
-            away: where it is from the lidar [m], team frame.
+            mates: all; those out of the lidar's sight are passed over.
+            place: of the lidar [m], team frame.
             deviation: of the robot's own place [m].
             angles, ranges, hits: ``(B,)`` of the beams; the last two are changed in place.
-            unheard: time since the mate was heard [s].
+            now: [s].
             age: of the scan [s].
         """
-        dx, dy = away
-        moved = mate.speed * (min(unheard, 0.5) + age)
-        reach = mate.radius + MATE_MARGIN + moved + 2.0 * deviation
-        if np.hypot(dx, dy) > self.spec.range + reach:
+        bodies = []  # dx, dy from the lidar, and how near a return has to be [m]
+        for mate in mates:
+            dx, dy = mate.x - place[0], mate.y - place[1]
+            moved = mate.speed * (min(now - mate.heard, 0.5) + age)
+            reach = mate.radius + MATE_MARGIN + moved + 2.0 * deviation
+            if hypot(dx, dy) <= self.spec.range + reach:
+                bodies.append((dx, dy, reach))
+        if not bodies:
             return
+        dx, dy, reach = np.array(bodies).T[:, :, None]  # (n, 1) each
         off = np.hypot(ranges * np.cos(angles) - dx, ranges * np.sin(angles) - dy)
-        body = hits & (off < reach)
+        body = hits & (off < reach).any(axis=0)
         hits[body] = False
         before = self.frame.resolution + BLUR * deviation
         ranges[body] = np.maximum(ranges[body] - before, 0.0)
