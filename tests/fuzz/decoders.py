@@ -65,6 +65,7 @@ def _decoder(name: str, decode: Decode, encode: Encode, values: Callable[[], lis
 def _agent_messages() -> list[Any]:
     return [
         agent_messages.Beacon(2, 1, 9, 150, -30, 3141, 5, 20, 50, (10, 0, 20, 5)),
+        agent_messages.Beacons((b"one", b"another")),
         agent_messages.Evidence(b"evidence"),
         agent_messages.Call(3),
         agent_messages.Begin(3, 7, 1),

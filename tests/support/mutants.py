@@ -26,12 +26,14 @@ VALUES: tuple[Any, ...] = (0, -1, 1, 255, 2**16, 2**32, 2**53, 2**62, 2**63 - 1,
 DATAGRAMS = {HELLO: Hello, PACKET: Packet, TERMS: Introduction}
 AGENTS = (
     messages.Beacon,
+    messages.Beacons,
     messages.Call,
     messages.Begin,
     messages.Flushed,
     messages.Freeze,
     messages.Negotiate,
 )
+BEACONS = ("Beacon", "Beacons")
 NEGOTIATION = {0: Gather, 1: Token, 2: Up, 3: Down, 4: Stop}  # by tag
 EVIDENCE = ("nonce", "echo", "have robot", "have boot", "have version", "robot", "boot", "base", "version")
 
@@ -74,8 +76,8 @@ class Mutant(NetworkedAgent):
         kind, data = payload[:1], payload[1:]
         if kind in DATAGRAMS and DATAGRAMS[kind].__name__ == self._case.message and self._may(to):
             payload = kind + self._changed(data, 1)
-        if kind == BEACON and self._case.message == "Beacon" and self._may(to):
-            payload = kind + self._changed(data, 1)
+        if kind == BEACON and self._case.message in BEACONS and self._may(to):
+            payload = kind + self._beacon(data)
         return super()._datagram(to, payload, carried)
 
     def _say(self, send: Send, now: float) -> list[Output]:
@@ -84,7 +86,7 @@ class Mutant(NetworkedAgent):
         if name == "Evidence" and name == self._case.message and self._may(send.to):
             assert isinstance(message, messages.Evidence)
             send = replace(send, payload=messages.encode(messages.Evidence(self._evidence(message.data))))
-        elif name == self._case.message and name != "Beacon" and self._may(send.to):
+        elif name == self._case.message and name not in BEACONS and self._may(send.to):
             send = replace(send, payload=self._changed(send.payload, 1))
         elif isinstance(message, messages.Negotiate):
             tag = msgspec.msgpack.decode(message.data)[0]
@@ -107,6 +109,13 @@ class Mutant(NetworkedAgent):
         if place < len(fields):
             fields[place] = self._put(fields[place])
         return msgspec.msgpack.encode(fields)
+
+    def _beacon(self, data: bytes) -> bytes:
+        """Return a beacon, or many, changed; one is changed where it is the first of many, too."""
+        many = messages.decode(data)
+        if isinstance(many, messages.Beacons) and self._case.message == "Beacon":
+            return messages.encode(messages.Beacons((self._changed(many.told[0], 1), *many.told[1:])))
+        return self._changed(data, 1) if type(many).__name__ == self._case.message else data
 
     def _put(self, old: Any) -> Any:
         if isinstance(old, list) and old:

@@ -13,9 +13,9 @@ from math import ceil
 import numpy as np
 
 from vedette.agent import messages
-from vedette.agent.effects import Effect, Send, TrafficKind
+from vedette.agent.effects import Effect
 from vedette.agent.events import Arrived, Event, JobDone, Message, Pose, Scan, Sensed, Stuck, TreeChanged
-from vedette.agent.messages import Beacon
+from vedette.agent.messages import Beacon, Beacons
 from vedette.agent.state import Agent
 
 BEACON_PERIOD = 0.25  # [s]
@@ -27,6 +27,7 @@ def step(agent: Agent, events: Iterable[Event], now: float) -> list[Effect]:
     effects: list[Effect] = []
     for event in events:
         effects += _take(agent, event, now)
+    effects += agent.relay.at_once()
     if agent.pose is not None:
         effects += _go_on(agent, agent.pose, now)
     return effects
@@ -35,7 +36,7 @@ def step(agent: Agent, events: Iterable[Event], now: float) -> list[Effect]:
 def _take(agent: Agent, event: Event, now: float) -> list[Effect]:
     match event:
         case Message(sender, payload):
-            return _guarded(agent, lambda: _hear(agent, sender, messages.decode(payload), now))
+            return _guarded(agent, lambda: _hear(agent, sender, payload, now))
         case Pose():
             agent.pose, agent.posed = event, now
         case Scan() | Sensed():
@@ -69,15 +70,17 @@ def _prepared(agent: Agent, key: tuple[int, int], now: float) -> list[Effect]:
     return effects
 
 
-def _hear(agent: Agent, sender: int, message: messages.Wire, now: float) -> list[Effect]:
+def _hear(agent: Agent, sender: int, payload: bytes, now: float) -> list[Effect]:
+    message = messages.decode(payload)
     if sender not in agent.rounds.tree.neighbours:
         return []
     from_parent = sender == agent.rounds.tree.parent
     match message:
         case Beacon():
-            if message.robot == agent.robot or not agent.mates.hear(message, now, sender):
-                return []
-            return _beacon_to(agent, message, [k for k in agent.rounds.tree.neighbours if k != sender])
+            _hear_beacon(agent, sender, message, payload, now)
+        case Beacons(told):
+            for each in told:
+                _guarded(agent, partial(_hear_told, agent, sender, each, now))
         case messages.Evidence(data):
             agent.mission.fusion.receive(sender, data, now)
         case messages.Call(epoch) if epoch == agent.rounds.tree.epoch and not from_parent:
@@ -93,6 +96,22 @@ def _hear(agent: Agent, sender: int, message: messages.Wire, now: float) -> list
     return []
 
 
+def _hear_told(agent: Agent, sender: int, told: bytes, now: float) -> list[Effect]:
+    """Hear one of many beacons.
+
+    Raises:
+        ValueError: malformed, or something else.
+    """
+    _hear_beacon(agent, sender, messages.decode_beacon(told), told, now)
+    return []
+
+
+def _hear_beacon(agent: Agent, sender: int, beacon: Beacon, told: bytes, now: float) -> None:
+    """Note where a mate is, and pass on that it is there."""
+    if beacon.robot != agent.robot and agent.mates.hear(beacon, now, sender):
+        agent.relay.hear(beacon.robot, told, sender, agent.rounds.tree.neighbours, now)
+
+
 def _go_on(agent: Agent, pose: Pose, now: float) -> list[Effect]:
     """Do what time and the latest decisions ask for."""
     agent.awake = agent.behaviour.wake(agent, pose, now)
@@ -105,7 +124,8 @@ def _go_on(agent: Agent, pose: Pose, now: float) -> list[Effect]:
         start = agent.behaviour.departure(agent, pose, belief)
         effects.append(agent.rounds.preparation(start, agent.mates.all(), now))
     if agent.is_due("beacon", BEACON_PERIOD, now):
-        effects += _beacon(agent, pose)
+        agent.relay.look(agent.mates.all(), agent.rounds.tree.neighbours, now)
+        effects += agent.relay.beacon(_beacon(agent, pose), agent.rounds.tree.neighbours)
     effects += agent.behaviour.look_out(agent, pose, now)
     if agent.is_due("share", SHARE_PERIOD, now) and not agent.rounds.busy:
         agent.mission.publish(now)
@@ -114,7 +134,7 @@ def _go_on(agent: Agent, pose: Pose, now: float) -> list[Effect]:
     return effects
 
 
-def _beacon(agent: Agent, pose: Pose) -> list[Effect]:
+def _beacon(agent: Agent, pose: Pose) -> bytes:
     path = agent.behaviour.ahead(pose)
     offsets = np.rint((path - (pose.x, pose.y)) * 100.0).astype(int)
     agent.beacons += 1
@@ -130,9 +150,4 @@ def _beacon(agent: Agent, pose: Pose) -> list[Effect]:
         max(ceil(agent.hull.speed * 100), 1),
         tuple(offsets.ravel().tolist()),
     )
-    return _beacon_to(agent, beacon, agent.rounds.tree.neighbours)
-
-
-def _beacon_to(agent: Agent, beacon: Beacon, neighbours: Iterable[int]) -> list[Effect]:
-    payload = messages.encode(beacon)
-    return [Send(neighbour, TrafficKind.BEACONS, payload) for neighbour in neighbours]
+    return messages.encode(beacon)

@@ -16,6 +16,7 @@ Notes = Annotated[tuple[Note, ...], Meta(max_length=512)]
 Metre = Annotated[int, Meta(ge=-(2**31), le=2**31)]
 Area = tuple[Metre, Metre, Metre, Metre]  # lowest x, lowest y, highest x, highest y
 Areas = Annotated[tuple[Area, ...], Meta(max_length=8)]
+MOST_TOLD = 64  # beacons in a message
 MOST_ROBOTS = MOST_DEPTH = 1 << 16
 Robots = Annotated[int, Meta(ge=1, le=MOST_ROBOTS)]
 Offset = Annotated[int, Meta(ge=-2000, le=2000)]  # from the robot [cm]; its path's next metres are few
@@ -34,6 +35,12 @@ class Beacon(msgspec.Struct, frozen=True, array_like=True, tag=0):
     radius: Annotated[int, Meta(ge=1, le=1000)]
     speed: Annotated[int, Meta(ge=1, le=100_000)]  # at most [cm/s]
     path: Annotated[tuple[Offset, ...], Meta(max_length=1000)]  # x, y, x, y, ...: its next few metres
+
+
+class Beacons(msgspec.Struct, frozen=True, array_like=True, tag=7):
+    """Many robots' beacons over one link at once, each as its robot has sent it."""
+
+    told: Annotated[tuple[bytes, ...], Meta(max_length=MOST_TOLD)]
 
 
 class Evidence(msgspec.Struct, frozen=True, array_like=True, tag=1):
@@ -86,10 +93,20 @@ class Negotiate(msgspec.Struct, frozen=True, array_like=True, tag=6):
     data: bytes
 
 
-Wire: TypeAlias = Beacon | Evidence | Call | Begin | Flushed | Freeze | Negotiate
+Wire: TypeAlias = Beacon | Beacons | Evidence | Call | Begin | Flushed | Freeze | Negotiate
 
 _DECODER: msgspec.msgpack.Decoder[Wire] = msgspec.msgpack.Decoder(Wire)
+_BEACON_DECODER: msgspec.msgpack.Decoder[Beacon] = msgspec.msgpack.Decoder(Beacon)
 encode = msgspec.msgpack.Encoder().encode
+
+
+def decode_beacon(payload: bytes) -> Beacon:
+    """Return one of `Beacons`.
+
+    Raises:
+        ValueError: malformed.
+    """
+    return wire.decode(_BEACON_DECODER, payload, "beacon")
 
 
 def decode(payload: bytes) -> Wire:

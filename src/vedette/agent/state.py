@@ -16,6 +16,7 @@ from vedette.agent.events import Arrived, Pose, Scan, Sensed, Stuck
 from vedette.agent.mates import Mates
 from vedette.agent.mission import Mission
 from vedette.agent.pace import Pace
+from vedette.agent.relay import Relay
 from vedette.agent.rounds import Decision, Rounds
 from vedette.outcome import Outcome
 
@@ -88,6 +89,7 @@ class Agent:
     awake: bool = False  # it takes part in rounds
     dropped: int = 0  # messages that did not make sense
     mates: Mates = field(default_factory=Mates)
+    relay: Relay = field(default_factory=Relay)  # of their beacons
     rounds: Rounds = field(init=False)
     quiet: int = 0  # rounds in a row with nothing to gain for anybody
     beacons: int = 0  # sent

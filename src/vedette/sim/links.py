@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import heapq
+import itertools
 from collections import defaultdict
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from vedette.agent.effects import Send, TrafficKind
+from vedette.agent.events import Message
 
 
 @dataclass
@@ -17,8 +20,9 @@ class Wires:
     delay: float  # one way [s]
     messages_sent: dict[TrafficKind, list[int]] = field(init=False)  # by kind and robot
     bytes_sent: dict[TrafficKind, list[int]] = field(init=False)
-    _queue: list[tuple[float, int, int, int, bytes]] = field(default_factory=list)
-    _sent: int = 0
+    _queue: list[tuple[float, int, int, list[Message]]] = field(default_factory=list)  # time, number, to
+    _beacons: dict[int, tuple[float, list[Message]]] = field(default_factory=dict)  # last batch by receiver
+    _count: Iterator[int] = field(default_factory=itertools.count)
     _last: defaultdict[tuple[int, int], float] = field(default_factory=lambda: defaultdict(float))
 
     def __post_init__(self) -> None:
@@ -31,14 +35,22 @@ class Wires:
         self.bytes_sent[send.traffic][sender] += len(send.payload)
         link = sender, send.to
         self._last[link] = max(self._last[link], now + self.delay)
-        self._sent += 1
-        heapq.heappush(self._queue, (self._last[link], self._sent, sender, send.to, send.payload))
+        arrival, message = self._last[link], Message(sender, send.payload)
+        time, batch = self._beacons.get(send.to, (-1.0, []))
+        if send.traffic is TrafficKind.BEACONS and time == arrival:
+            batch.append(message)
+            return
+        heapq.heappush(self._queue, (arrival, next(self._count), send.to, batch := [message]))
+        if send.traffic is TrafficKind.BEACONS:
+            self._beacons[send.to] = arrival, batch
 
     def next_arrival(self) -> float:
-        """Return when the next message arrives [s]; inf if none is under way."""
+        """Return when the next messages arrive [s]; inf if none are under way."""
         return self._queue[0][0] if self._queue else float("inf")
 
-    def arrive(self) -> tuple[float, int, int, bytes]:
-        """Take the next message: time, sender, receiver, payload."""
-        time, _, sender, receiver, payload = heapq.heappop(self._queue)
-        return time, sender, receiver, payload
+    def arrive(self) -> tuple[float, int, list[Message]]:
+        """Take what arrives next: time, receiver, and a message, or all beacons that it gets then."""
+        time, _, receiver, batch = heapq.heappop(self._queue)
+        if receiver in self._beacons and self._beacons[receiver][1] is batch:
+            del self._beacons[receiver]
+        return time, receiver, batch

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from vedette.agent import Agent, step
 from vedette.agent.effects import Send, TrafficKind
-from vedette.agent.events import Event, Message, TreeChanged
+from vedette.agent.events import Event, TreeChanged
 from vedette.negotiation import Tree
 from vedette.sim.links import Wires
 from vedette.sim.network import FIRST_BOOT, Act, Spawn
@@ -88,9 +88,9 @@ class PlantedTree:
         return self.wires.next_arrival()
 
     def happen(self) -> tuple[float, int, Act]:
-        """Take the next message."""
-        now, sender, receiver, payload = self.wires.arrive()
-        return now, receiver, self.tell(receiver, [Message(sender, payload)], now)
+        """Take the next message, or the beacons that come at one time: a robot takes them in at once."""
+        now, receiver, messages = self.wires.arrive()
+        return now, receiver, self.tell(receiver, messages, now)
 
     def killed(self, i: int, now: float) -> None:
         """Plant a new tree in a while."""

@@ -7,6 +7,7 @@ import pytest
 
 from tests.support.small_missions import check_complete, drawn, robots, run, small_maze, small_office
 from vedette.agent.effects import Send, TrafficKind
+from vedette.agent.events import Message
 from vedette.domains.mapping.planners import PLANNERS
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.maps.world import World
@@ -214,12 +215,28 @@ def test_a_link_delivers_in_order_after_its_delay_and_counts_what_it_carries() -
     for number in range(4000):
         links.send(0, Send(1, TrafficKind.BEACONS, number.to_bytes(2, "little")), number * 1e-3)
     for number in range(4000):
-        time, sender, receiver, payload = links.arrive()
-        assert (sender, receiver, int.from_bytes(payload, "little")) == (0, 1, number)
+        time, receiver, arrived = links.arrive()
+        assert (receiver, arrived) == (1, [Message(0, number.to_bytes(2, "little"))])
         assert time == pytest.approx(number * 1e-3 + 0.05)
     assert links.next_arrival() == float("inf")
     assert links.messages_sent[TrafficKind.BEACONS] == [4000, 0]
     assert links.bytes_sent[TrafficKind.BEACONS] == [8000, 0]
+
+
+@pytest.mark.parametrize("delay", [0.0, 0.05])
+def test_beacons_that_come_at_one_time_are_taken_in_at_once_and_nothing_else_is(delay: float) -> None:
+    links = Wires(3, delay)
+    for sender, kind, payload in (
+        (0, TrafficKind.BEACONS, b"a"),
+        (0, TrafficKind.FUSION, b"b"),
+        (1, TrafficKind.BEACONS, b"c"),
+        (1, TrafficKind.FUSION, b"d"),
+    ):
+        links.send(sender, Send(2, kind, payload), 1.0)
+    a, b, c, d = Message(0, b"a"), Message(0, b"b"), Message(1, b"c"), Message(1, b"d")
+    assert links.arrive()[2] == [a, c]
+    links.send(0, Send(2, TrafficKind.BEACONS, b"a"), 1.0)
+    assert [links.arrive()[2] for _ in range(3)] == [[b], [d], [a]]
 
 
 def test_the_sum_of_curves_is_what_the_log_says() -> None:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import inf
 
 from vedette.agent import Agent, GroundBehaviour
 from vedette.agent.driving import Driver
+from vedette.agent.relay import Relay, nearby
 from vedette.agent.terms import Terms, flat
 from vedette.domains.mapping.belief import planning_factor
 from vedette.domains.mapping.planners import planner
@@ -74,6 +76,8 @@ def assemble(
     """
     check_word("fusion", options.fusion, FUSIONS)
     fusion: Fusion = FUSIONS[options.fusion](robot, boot, lattice.frame.shape, 4 * BINS, mark=lattice.mark)
-    mission = explorer(lattice, spec, planner(options.planner, robots), fusion, most=most)
+    how = planner(options.planner, robots)
+    mission = explorer(lattice, spec, how, fusion, most=most)
     behaviour = GroundBehaviour(mission, Driver(robot, spec), options.return_home, waits_for)
-    return Agent(robot, boot, spec, behaviour, options.negotiates_by)
+    relay = Relay(nearby(most.range, most.speed) if how.negotiates else inf)  # others plan by mates' places
+    return Agent(robot, boot, spec, behaviour, options.negotiates_by, relay=relay)
