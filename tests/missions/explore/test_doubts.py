@@ -11,6 +11,8 @@ from tests.support.small_missions import robots, run, two_rooms
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
 from vedette.missions.explore.doubts import SETTLED, SURE, Doubts, jutting_out
 from vedette.outcome import Outcome
+from vedette.sim.explore.run import explore, prepare
+from vedette.sim.explore.simulation import ExploreSetup
 from vedette.team import PlatformSpec
 
 
@@ -65,11 +67,22 @@ def test_a_way_that_noise_has_closed_is_driven_through(
     assert report.summary.collisions == 0
 
 
+def test_who_has_often_doubted_in_vain_doubts_no_more() -> None:
+    specs = [PlatformSpec(start=(1.0, 1.3))]
+    setup = ExploreSetup(seed=1, max_time=900.0)
+    simulation = prepare(two_rooms(0.45, 0.03, bent=True), specs, setup)  # driven through above
+    simulation.missions[0].platform.in_vain = 10
+    report = explore(simulation)
+    assert report.summary.coverage < 0.7
+    assert "out_of_reach" in {spot.why for spot in report.summary.left_out}
+
+
 def test_a_way_that_a_post_closes_is_tried_once() -> None:
     world = two_rooms(0.6, 0.05)
     row, col = np.array(world.solid.shape) // 2
     world.solid[row, col] = True
-    _, report = run(world, [PlatformSpec(start=(1.0, 1.0))], seed=1)
+    simulation, report = run(world, [PlatformSpec(start=(1.0, 1.0))], seed=1)
+    assert simulation.missions[0].platform.in_vain == 1
     assert report.summary.outcome is Outcome.COMPLETE
     assert "out_of_reach" in {spot.why for spot in report.summary.left_out}
     assert report.summary.collisions == 0

@@ -31,7 +31,8 @@ from vedette.kernels import coverage
 from vedette.kernels.coverage import LAYERS
 from vedette.team import PlatformSpec
 
-LEAST_AREA = 0.08  # a stop must promise this much [m^2]
+LEAST_AREA = 0.08  # a stop must promise this much [m^2] ...
+WORTH_A_DARE = 1.0  # ... and behind what is doubtful so much, twice as much after every doubt in vain [m^2]
 HYSTERESIS = 0.03  # a new strategy must gain this share more than the present one
 STICKINESS = 0.1  # to turn away from the stop under way must gain this share more
 PATIENCE = 4  # times the usual work, if that finds nothing; twice as much each time that is not enough
@@ -114,6 +115,7 @@ class MappingPlatform:
     doubtful: NDArray[np.bool_] | None = None  # (R, C) of the window: occupied, but not for sure
     ground: Ground | None = None
     daring: bool = False  # the round's stops are behind what is doubtful
+    in_vain: int = 0  # doubts in a row that led nowhere
     stops: Stops | None = None
     considered: NDArray[np.float64] = field(init=False)  # (N, 2) frontiers of stops, those left alone too [m]
     cut_short: bool = field(init=False, default=False)  # the round's work ended before all was looked at
@@ -194,13 +196,16 @@ class MappingPlatform:
     ) -> bool:
         """Find the nearest stops, or if they are no good those after them; tell if one can be visited."""
         least = max(LEAST_AREA, 0.5 * belief.frame.resolution**2)
+        dare = min(WORTH_A_DARE, 2.0 * enough_of_sight(self.spec)) * 2.0**self.in_vain
         closer = [(spot.x, spot.y) for spot in self.closer]
         tried = _NONE
         self.considered = _NOWHERE
         for effort in (1, self.patience):
             found = look(belief, ground, self.spec, close=close, closer=closer, last=last, effort=effort)
             for lot in by_way(found.only(~np.isin(found.clusters, tried)), ground):
-                stops = find_stops(belief, ground, self.spec, model, least, lot, tours=self.ahead > 1)
+                stops = find_stops(
+                    belief, ground, self.spec, model, least, lot, dare=dare, tours=self.ahead > 1
+                )
                 self.considered = np.concatenate((self.considered, stops.targets))
                 self.stops = self._without_left_alone(stops, LEFT_ALONE_AT_LAST if last else LEFT_ALONE)
                 if self.leads_anywhere:

@@ -39,6 +39,7 @@ class Ground:
     passable: NDArray[np.bool_]  # (R, C) of the belief's window
     source: int  # the robot's own cell
     field: NDArray[np.float32]  # (R, C) path length from the robot [m], inf where unreachable
+    dared: bool = False  # some of it is free only if what is doubtful is
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +78,8 @@ def survey(
         block(passable, frame, disc, spec.radius + clearance)
     row, col = np.clip(frame.cell(x, y), 0, (frame.rows - 1, frame.cols - 1))
     source = int(row * frame.cols + col)
-    return Ground(passable, source, distance.distance_field(passable, source, frame.resolution))
+    field = distance.distance_field(passable, source, frame.resolution)
+    return Ground(passable, source, field, dared=doubtful is not None)
 
 
 def block(passable: NDArray[np.bool_], frame: GridFrame, disc: Disc, radius: float) -> None:
@@ -115,9 +117,12 @@ def find_stops(
     least_area: float,
     found: Viewpoints,
     *,
+    dare: float = 0.0,
     tours: bool = True,
 ) -> Stops:
     """Turn viewpoints into stops that reveal at least ``least_area`` [m^2] in expectation.
+
+    On dared ground none reveals less than ``dare`` [m^2], however little the robot sees at once.
 
     In a large building a stop must promise more than in a small one, and a gap that the body does not fit
     through more than another: behind most of them is the inside of a wall or of furniture, and nothing leads
@@ -132,7 +137,8 @@ def find_stops(
     )
     lengths = np.diff(belief.frontier_starts)[found.clusters] * frame.resolution
     least = _least(belief, lengths <= 2.0 * spec.radius + 1e-9, least_area)
-    enough = area * frame.resolution**2 >= np.minimum(least, enough_of_sight(spec))
+    asked = np.maximum(np.minimum(least, enough_of_sight(spec)), dare if ground.dared else 0.0)
+    enough = area * frame.resolution**2 >= asked
     starts, cells, shares = _select(starts, cells, shares, enough)
     targets, views = targets[enough], views[enough]
     target_points, view_points = frame.centres(targets), frame.centres(views)

@@ -255,6 +255,8 @@ class Exploring:
         else:
             afar = float(np.hypot(*(self.strategy.targets[0] - self.strategy.views[0])))
             self.platform.visited.append((x, y, int(self.strategy.unknown[0]), afar))
+            if self.platform.daring:
+                self.platform.in_vain = 0
         self.strategy = self.strategy.after_first()
         return True
 
@@ -275,6 +277,7 @@ class Exploring:
         """
         if self.platform.daring:
             self._doubts.settle(*self._at)
+            self.platform.in_vain += 1
         elif len(self.strategy):
             self._put_off(now)
         self.strategy, self._resort.goal = STAY, None
