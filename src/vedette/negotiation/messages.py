@@ -81,16 +81,89 @@ class Stop(msgspec.Struct, frozen=True, array_like=True, tag=4):
     iterate: Count | None = None  # whose strategies everybody takes up again; None: the present ones
 
 
-Message: TypeAlias = Gather[ImpactT] | Token[ImpactT] | Up[ImpactT] | Down[ImpactT] | Stop
+class Fork(msgspec.Struct, Generic[ImpactT], frozen=True, array_like=True, tag=5, eq=False):
+    """The right to choose, to a child's whole part of the tree at once."""
+
+    mu: ImpactT | None
+    keep: bool  # what the part became in the last sweep; otherwise as it was before
+
+
+class Joined(msgspec.Struct, Generic[ImpactT], frozen=True, array_like=True, tag=6, eq=False):
+    """What a part of the tree has become in a sweep, for its parent to take or to refuse."""
+
+    mu: ImpactT | None
+    value: Value  # of the part by itself
+    slack: Most  # sum over the part; counts if nobody in the team has moved
+    size: Size
+    ceiling: Most
+    moved: Count  # platforms that changed, whether or not their parents let them
+    first: bool  # one of them had no strategy before
+
+
+class Settled(msgspec.Struct, frozen=True, array_like=True, tag=7):
+    """To everybody, once: the round of forks is over."""
+
+    outcome: RoundOutcome
+    keep: bool  # as in ``Fork``
+    quiet: bool  # nobody moved in the last sweep, so that everybody knows the rest of the team
+
+
+class Offer(msgspec.Struct, Generic[ImpactT], frozen=True, array_like=True, tag=8, eq=False):
+    """Towards the root, whenever there is reason to: what a part of the tree would become, or that all is well."""
+
+    mu: ImpactT | None  # None: nothing is offered
+    serial: Count  # of the last offer
+    heard: Count  # serial of the last news
+    quiet: bool  # nobody in the part has anything more to offer, all having heard those news
+    fact: bool  # what is offered is so already: not to be refused
+    value: Value  # of the part by itself, as offered
+    slack: Most  # sum over the part; counts if quiet
+    size: Size
+    ceiling: Most
+    changes: Count  # of strategy, offered: most of any platform of the part
+    capped: bool  # one of them was not allowed any more
+
+
+class News(msgspec.Struct, Generic[ImpactT], frozen=True, array_like=True, tag=9, eq=False):
+    """Away from the root: the rest of the team, and what has become of the last offer."""
+
+    mu: ImpactT
+    serial: Count
+    answered: Count  # serial of the last offer that was taken or refused
+    taken: bool
+
+
+Message: TypeAlias = (
+    Gather[ImpactT]
+    | Token[ImpactT]
+    | Up[ImpactT]
+    | Down[ImpactT]
+    | Stop
+    | Fork[ImpactT]
+    | Joined[ImpactT]
+    | Settled
+    | Offer[ImpactT]
+    | News[ImpactT]
+)
 
 _DECODER: msgspec.msgpack.Decoder[Message[bytes]] = msgspec.msgpack.Decoder(
-    Gather[bytes] | Token[bytes] | Up[bytes] | Down[bytes] | Stop
+    Gather[bytes]
+    | Token[bytes]
+    | Up[bytes]
+    | Down[bytes]
+    | Stop
+    | Fork[bytes]
+    | Joined[bytes]
+    | Settled
+    | Offer[bytes]
+    | News[bytes]
 )
+_BARE = (Stop, Settled)  # without an impact
 
 
 def encode(message: Message[ImpactT], codec: Codec[ImpactT]) -> bytes:
     """Return the message as MessagePack, its impact encoded by the codec."""
-    if isinstance(message, Stop) or message.mu is None:
+    if isinstance(message, _BARE) or message.mu is None:
         return msgspec.msgpack.encode(message)
     return msgspec.msgpack.encode(msgspec.structs.replace(message, mu=codec.encode(message.mu)))
 
@@ -99,7 +172,7 @@ def decode(data: bytes, codec: Codec[ImpactT]) -> Message[ImpactT]:
     """Return the message that ``encode`` was given; ``InputError`` if it is malformed."""
     try:
         message: Any = wire.decode(_DECODER, data, "negotiation message")
-        if not isinstance(message, Stop) and message.mu is not None:
+        if not isinstance(message, _BARE) and message.mu is not None:
             message = msgspec.structs.replace(message, mu=codec.decode(message.mu))
     except ValueError as error:
         raise InputError(str(error)) from error
@@ -108,7 +181,7 @@ def decode(data: bytes, codec: Codec[ImpactT]) -> Message[ImpactT]:
 
 def size(message: Message[ImpactT]) -> int:
     """Return the message's length in bytes where there is no codec: MessagePack around ``plain_size``."""
-    if isinstance(message, Stop) or message.mu is None:
+    if isinstance(message, _BARE) or message.mu is None:
         return len(msgspec.msgpack.encode(message))
     return len(msgspec.msgpack.encode(msgspec.structs.replace(message, mu=b""))) + plain_size(message.mu)
 

@@ -15,7 +15,7 @@ from vedette.negotiation.door import check_codec, check_round, checked_reach, li
 from vedette.negotiation.jacobi import JacobiNode
 from vedette.negotiation.node import Negotiator, Outgoing
 from vedette.negotiation.optimiser import Optimiser
-from vedette.negotiation.schemes import node_of
+from vedette.negotiation.schemes import Node, node_of
 from vedette.negotiation.token import TokenNode
 from vedette.negotiation.tree import Tree
 from vedette.problem.checked import value_of
@@ -64,6 +64,7 @@ def negotiate(
     inverse: bool = False,
     codec: Codec[ImpactT] | None = None,
     reach: Sequence[Reach] | None = None,
+    guard: bool = True,
 ) -> Negotiation:
     """Let every platform choose one of its candidates by messages on a tree, towards ``max psi``.
 
@@ -124,6 +125,7 @@ def negotiate(
             max_sweeps=max_sweeps,
             reaches=reaches[i],
             remove=remove,
+            guard=guard,
         )
         for i, seat in enumerate(seats)
     ]
@@ -218,7 +220,7 @@ def _outwards(tree: Tree, parents: Sequence[int | None]) -> list[int]:
     return order
 
 
-def _steps(nodes: Sequence[TokenNode[ImpactT] | JacobiNode[ImpactT]]) -> list[Step]:
+def _steps(nodes: Sequence[Node[ImpactT]]) -> list[Step]:
     """Return the values after the start, in the order in which they came about."""
     n = len(nodes)
     iterates: list[Step] = []
@@ -227,5 +229,7 @@ def _steps(nodes: Sequence[TokenNode[ImpactT] | JacobiNode[ImpactT]]) -> list[St
         if isinstance(node, TokenNode):
             turns.extend((k, i, value) for k, value in node.turns)
         else:  # only the root has any
-            iterates.extend(Step(sweep, None, value) for sweep, value in enumerate(node.values) if sweep > 0)
+            first = 0 if isinstance(node, JacobiNode) else 1  # iterate 0 is the start
+            sweeps = enumerate(node.values, first)
+            iterates.extend(Step(sweep, None, value) for sweep, value in sweeps if sweep > 0)
     return iterates + [Step(-(-k // n), i, value) for k, i, value in sorted(turns)]

@@ -150,13 +150,22 @@ class TreeLinks(Generic[ImpactT]):
 
     def receive(self, sender: int, mu: ImpactT | None) -> None:
         """Hold a neighbour's mu; ``None`` keeps the one held. ``ValueError`` if it claims too much."""
+        self.admit(sender, mu)
+        if mu is not None:
+            self.hold(sender, mu)
+
+    def admit(self, sender: int, mu: ImpactT | None) -> None:
+        """Raise ``ValueError`` for a mu that claims too much, or for none where none is held."""
         if mu is not None:
             if self._claims is not None:
                 self._claims.admit(mu, self._claims.platforms[sender])
-            self._held.put(self._place[sender], mu)
-            self._stale.update(k for k in self.neighbours if k != sender)
         elif self._held[self._place[sender]] is None:
             raise InputError(f"negotiation message from {sender} refers to an impact never sent; drop it")
+
+    def hold(self, sender: int, mu: ImpactT) -> None:
+        """Hold a mu that has been admitted."""
+        self._held.put(self._place[sender], mu)
+        self._stale.update(k for k in self.neighbours if k != sender)
 
     def cut(self, neighbour: int) -> None:
         """Hold nothing of a neighbour, and count it as one no more."""
@@ -180,10 +189,13 @@ class TreeLinks(Generic[ImpactT]):
         if receiver not in self._stale:
             return None
         self._stale.remove(receiver)
-        rest = self._held.without(self._place[receiver])
-        mu = self._own.impact if rest is None else self._own.combine(self._own.impact, rest)
-        reach = self._reaches.get(receiver)
+        mu, reach = self.all_but(receiver), self._reaches.get(receiver)
         return mu if reach is None else self._own.clip(mu, reach)
+
+    def all_but(self, neighbour: int) -> ImpactT:
+        """Return what is held of everybody not behind a neighbour, the own impact included."""
+        rest = self._held.without(self._place[neighbour])
+        return self._own.impact if rest is None else self._own.combine(self._own.impact, rest)
 
     @property
     def heard_all(self) -> bool:

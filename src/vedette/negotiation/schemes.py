@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import TypeAlias
 
 from vedette.errors import check_word
+from vedette.negotiation.asynchronous import AsyncNode
+from vedette.negotiation.fork import ForkNode
 from vedette.negotiation.jacobi import JacobiNode
 from vedette.negotiation.node import Claims, Participant
 from vedette.negotiation.token import TokenNode
 from vedette.problem.objective import ImpactT
 from vedette.problem.reach import Reach
 
-SCHEMES = ("token", "jacobi")
+Node: TypeAlias = TokenNode[ImpactT] | ForkNode[ImpactT] | AsyncNode[ImpactT] | JacobiNode[ImpactT]
+SCHEMES = ("token", "fork", "async", "jacobi")
 
 
 def node_of(
@@ -25,14 +29,21 @@ def node_of(
     reaches: Mapping[int, Reach] | None = None,
     remove: Callable[[ImpactT, ImpactT], ImpactT] | None = None,
     claims: Claims[ImpactT] | None = None,
-) -> TokenNode[ImpactT] | JacobiNode[ImpactT]:
+    guard: bool = True,
+) -> Node[ImpactT]:
     """Return a platform's part in a round of one of the ``SCHEMES``; InputError for another name.
 
-    ``reaches`` are for ``token`` alone, ``remove`` is for ``jacobi`` alone; all else as the nodes take it.
+    ``reaches`` are not for ``jacobi``, ``remove`` is for it alone, ``guard`` for ``async``; all else as the
+    nodes take it.
     """
     check_word("scheme", scheme, SCHEMES)
-    if scheme == "token":
-        return TokenNode(
+    if scheme == "async":
+        return AsyncNode(
+            neighbours, parent, own, max_sweeps=max_sweeps, reaches=reaches, claims=claims, guard=guard
+        )
+    if scheme != "jacobi":
+        kind = TokenNode if scheme == "token" else ForkNode
+        return kind(
             neighbours, parent, own, epsilon=epsilon, max_sweeps=max_sweeps, reaches=reaches, claims=claims
         )
     return JacobiNode(
