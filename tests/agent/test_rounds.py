@@ -22,7 +22,7 @@ from vedette.problem import Coverage
 INTERVAL = 1.0  # least time between rounds [s]
 
 
-@pytest.mark.parametrize("scheme", ["token", "jacobi"])
+@pytest.mark.parametrize("scheme", ["token", "fork", "jacobi"])
 @settings(deadline=None, max_examples=15)
 @given(n=st.integers(1, 8), seed=st.integers(0, 10**6))
 def test_a_round_decides_what_negotiate_does_on_the_same_candidates_and_tree(
@@ -37,6 +37,20 @@ def test_a_round_decides_what_negotiate_does_on_the_same_candidates_and_tree(
     assert len({agent.rounds.stamp for agent in team.agents}) == 1
     assert len({toy(agent).fusion.digest for agent in team.agents}) == 1
     assert [agent.dropped for agent in team.agents] == [0] * n
+
+
+@settings(deadline=None, max_examples=15)
+@given(n=st.integers(1, 8), seed=st.integers(0, 10**6))
+def test_an_asynchronous_round_ends_for_all_where_nobody_gains_alone(n: int, seed: int) -> None:
+    team, candidates, belief = toy_team(Tree.random(n, seed=seed), seed, "async")
+    team.run_round()
+    assert team.decisions() == [1] * n
+    assert [agent.dropped for agent in team.agents] == [0] * n
+    chosen = [own[k] for own, k in zip(candidates, team.choices(), strict=True)]
+    value = Coverage().value(belief, np.prod(chosen, axis=0))
+    for i, own in enumerate(candidates):
+        rest = np.prod([np.ones_like(belief), *chosen[:i], *chosen[i + 1 :]], axis=0)
+        assert max(Coverage().value(belief, rest * other) for other in own) <= value + 1e-9
 
 
 def test_a_later_round_starts_from_the_strategies_in_hand_and_keeps_an_equilibrium() -> None:

@@ -13,12 +13,22 @@ from hypothesis import strategies as st
 
 from tests.support.random_teams import Float, Longest, Node, misses
 from vedette import Coverage, InputError, Tree, exhaustive
-from vedette.negotiation import Chooser, JacobiNode, Message, Outgoing, RoundOutcome, TokenNode
+from vedette.negotiation import (
+    SCHEMES,
+    Chooser,
+    JacobiNode,
+    Message,
+    Outgoing,
+    RoundOutcome,
+    TokenNode,
+    node_of,
+)
 from vedette.negotiation.messages import Gather, Stop, Tally, Token, Up
 from vedette.problem import Reach
 from vedette.problem.reach import behind
 
 CELLS = 12
+KINDS = ["token", "fork", "async", "jacobi", "token, clipped", "fork, clipped", "async, clipped"]
 SEEDS = st.integers(0, 100_000)
 
 
@@ -126,12 +136,12 @@ class Placed(Coverage):
 
 
 def round_of(rng: np.random.Generator, n: int, kind: str, tree: Tree | None = None) -> tuple[Round, Float]:
-    """A random team and its weights; "clipped": each sees a few cells, and token messages are clipped."""
+    """A random team and its weights; "clipped": each sees a few cells, and messages are clipped."""
     tree, weights = tree or Tree.random(n, seed=rng), rng.uniform(0.2, 1.0, size=CELLS)
     candidates = misses(rng, n, 4, CELLS)
     parents = tree.parents()
     reaches: list[dict[int, Reach]] = [{} for _ in range(n)]
-    if kind == "clipped":
+    if "clipped" in kind:
         first = rng.integers(0, CELLS - 3, size=n)
         own: list[Reach] = [((float(x), 0.0, float(x + 3), 0.0),) for x in first]
         for i in range(n):
@@ -142,12 +152,10 @@ def round_of(rng: np.random.Generator, n: int, kind: str, tree: Tree | None = No
             for k in tree.neighbours(i):
                 reaches[i][k] = _reach_beyond(tree, own, i, k)
     start: list[int | None] = rng.integers(4, size=n).tolist() if rng.uniform() < 0.7 else [None] * n
-    objective = Placed() if kind == "clipped" else Coverage()
+    objective = Placed() if "clipped" in kind else Coverage()
     team = [Chooser(objective, weights, own, start=k) for own, k in zip(candidates, start, strict=True)]
     nodes: list[Node] = [
-        JacobiNode(tree.neighbours(i), parents[i], team[i])
-        if kind == "jacobi"
-        else TokenNode(tree.neighbours(i), parents[i], team[i], reaches=reaches[i])
+        node_of(kind.split(",")[0], tree.neighbours(i), parents[i], team[i], reaches=reaches[i])
         for i in range(n)
     ]
     return Round(tree, nodes, team, candidates, rng), weights
@@ -181,7 +189,7 @@ def play(run: Round) -> RoundOutcome:
 
 
 @settings(deadline=None, max_examples=150)
-@given(seed=SEEDS, n=st.integers(2, 10), kind=st.sampled_from(["token", "jacobi", "clipped"]))
+@given(seed=SEEDS, n=st.integers(2, 10), kind=st.sampled_from(KINDS))
 def test_whoever_is_left_ends_with_the_value_of_exactly_those_left(seed: int, n: int, kind: str) -> None:
     run, weights = round_of(np.random.default_rng(seed), n, kind)
     outcome = play(run)
@@ -193,7 +201,7 @@ def test_whoever_is_left_ends_with_the_value_of_exactly_those_left(seed: int, n:
 
 
 @settings(deadline=None, max_examples=100)
-@given(seed=SEEDS, n=st.integers(2, 8), kind=st.sampled_from(["token", "jacobi", "clipped"]))
+@given(seed=SEEDS, n=st.integers(2, 8), kind=st.sampled_from(KINDS))
 def test_those_cut_at_any_time_are_in_the_value_only_if_they_hear_the_end(
     seed: int, n: int, kind: str
 ) -> None:
@@ -215,7 +223,7 @@ def test_those_cut_at_any_time_are_in_the_value_only_if_they_hear_the_end(
 
 
 @settings(deadline=None, max_examples=60)
-@given(seed=SEEDS, n=st.integers(2, 9), kind=st.sampled_from(["token", "clipped"]))
+@given(seed=SEEDS, n=st.integers(2, 9), kind=st.sampled_from(["token", "token, clipped"]))
 def test_after_a_cut_the_value_never_falls_and_ends_where_nobody_gains_alone(
     seed: int, n: int, kind: str
 ) -> None:
@@ -233,7 +241,7 @@ def test_after_a_cut_the_value_never_falls_and_ends_where_nobody_gains_alone(
 
 
 @settings(deadline=None, max_examples=60)
-@given(seed=SEEDS, n=st.integers(2, 4), kind=st.sampled_from(["token", "jacobi", "clipped"]))
+@given(seed=SEEDS, n=st.integers(2, 4), kind=st.sampled_from(KINDS))
 def test_the_bound_after_a_cut_is_above_the_optimum_of_those_left(seed: int, n: int, kind: str) -> None:
     run, weights = round_of(np.random.default_rng(seed), n, kind)
     outcome = play(run)
@@ -242,7 +250,7 @@ def test_the_bound_after_a_cut_is_above_the_optimum_of_those_left(seed: int, n: 
     assert outcome.value <= best + 1e-9 <= outcome.bound + 2e-9
 
 
-@pytest.mark.parametrize("kind", ["token", "jacobi"])
+@pytest.mark.parametrize("kind", SCHEMES)
 def test_who_loses_everybody_decides_alone(kind: str) -> None:
     run, weights = round_of(np.random.default_rng(3), 5, kind, Tree.star(5))
     run.dead.update({1, 2, 3, 4})

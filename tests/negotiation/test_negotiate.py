@@ -10,7 +10,21 @@ import pytest
 from tests.support.random_teams import Float, misses
 from vedette import Coverage, InputError, Objective, Tree, exhaustive, negotiate
 from vedette.negotiation import SCHEMES, Message, decode, encode
-from vedette.negotiation.messages import Down, Gather, RoundOutcome, Stop, Tally, Token, Up, plain_size
+from vedette.negotiation.messages import (
+    Down,
+    Fork,
+    Gather,
+    Joined,
+    News,
+    Offer,
+    RoundOutcome,
+    Settled,
+    Stop,
+    Tally,
+    Token,
+    Up,
+    plain_size,
+)
 
 
 class Plain:
@@ -66,6 +80,11 @@ def test_a_message_survives_its_bytes() -> None:
         Up(mu, 1.0, float("inf"), (0, 2)),
         Down(None),
         Stop(outcome, 3),
+        Fork(mu, False),
+        Joined(None, 1.0, float("inf"), 3, 2.0, 1, True),
+        Settled(outcome, False, True),
+        Offer(mu, 3, 2, False, True, 1.0, float("inf"), 4, 2.0, 1, False),
+        News(mu, 3, 1, False),
     ]
     for message in sent:
         back = decode(encode(message, Plain()), Plain())

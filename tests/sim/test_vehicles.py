@@ -14,6 +14,7 @@ from vedette.agent.body import TICK
 from vedette.agent.effects import Drive, Fly
 from vedette.agent.flight import FlightPlan, start_step
 from vedette.errors import InputError
+from vedette.negotiation import SCHEMES
 from vedette.outcome import Outcome
 from vedette.sim.vehicles import Vehicles
 
@@ -31,7 +32,7 @@ def others_of(team: FlightTeam, i: int) -> NDArray[np.float64]:
     return reduce(np.multiply, impacts)
 
 
-@pytest.mark.parametrize("scheme", ["token", "jacobi"])
+@pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("delay", [0.01, 0.06])
 def test_every_round_all_plan_for_the_same_steps(scheme: str, delay: float) -> None:
     team = flown(4, scheme=scheme, link_delay=delay)

@@ -69,7 +69,7 @@ class Plan:
         edges = random_graph(n, rng, float(rng.choice([0.0, 0.3, 1.0])))
         sites = Sites.random(n, int(rng.integers(2, 3 + 3 * n)), rng)
         places = rng.uniform(0.0, FRAME.cols * FRAME.resolution, (n, 2))
-        scheme = "jacobi" if rng.random() < 0.2 else "token"
+        scheme = ("jacobi", "fork", "async", "token", "token")[int(5.0 * rng.random())]
         lease = float(rng.choice(LEASES))
         return cls(seed, edges, sites, places, scheme, lease, faults_from_seed(seed, n, FAULTY))
 

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette import Objective
-from vedette.negotiation import Chooser, JacobiNode, Message, Outgoing, TokenNode, Tree
+from vedette.negotiation import Chooser, Message, Negotiator, Outgoing, TokenNode, Tree
 
 Float = NDArray[np.float64]
-Node = TokenNode[Float] | JacobiNode[Float]
+Node = Negotiator[Float]
 
 
 def misses(rng: np.random.Generator, n: int, k: int, cells: int = 12) -> list[list[Float]]:

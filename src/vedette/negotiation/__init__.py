@@ -1,6 +1,8 @@
 """How a team agrees on strategies by messages on a tree."""
 
+from vedette.negotiation.asynchronous import AsyncNode
 from vedette.negotiation.chooser import Chooser
+from vedette.negotiation.fork import ForkNode
 from vedette.negotiation.jacobi import JacobiNode
 from vedette.negotiation.messages import Message, RoundOutcome, decode, encode
 from vedette.negotiation.negotiate import Negotiation, Step, negotiate
@@ -11,8 +13,10 @@ from vedette.negotiation.tree import Tree
 
 __all__ = [
     "SCHEMES",
+    "AsyncNode",
     "Chooser",
     "Claims",
+    "ForkNode",
     "JacobiNode",
     "Message",
     "Negotiation",

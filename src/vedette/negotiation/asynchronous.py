@@ -49,17 +49,18 @@ class Pending(Generic[ImpactT]):
     fact: bool = False  # they are so already
     offers: dict[int, Offer[ImpactT]] = field(default_factory=dict)  # of children
     branches: dict[int, Branch[ImpactT]] = field(default_factory=dict)  # what all children would be
+    gone: frozenset[int] = frozenset()  # children without which that is
 
 
 class AsyncNode(Generic[ImpactT]):
     """Replies as soon as news come; changes travel to the root as offers, and count when they are taken.
 
-    An offer says what a part of the tree would become. Whoever gets it prices it against all that it knows to
-    count by now, whatever it was priced against before, and refuses it if it would lower the team's value; the
-    root knows all, so what it takes raises the value. Offers that meet on their way are passed on together. On
-    each link one offer and one piece of news are under way at most: nobody lags more than one message a hop
-    behind, and nobody waits for others than those concerned. Without ``guard`` changes count at once and are
-    told as facts, which others may have answered before they hear of them.
+    An offer says what a part of the tree would become. Whoever gets it prices it against all that it knows
+    to count by now, whatever it was priced against before, and refuses it if it would lower the team's value;
+    the root knows all, so what it takes raises the value. Offers that meet on their way are passed on
+    together. On each link one offer and one piece of news are under way at most: nobody lags more than one
+    message a hop behind, and nobody waits for others than those concerned. Without ``guard`` changes count at
+    once and are told as facts, which others may have answered before they hear of them.
     Source: docs/theory.md (V106).
     """
 
@@ -76,7 +77,8 @@ class AsyncNode(Generic[ImpactT]):
     ) -> None:
         """Join; arguments as `TokenNode`, a platform changing ``max_sweeps`` times at most."""
         self.finished: RoundOutcome | None = None
-        self.values: list[float] = []  # at the root: the team's value after each change that counts
+        self.values: list[float] = []  # at the root: after each change that counts, the team as it is by now
+        self._size = 0  # of that team
         self._own = own
         self._neighbours = tuple(neighbours)
         self._parent = parent
@@ -99,13 +101,21 @@ class AsyncNode(Generic[ImpactT]):
         self._owes = False  # an answer to the last news
         self._said_quiet = False
         self._lost: set[int] = set()
+        self._leaving: set[int] = set()  # of those: the rest of the team counts them still
 
     @property
     def waiting_for(self) -> frozenset[int]:
-        """Children not heard of, or that owe an answer; if there are none, the parent."""
+        """Children that have not said that all is well with the last news; if there are none, the parent."""
         if self.finished is not None:
             return frozenset()
-        owing = [k for k, child in self._children.items() if child.branch is None or child.heard < child.told]
+        offered = self._pending.offers if self._pending is not None else {}
+        owing = [
+            k
+            for k, child in self._children.items()
+            if child.branch is None
+            or child.heard < child.told
+            or not (child.quiet or child.due or k in offered)
+        ]
         return frozenset(owing or (() if self._parent is None else (self._parent,)))
 
     @property
@@ -148,6 +158,7 @@ class AsyncNode(Generic[ImpactT]):
         if self.finished is not None or neighbour in self._lost:
             return []
         self._lost.add(neighbour)
+        self._leaving.add(neighbour)
         del self._children[neighbour]
         if self._pending is not None:
             self._pending.offers.pop(neighbour, None)
@@ -208,7 +219,7 @@ class AsyncNode(Generic[ImpactT]):
         while self._pending is None and (pending := self._next()) is not None:
             if self._parent is None:
                 self._count(pending)
-                self.values.append(self._value(self._present[1], self._branches()))
+                self._note_value()
             else:
                 self._pending = pending
                 sends.append(self._offer(self._parent, pending))
@@ -217,6 +228,13 @@ class AsyncNode(Generic[ImpactT]):
                 child.told, child.due, child.urgent = child.told + 1, False, False
                 sends.append(Outgoing(k, News(self._for(k), child.told, child.answered, child.taken)))
         return sends + self._rest()
+
+    def _note_value(self) -> None:
+        branches = self._branches()
+        size = 1 + sum(branch.size for branch in branches.values())
+        if size != self._size:
+            self._size, self.values = size, []
+        self.values.append(self._value(self._present[1], branches))
 
     def _next(self) -> Pending[ImpactT] | None:
         """Return the changes to offer now, each priced with those before it; None if there are none.
@@ -227,8 +245,11 @@ class AsyncNode(Generic[ImpactT]):
             self._reply()
         own = self._own.strategy != self._present[0]
         first = own and self._present[0] is None
-        fact = self._fact or first or any(c.offer is not None and c.offer.fact for c in self._children.values())
-        pending: Pending[ImpactT] = Pending(own and (first or not fact), fact, branches=self._branches())
+        fact = (
+            self._fact or first or any(c.offer is not None and c.offer.fact for c in self._children.values())
+        )
+        pending: Pending[ImpactT] = Pending(own and (first or not fact), fact)
+        pending.branches, pending.gone = self._branches(), frozenset(self._leaving)
         for k, child in self._children.items():
             if child.offer is not None and child.offer.fact == fact:
                 self._add(pending, k, child, child.offer)
@@ -265,6 +286,7 @@ class AsyncNode(Generic[ImpactT]):
         """Let changes count: they are told to all whom they concern."""
         self._tell_all()
         self._ask |= bool(pending.offers)
+        self._leaving -= pending.gone
         if pending.own:
             self._present = self._own.strategy, self._own.impact
         for k, offer in pending.offers.items():
@@ -325,7 +347,11 @@ class AsyncNode(Generic[ImpactT]):
 
     def _settle(self, outcome: RoundOutcome) -> list[Outgoing[ImpactT]]:
         self.finished = outcome
-        return [Outgoing(k, Settled(outcome, keep=True, quiet=True)) for k in self._children]
+        if self._own.strategy != self._present[0]:
+            self._own.adopt(self._present[0])
+        return [
+            Outgoing(k, Settled(outcome, keep=True, quiet=True)) for k in (*self._children, *self._leaving)
+        ]
 
     # -- what is held ---------------------------------------------------------------------------------------
 

@@ -18,7 +18,7 @@ from vedette.problem.reach import Box, Clippable, Reach
 
 
 def check_round(
-    tree: Tree, platforms: int, scheme: str, epsilon: float, max_sweeps: int, inverse: bool
+    tree: Tree, platforms: int, scheme: str, epsilon: float, max_sweeps: int, inverse: bool, guard: bool
 ) -> None:
     """Raise ``InputError`` for no tree over so many platforms, no scheme, no threshold or no sweep."""
     if not isinstance(tree, Tree):
@@ -35,6 +35,10 @@ def check_round(
         raise InputError(f"max_sweeps must be at least 1; got {max_sweeps}")
     if not isinstance(inverse, bool | np.bool_):
         raise InputError(f"inverse must be True or False; got {brief(inverse)}")
+    if not isinstance(guard, bool | np.bool_):
+        raise InputError(f"guard must be True or False; got {brief(guard)}")
+    if scheme != "async" and not guard:
+        raise InputError(f"guard=False belongs to scheme 'async'; got {scheme!r}")
 
 
 def listed_impacts(candidates: Sequence[Sequence[ImpactT] | Controls[ImpactT]]) -> list[Sequence[ImpactT]]:
@@ -79,8 +83,8 @@ def checked_reach(
     objective: Objective[BeliefT, ImpactT], tree: Tree, scheme: str, reach: Sequence[Reach]
 ) -> list[Reach]:
     """Return everybody's boxes as plain numbers; ``InputError`` if messages cannot be clipped to them."""
-    if scheme != "token":
-        raise InputError(f"reach belongs to scheme 'token'; got {scheme!r}; leave reach out")
+    if scheme == "jacobi":
+        raise InputError("reach goes with token, fork and async; got scheme 'jacobi'; leave reach out")
     if not isinstance(objective, Clippable):
         raise InputError(f"reach needs {type(objective).__name__}.clip(belief, impact, reach); leave it out")
     check_list(reach, "reach", "a list of boxes for each platform")

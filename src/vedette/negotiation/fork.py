@@ -128,9 +128,7 @@ class ForkNode(Generic[ImpactT]):
         """Hold what a child's part of the tree is and does."""
         self._check_size(child, report.size)
         self._links.receive(child, report.mu)
-        self._branches[child] = Branch(
-            self._links.held(child), report.size, report.ceiling, report.value
-        )
+        self._branches[child] = Branch(self._links.held(child), report.size, report.ceiling, report.value)
         return self._gather()
 
     def _check_size(self, child: int, size: int) -> None:

@@ -109,7 +109,7 @@ class Settled(msgspec.Struct, frozen=True, array_like=True, tag=7):
 
 
 class Offer(msgspec.Struct, Generic[ImpactT], frozen=True, array_like=True, tag=8, eq=False):
-    """Towards the root, whenever there is reason to: what a part of the tree would become, or that all is well."""
+    """Towards the root, if there is reason to: what a part of the tree would become, or that all is well."""
 
     mu: ImpactT | None  # None: nothing is offered
     serial: Count  # of the last offer

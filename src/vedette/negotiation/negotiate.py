@@ -28,7 +28,7 @@ from vedette.problem.trial import Trial
 
 @dataclass(frozen=True)
 class Step:
-    """The team's value after somebody's turn (token) or at an iterate (jacobi)."""
+    """The team's value after a turn (token), a sweep (fork), a change (async) or at an iterate (jacobi)."""
 
     sweep: int  # 0: at the start
     platform: int | None  # whose turn it was; None: everybody's
@@ -76,8 +76,9 @@ def negotiate(
         candidates: ``candidates[i]`` is the list of platform i's impacts, or its ``Controls``: it then
             replies by optimising, until its control changes by less than its threshold.
         tree: who talks to whom.
-        scheme: ``token``, one after the other, never lowers the value; ``jacobi``, all at once (paper,
-            Table 1), ends at its best iterate.
+        scheme: ``token``, one after the other, never lowers the value; ``fork``, all branches of the tree
+            at once, takes back what does not go together; ``async``, whenever news comes, confirms changes
+            before they count; ``jacobi``, all at once (paper, Table 1), ends at its best iterate.
         start: everybody's first candidate index, 0 for Controls, which have a start of their own; without
             it nobody with a list observes until its first reply, so that the first token sweep is the
             sequential greedy choice.
@@ -88,7 +89,9 @@ def negotiate(
         codec: how impacts travel; without it they are handed over and their plain size is counted.
         reach: where each platform can make a difference, as boxes (lowest x, lowest y, highest x, highest y).
             With it, and an objective that has ``clip``, messages leave out what the platforms that they
-            are for cannot reach: no choice changes. The token's messages only; telling the reaches counts.
+            are for cannot reach: no choice changes. Not with ``jacobi``; telling the reaches counts.
+        guard: with ``async``, False lets changes count at once, unconfirmed: the value may fall, and
+            platforms that answer each other's old places go on until ``max_sweeps`` changes of one.
 
     Raises:
         InputError: bad arguments, the line names platform, index and value; or an objective that changes what
@@ -97,7 +100,7 @@ def negotiate(
     """
     listed = listed_impacts(candidates)
     check_problem(objective, belief, listed)
-    check_round(tree, len(candidates), scheme, epsilon, max_sweeps, inverse)
+    check_round(tree, len(candidates), scheme, epsilon, max_sweeps, inverse, guard)
     begun = [None] * tree.n if start is None else check_choice(start, listed, "start")
     reach = None if reach is None else checked_reach(objective, tree, scheme, reach)
     remove = remover(objective, tree, scheme) if inverse else None
