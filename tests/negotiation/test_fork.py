@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from tests.support.random_teams import Float, Node, deliver, misses
 from vedette import Coverage, InputError, Tree, exhaustive, negotiate
 from vedette.negotiation import Chooser, node_of
-from vedette.negotiation.messages import Fork, Joined, News, Offer, RoundOutcome, Settled
+from vedette.negotiation.messages import Fork, Joined, Tidings, Offer, RoundOutcome, Settled
 
 SEEDS = st.integers(0, 100_000)
 BOTH = pytest.mark.parametrize("scheme", ["fork", "async"])
@@ -180,7 +180,7 @@ def test_at_most_one_offer_and_one_piece_of_news_without_an_answer_are_under_way
     for sender, to, message in log:
         if isinstance(message, Offer) and message.mu is not None:
             assert offered.get(sender, 0) == message.serial - 1
-        if isinstance(message, News):
+        if isinstance(message, Tidings):
             offered[to] = message.answered
             assert message.answered <= message.serial
 
@@ -194,8 +194,8 @@ def test_what_is_out_of_turn_is_refused() -> None:
     with pytest.raises(InputError, match="Joined from 0 is out of turn"):
         leaf.receive(0, Joined(np.zeros(2), 0.0, 0.0, 1, 0.0, 0, False))
     asleep = nodes_of("async", weights, [[np.zeros(2)], [np.zeros(2)]], Tree.chain(2))[1]
-    with pytest.raises(InputError, match="News from 0 is out of turn"):
-        asleep.receive(0, News(np.zeros(2), 2, 0, True))
+    with pytest.raises(InputError, match="Tidings from 0 is out of turn"):
+        asleep.receive(0, Tidings(np.zeros(2), 2, 0, True))
     with pytest.raises(InputError, match="Offer from 0 is out of turn"):
         asleep.receive(0, Offer(None, 0, 0, True, False, 0.0, 0.0, 1, 0.0, 0, False))
     assert asleep.receive(0, Settled(RoundOutcome(1.0, None, 1, True), True, True)) == []

@@ -15,7 +15,7 @@ from vedette.negotiation.messages import (
     Fork,
     Gather,
     Joined,
-    News,
+    Tidings,
     Offer,
     RoundOutcome,
     Settled,
@@ -84,7 +84,7 @@ def test_a_message_survives_its_bytes() -> None:
         Joined(None, 1.0, float("inf"), 3, 2.0, 1, True),
         Settled(outcome, False, True),
         Offer(mu, 3, 2, False, True, 1.0, float("inf"), 4, 2.0, 1, False),
-        News(mu, 3, 1, False),
+        Tidings(mu, 3, 1, False),
     ]
     for message in sent:
         back = decode(encode(message, Plain()), Plain())

@@ -11,7 +11,7 @@ import msgspec
 
 from vedette.errors import InputError
 from vedette.negotiation.branch import Branch, value_alone
-from vedette.negotiation.messages import Message, News, Offer, RoundOutcome, Settled
+from vedette.negotiation.messages import Message, Tidings, Offer, RoundOutcome, Settled
 from vedette.negotiation.node import Claims, Outgoing, Participant
 from vedette.problem.bound import tightest
 from vedette.problem.objective import ImpactT
@@ -141,7 +141,7 @@ class AsyncNode(Generic[ImpactT]):
         match message:
             case Offer() if sender in self._children:
                 self._hear_offer(sender, message)
-            case News() if sender == self._parent:
+            case Tidings() if sender == self._parent:
                 self._hear_news(sender, message)
             case Settled() if sender == self._parent:
                 return self._settle(message.outcome)
@@ -183,10 +183,10 @@ class AsyncNode(Generic[ImpactT]):
         if offer.mu is not None:
             child.offer = offer
 
-    def _hear_news(self, sender: int, news: News[ImpactT]) -> None:
+    def _hear_news(self, sender: int, news: Tidings[ImpactT]) -> None:
         """Note what the rest of the team is by now, and whether the last offer was taken."""
         if news.serial != self._heard + 1:
-            raise InputError(f"message News from {sender} is out of turn; drop it")
+            raise InputError(f"message Tidings from {sender} is out of turn; drop it")
         if self._claims is not None:
             self._claims.admit(news.mu, self._claims.platforms[sender])
         self._beyond, self._heard = news.mu, news.serial
@@ -226,7 +226,7 @@ class AsyncNode(Generic[ImpactT]):
         for k, child in self._children.items():
             if child.branch is not None and child.due and (child.urgent or child.heard == child.told):
                 child.told, child.due, child.urgent = child.told + 1, False, False
-                sends.append(Outgoing(k, News(self._for(k), child.told, child.answered, child.taken)))
+                sends.append(Outgoing(k, Tidings(self._for(k), child.told, child.answered, child.taken)))
         return sends + self._rest()
 
     def _note_value(self) -> None:

@@ -124,7 +124,7 @@ class Offer(msgspec.Struct, Generic[ImpactT], frozen=True, array_like=True, tag=
     capped: bool  # one of them was not allowed any more
 
 
-class News(msgspec.Struct, Generic[ImpactT], frozen=True, array_like=True, tag=9, eq=False):
+class Tidings(msgspec.Struct, Generic[ImpactT], frozen=True, array_like=True, tag=9, eq=False):
     """Away from the root: the rest of the team, and what has become of the last offer."""
 
     mu: ImpactT
@@ -143,7 +143,7 @@ Message: TypeAlias = (
     | Joined[ImpactT]
     | Settled
     | Offer[ImpactT]
-    | News[ImpactT]
+    | Tidings[ImpactT]
 )
 
 _DECODER: msgspec.msgpack.Decoder[Message[bytes]] = msgspec.msgpack.Decoder(
@@ -156,7 +156,7 @@ _DECODER: msgspec.msgpack.Decoder[Message[bytes]] = msgspec.msgpack.Decoder(
     | Joined[bytes]
     | Settled
     | Offer[bytes]
-    | News[bytes]
+    | Tidings[bytes]
 )
 _BARE = (Stop, Settled)  # without an impact
 
