@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable, Sequence
 
-import numpy as np
-
+from vedette.negotiation.lazy import LazyValues
 from vedette.negotiation.valued import Valued
-from vedette.problem.bound import attains, slack_of
-from vedette.problem.checked import values_of
+from vedette.problem.bound import attains
 from vedette.problem.objective import BeliefT, ImpactT, Objective
 
 
@@ -43,6 +42,7 @@ class Chooser(Valued[BeliefT, ImpactT]):
         self.index = start
         self._candidates = candidates
         self._epsilon = epsilon
+        self._values = LazyValues(objective, belief, candidates, self.nothing())
 
     @property
     def strategy(self) -> int | None:
@@ -61,13 +61,21 @@ class Chooser(Valued[BeliefT, ImpactT]):
 
     def reply(self, others: ImpactT) -> bool:
         """Take up the best candidate against the rest of the team if it is strictly better; tell if so."""
-        values = values_of(self._objective, self._belief, others, self._candidates) - self._base
-        best = int(np.argmax(values))
+        best, values = self._values.best(others, self.index)
+        values = values - self._base
         if self.index is not None and attains(values[self.index], values[best], self._epsilon):
             return False
         self.index = best
         return True
 
+    def combine(self, a: ImpactT, b: ImpactT) -> ImpactT:
+        """``a * b``."""
+        result = super().combine(a, b)
+        self._values.combined(a, result)
+        return result
+
     def slack(self, base: ImpactT) -> float:
         """Most that any candidate would add to ``base``; infinite unless monotone and submodular."""
-        return slack_of(self._objective, self._belief, base, self._candidates)
+        if not (self._objective.monotone and self._objective.submodular):
+            return math.inf
+        return max(self._values.most(base), 0.0)  # below 0 only by rounding

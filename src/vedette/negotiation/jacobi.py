@@ -194,9 +194,10 @@ class JacobiNode(Generic[ImpactT]):
         else:
             raise InputError("negotiation message Down without the team's total; drop it")
         self._told = False
-        self._slack = self._own.slack(self._own.combine(others, self._own.impact))
+        before = self._own.impact
         if self._own.reply(others):
             self._links.changed()
+        self._slack = self._own.slack(self._own.combine(others, before))
         self._strategies.append(self._own.strategy)
         return onwards + self._report()
 

@@ -15,10 +15,11 @@ class Valued(Generic[BeliefT, ImpactT]):
     def __init__(self, objective: Objective[BeliefT, ImpactT], belief: BeliefT, base: float) -> None:
         """Take the objective, the belief, and what nothing is worth: values are gains over it."""
         self._objective, self._belief, self._base = objective, belief, base
+        self._nothing = objective.nothing(belief)
 
     def nothing(self) -> ImpactT:
         """Identity of ``*``."""
-        return self._objective.nothing(self._belief)
+        return self._nothing
 
     def combine(self, a: ImpactT, b: ImpactT) -> ImpactT:
         """``a * b``."""
