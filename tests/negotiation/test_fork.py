@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from tests.support.random_teams import Float, Node, deliver, misses
 from vedette import Coverage, InputError, Tree, exhaustive, negotiate
 from vedette.negotiation import Chooser, node_of
-from vedette.negotiation.messages import Fork, Joined, Tidings, Offer, RoundOutcome, Settled
+from vedette.negotiation.messages import Fork, Joined, Offer, RoundOutcome, Settled, Tidings
 
 SEEDS = st.integers(0, 100_000)
 BOTH = pytest.mark.parametrize("scheme", ["fork", "async"])

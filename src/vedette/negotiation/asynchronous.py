@@ -11,7 +11,7 @@ import msgspec
 
 from vedette.errors import InputError
 from vedette.negotiation.branch import Branch, value_alone
-from vedette.negotiation.messages import Message, Tidings, Offer, RoundOutcome, Settled
+from vedette.negotiation.messages import Message, Offer, RoundOutcome, Settled, Tidings
 from vedette.negotiation.node import Claims, Outgoing, Participant
 from vedette.problem.bound import tightest
 from vedette.problem.objective import ImpactT
