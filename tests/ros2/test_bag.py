@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from rosbags.rosbag2 import StoragePlugin, Writer
-from rosbags.typesys import Stores, get_typestore
+from rosbags.rosbag2 import StoragePlugin
 
-from tests.support.recordings import places, ranges_from
+from tests.support.recordings import places
+from tests.support.ros_recordings import tour, write_folder
 from vedette.errors import InputError
 from vedette.logs import RecordedLog
 from vedette.maps.world import World
@@ -19,59 +18,7 @@ from vedette.ros2.bag import read_bag
 from vedette.ros2.settings import Ros2Settings
 from vedette.sim.worlds import logged, maze
 
-STORE = get_typestore(Stores.ROS2_HUMBLE)
 Make = Callable[..., Path]
-
-
-def message(kind: str, *fields: Any) -> Any:
-    return STORE.types[kind](*fields)
-
-
-def stamp(now: float) -> Any:
-    nanoseconds = round(now * 1e9)
-    return message("builtin_interfaces/msg/Time", nanoseconds // 10**9, nanoseconds % 10**9)
-
-
-def header(now: float, frame: str) -> Any:
-    return message("std_msgs/msg/Header", stamp(now), frame)
-
-
-def joint(now: float, parent: str, child: str, x: float, y: float, yaw: float) -> Any:
-    """A TFMessage."""
-    place = message("geometry_msgs/msg/Vector3", x, y, 0.0)
-    turn = message("geometry_msgs/msg/Quaternion", 0.0, 0.0, np.sin(yaw / 2), np.cos(yaw / 2))
-    transform = message("geometry_msgs/msg/Transform", place, turn)
-    told = message("geometry_msgs/msg/TransformStamped", header(now, parent), child, transform)
-    return message("tf2_msgs/msg/TFMessage", [told])
-
-
-def scan(now: float, ranges: np.ndarray) -> Any:
-    """A LaserScan of all directions from straight behind on, clockwise."""
-    step = -2.0 * np.pi / len(ranges)
-    fields = np.pi, np.pi + step * (len(ranges) - 1), step, 0.0, 0.1, 0.05, 8.0
-    empty = np.zeros(0, np.float32)
-    return message(
-        "sensor_msgs/msg/LaserScan", header(now, "laser"), *fields, ranges.astype(np.float32), empty
-    )
-
-
-def tour(world: World) -> list[tuple[float, str, Any]]:
-    """What a robot tells that drives from place to place and looks; its lidar is off its middle."""
-    from tests.support.recordings import places
-
-    told: list[tuple[float, str, Any]] = [
-        (0.0, "/tf_static", joint(0.0, "base_link", "laser", 0.1, 0.0, 0.0))
-    ]
-    angles = np.pi - 2.0 * np.pi / 360 * np.arange(360)
-    for k, (x, y) in enumerate(places(world, 1.0).tolist()):
-        now, heading = 1.0 + 0.5 * k, 0.7 * k
-        base = x - 0.1 * np.cos(heading), y - 0.1 * np.sin(heading)
-        for t in (now - 0.05, now + 0.05):
-            told.append((t, "/tf", joint(t, "odom", "base_link", *base, heading)))
-            told.append((t, "/tf", joint(t, "map", "odom", 0.0, 0.0, 0.0)))
-        ranges = ranges_from(world, x, y, heading, angles)
-        told.append((now, "/scan", scan(now, np.where(ranges < 8.0, ranges, np.inf))))
-    return sorted(told, key=lambda each: each[0])
 
 
 @pytest.fixture(scope="module")
@@ -84,18 +31,8 @@ def recorded(building: World, tmp_path: Path) -> Make:
     """Writes a recording of a tour, its topics renamed and some left out."""
 
     def make(storage: StoragePlugin = StoragePlugin.MCAP, rename: str = "", leave_out: str = "none") -> Path:
-        folder = tmp_path / "walk"
-        with Writer(folder, version=9, storage_plugin=storage) as writer:
-            connections: dict[str, Any] = {}
-            for now, topic, told in tour(building):
-                if topic == leave_out:
-                    continue
-                name = rename + topic
-                if name not in connections:
-                    connections[name] = writer.add_connection(name, told.__msgtype__, typestore=STORE)
-                data = STORE.serialize_cdr(told, told.__msgtype__)
-                writer.write(connections[name], round(now * 1e9), data)
-        return folder
+        told = [(now, rename + topic, each) for now, topic, each in tour(building) if topic != leave_out]
+        return write_folder(tmp_path / "walk", told, storage)
 
     return make
 

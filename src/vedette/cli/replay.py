@@ -68,6 +68,7 @@ def replay(
     resolution: float,
     reach: float,
     no_return: str,
+    evidence: str | None,
     fusion: str,
     link_loss: float,
     seed: int,
@@ -77,24 +78,26 @@ def replay(
     **names: str,
 ) -> None:
     """Let each LOG go through one agent, or in shares through several: a lidar log in the format of CARMEN,
-    a rosbag2 folder, or an MCAP file with scans and TF.
+    a rosbag2 folder, or an MCAP file with scans and TF or with a map.
 
     The agents map, fuse and plan as on a robot; where it goes is the log's. Left are each building's map, and
     what its scans saw of the unknown, against distance, beside simulated ones (the paper's Fig. 3).
     Exit status: 0 all went through, 2 bad input, 130 interrupted.
     """
     setup = ReplaySetup(robots, resolution, reach, no_return, fusion=fusion, link_loss=link_loss, seed=seed)
-    logs = [recording(path, no_return, **names) for path in files]
+    logs = [recording(path, no_return, evidence, **names) for path in files]
     _check_names(logs)
     replays = [Replay(log, setup) for log in logs]
     maps = [f"{log.name}.{ending}" for log in logs for ending in ("yaml", "pgm", "png")]
-    leaves = ["summary.json", "observation.png", *maps]
+    leaves = ["summary.json", *(["observation.png"] if any(log.scans for log in logs) else []), *maps]
     with OutputFolder.make(out, force, "replay", files) as folder, telling_what_is_missing(folder, leaves):
         done = _run(replays, Console(stderr=True))
         summary = ReplaySummary(buildings=tuple(map(ReplayedBuilding.of, done)))
         summary.write(folder / "summary.json")
-        _draw(done, _simulated(replays[0].specs[0]), folder)
-        click.echo(summary.to_json() if as_json else _closing(summary, folder.path), nl=not as_json)
+        _draw(done, folder)
+        if measured := any(not each.maps for each in done):
+            _measure(replays, done, folder)
+        click.echo(summary.to_json() if as_json else _closing(summary, folder.path, measured), nl=not as_json)
     if not all(building.complete for building in summary.buildings) or len(done) < len(replays):
         raise SystemExit(Outcome.INTERRUPTED.status)
 
@@ -142,23 +145,34 @@ def _simulated(spec: PlatformSpec) -> NDArray[np.int64]:
     return sum((mission.own.counts for mission in simulation.missions), empty_counts())
 
 
-def _draw(done: list[Replayed], simulated: NDArray[np.int64], folder: OutputFolder) -> None:
+def _draw(done: list[Replayed], folder: OutputFolder) -> None:
     # who only asks for help does not wait for matplotlib
-    from vedette.record.replay.pictures import map_png, observation_png
+    from vedette.record.replay.pictures import map_png
 
     for each in done:
         write_map(folder / each.name, each.frame, each.classes)
         map_png(each, folder / f"{each.name}.png")
-    observation_png(done, {SIMULATED: simulated}, folder / "observation.png")
 
 
-def _closing(summary: ReplaySummary, folder: Path) -> str:
+def _measure(replays: list[Replay], done: list[Replayed], folder: OutputFolder) -> None:
+    """Draw what scans saw of the unknown, beside what simulated ones with the same lidar see."""
+    from vedette.record.replay.pictures import observation_png
+
+    scanned = [each for each in done if not each.maps]
+    first = next(each for each in replays if each.log.scans)
+    simulated = {SIMULATED: _simulated(first.specs[0])}
+    observation_png(scanned, simulated, folder / "observation.png")
+
+
+def _closing(summary: ReplaySummary, folder: Path, measured: bool) -> str:
     lines = []
     for each in summary.buildings:
         team = many(len(each.robots), "robot")
+        seen = many(each.maps, "map") if each.maps else many(each.scans, "scan")
         agree = "" if len(each.robots) == 1 else ", all of one map" if each.agreed else ", their maps differ"
         lines.append(
-            f"{each.log}: {many(each.scans, 'scan')} over {each.way_m:.0f} m, {each.known_m2:.0f} m2 known, "
+            f"{each.log}: {seen} over {each.way_m:.0f} m, {each.known_m2:.0f} m2 known, "
             f"{each.free_m2:.0f} m2 free, {team}{agree}"
         )
-    return "\n".join([*lines, f"maps and pictures: {folder}; what scans see: {folder / 'observation.png'}"])
+    shown = f"; what scans see: {folder / 'observation.png'}" if measured else ""
+    return "\n".join([*lines, f"maps and pictures: {folder}{shown}"])

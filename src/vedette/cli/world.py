@@ -42,13 +42,15 @@ def world(
     resolution: float,
     reach: float,
     no_return: str,
+    evidence: str | None,
     force: bool,
     **names: str,
 ) -> None:
     """Make a world: DIR gets map.yaml and map.pgm, as ROS map_server reads them, and preview.png.
 
     KIND is office, cave or maze, generated: the same seed and size give the same world. Or it is log: the
-    building in which FILE was recorded, a CARMEN log, a rosbag2 folder or an MCAP file with scans and TF.
+    building in which FILE was recorded, a CARMEN log, a rosbag2 folder or an MCAP file with scans and TF
+    or with a map.
     """
     of_log = kind == LOG
     _refuse(
@@ -57,7 +59,7 @@ def world(
     if of_log:
         if file is None:
             raise InputError("vedette world log needs a FILE: a CARMEN log, a rosbag2 folder or an MCAP file")
-        made = logged(recording(file, no_return, **names), resolution, reach, no_return)
+        made = logged(recording(file, no_return, evidence, **names), resolution, reach, no_return)
     else:
         made = _generated(kind, file, seed, width, height, resolution)
     with OutputFolder.make(out, force, kind, [] if file is None else [file]) as folder:

@@ -1,10 +1,11 @@
-"""Scans that a real lidar has taken, each with the pose that mapping gave it afterwards."""
+"""What a real robot has recorded: scans with the poses that mapping gave them, or maps of its own."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,18 +28,65 @@ class RecordedScan:
 
 
 @dataclass(frozen=True, eq=False)
+class RecordedMap:
+    """What a robot's own mapping held at a time; its first cell's corner is where columns and rows begin."""
+
+    time: float  # since the recording began [s]
+    classes: NDArray[np.uint8]  # (R, C) UNKNOWN, FREE or OCCUPIED
+    resolution: float  # [m]
+    corner: tuple[float, float, float]  # x, y [m], heading of its columns' direction [rad], frame of the log
+    pose: tuple[float, float, float] | None = None  # of the robot [m, m, rad]; None: nothing told it
+
+    @property
+    def middle(self) -> tuple[float, float]:
+        """Of what it covers [m]."""
+        x, y = self.corners.mean(axis=0).tolist()
+        return x, y
+
+    @property
+    def corners(self) -> Float:
+        """``(4, 2)`` of what it covers [m]."""
+        x, y, heading = self.corner
+        rows, cols = self.classes.shape
+        along = self.resolution * np.array(((0, 0), (cols, 0), (0, rows), (cols, rows)), np.float64)
+        c, s = math.cos(heading), math.sin(heading)
+        turned: Float = along @ np.array(((c, s), (-s, c))) + (x, y)
+        return turned
+
+
+Sight: TypeAlias = RecordedScan | RecordedMap
+
+
+def place_of(sight: Sight) -> tuple[float, float, float] | None:
+    """Return from where something was seen: x, y [m], heading [rad], frame of the log; None: not told."""
+    return (sight.x, sight.y, sight.heading) if isinstance(sight, RecordedScan) else sight.pose
+
+
+@dataclass(frozen=True, eq=False)
 class RecordedLog:
-    """What a robot has seen on its way."""
+    """What a robot has seen on its way: scans, or maps, at least one."""
 
     name: str
-    scans: tuple[RecordedScan, ...]  # in the order of time, at least one
+    scans: tuple[RecordedScan, ...]  # in the order of time
     range: float  # longest that the lidar measured [m]
+    maps: tuple[RecordedMap, ...] = ()  # in the order of time; each takes the place of the one before
+
+    @property
+    def sights(self) -> tuple[Sight, ...]:
+        """Whichever there are."""
+        return self.scans or self.maps
 
     @property
     def way(self) -> float:
-        """Length of the lidar's way [m]."""
-        places = np.array([(scan.x, scan.y) for scan in self.scans])
-        return float(np.hypot(*np.diff(places, axis=0).T).sum())
+        """Length of the way, as far as it is told [m]."""
+        steps = np.diff(way_of(self.sights), axis=0)
+        return float(np.hypot(*steps.T).sum())
+
+
+def way_of(sights: Sequence[Sight]) -> Float:
+    """Return ``(n, 2)``: the places [m] from which something was seen."""
+    places = [place[:2] for sight in sights if (place := place_of(sight)) is not None]
+    return np.array(places, np.float64).reshape(-1, 2)
 
 
 def times(stamps: Sequence[float], poses: Float) -> Float:

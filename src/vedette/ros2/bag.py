@@ -2,34 +2,29 @@
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, field
+from collections.abc import Generator, Iterator
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Any, TypeAlias
 
-from mcap.exceptions import McapError
 from mcap.reader import make_reader
-from rosbags.highlevel import AnyReader, AnyReaderError
-from rosbags.serde import SerdeError
-from rosbags.typesys import Stores, get_typestore
+from msgspec.structs import replace
+from rosbags.highlevel import AnyReader
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+from rosbags.typesys.store import Typestore
 
-from vedette.agent.events import Pose, Scan
 from vedette.errors import InputError, nearest_name
 from vedette.input_file import open_input
-from vedette.logs import RecordedLog, RecordedScan
+from vedette.logs import RecordedLog, RecordedMap, RecordedScan
 from vedette.ros2.body import Ros2Body
-from vedette.ros2.door import Notice, Told
-from vedette.ros2.goals import Place
-from vedette.ros2.messages import joints_of, sweep_of
+from vedette.ros2.recorded import KINDS, MAPS, PATCHES, SCANS, STEP, OwnMaps, Recorded, RecordedDoor, scans_of
 from vedette.ros2.scans import Lidar
 from vedette.ros2.settings import Ros2Settings
 from vedette.team import PlatformSpec
 
-STEP = 0.1  # of the bag's time that the body is told at once [s]
-SCANS, TRANSFORMS = "sensor_msgs/msg/LaserScan", "tf2_msgs/msg/TFMessage"
-Recorded: TypeAlias = tuple[float, str, str, Any]  # when [s], topic, type, message
+EVIDENCE = ("scan", "map")
+_PATCH = "std_msgs/Header header\nint32 x\nint32 y\nuint32 width\nuint32 height\nint8[] data"
 
 
 def is_bag(path: Path) -> bool:
@@ -37,120 +32,123 @@ def is_bag(path: Path) -> bool:
     return path.suffix == ".mcap" or path.is_dir()
 
 
-def read_bag(path: Path, settings: Ros2Settings) -> RecordedLog:
-    """Read the scans of a rosbag2 folder or an MCAP file, each from where TF has the lidar then.
+def read_bag(path: Path, settings: Ros2Settings, evidence: str | None = None) -> RecordedLog:
+    """Read a rosbag2 folder or an MCAP file: scans, each from where TF has the lidar then, or maps.
 
     Every scan is taken in as by a robot's agent: deskewed, in the frame ``map_frame`` of the settings, at
-    most some five a second.
+    most some five a second. Of maps there is one a second at most, and the last.
+
+    Args:
+        path: of the recording.
+        settings: names of topics and frames.
+        evidence: ``scan`` or ``map``; None: scans where there are any, else maps.
 
     Raises:
-        InputError: the recording cannot be read, it has no such topic, or no scan that TF places.
+        InputError: the recording cannot be read, it has no such topic, or nothing that TF places.
     """
-    door = RecordedDoor(settings)
-    body = Ros2Body(PlatformSpec(), settings, door)
-    scans: list[RecordedScan] = []
-    first: float | None = None
-    try:
-        with _opened(path) as recorded:
-            for now, topic, kind, message in recorded:
-                first = now if first is None else first
-                door.hear(topic, kind, message)
-                if now >= door.told_at + STEP:
-                    scans += _scans(body, now - first)
-                    door.told_at = now
-            scans += _scans(body, door.told_at + STEP - (first or 0.0))
-    except (AnyReaderError, McapError, SerdeError, EOFError, OSError) as error:
-        raise InputError(f"cannot read recording {path}: {error or type(error).__name__}") from error
-    if not scans:
-        raise InputError(f"{path}: {_why(door, body, settings)}")
-    assert body.latest is not None, "there is a scan"
-    return RecordedLog(path.stem, tuple(scans), Lidar.of(body.latest, settings.scan).range)
+    heard = _heard(path, replace(settings, evidence=evidence or "scan"))
+    if evidence is None and SCANS not in (kinds := set(heard.door.topics.values())) and MAPS in kinds:
+        heard = _heard(path, replace(settings, evidence="map"))
+    if not heard.scans and not heard.maps:
+        raise InputError(f"{path}: {_why(heard)}")
+    latest = heard.body.latest
+    lidar = 0.0 if latest is None else Lidar.of(latest, settings.scan).range
+    return RecordedLog(path.stem, tuple(heard.scans), lidar, tuple(heard.maps))
 
 
 @dataclass(eq=False)
-class RecordedDoor:
-    """What a robot told in its time; nobody takes orders; ``vedette.ros2.door.Door``."""
+class _Heard:
+    """What has come of a recording."""
 
-    settings: Ros2Settings
-    time: float | None = None  # no /clock is needed: the recording has its own
-    told_at: float = -STEP  # up to when the body has been told [s]
-    topics: dict[str, str] = field(default_factory=dict)  # what there was, with its type
-    _told: deque[Told] = field(default_factory=deque)
-
-    def hear(self, topic: str, kind: str, message: Any) -> None:
-        """Take in a message, of whatever topic."""
-        self.topics[topic] = kind
-        own = f"/{self.settings.namespace.strip('/')}".rstrip("/")
-        if kind == TRANSFORMS and topic in ("/tf", "/tf_static", f"{own}/tf", f"{own}/tf_static"):
-            self._told += joints_of(message, fixed=topic.endswith("tf_static"))
-        elif kind == SCANS and topic in (self.settings.scan, f"{own}/{self.settings.scan}"):
-            self._told.append(sweep_of(message))
-
-    def take(self) -> Sequence[Told]:
-        """Return what has been told since the last call."""
-        told, self._told = self._told, deque()
-        return tuple(told)
-
-    def ask(self, goal: int, place: Place, frame: str) -> None:
-        """Send nobody anywhere."""
-
-    def cancel(self, goal: int) -> None:
-        """There is nothing to cancel."""
-
-    def show(self, notice: Notice) -> None:
-        """Show nobody anything."""
-
-    def close(self) -> None:
-        """There is nobody to leave."""
+    door: RecordedDoor
+    body: Ros2Body
+    scans: list[RecordedScan]
+    maps: list[RecordedMap]
 
 
-def _scans(body: Ros2Body, now: float) -> Iterator[RecordedScan]:
-    """Yield the scans that a body takes in now, [s] since the recording began."""
-    pose: Pose | None = None
-    for event in body.sense(now):
-        match event:
-            case Pose():
-                pose = event
-            case Scan() if pose is not None:
-                x, y = pose.x + event.offset[0], pose.y + event.offset[1]
-                yield RecordedScan(now, x, y, pose.heading, event.angles, event.ranges)
+def _heard(path: Path, settings: Ros2Settings) -> _Heard:
+    door = RecordedDoor(settings)
+    heard = _Heard(door, Ros2Body(PlatformSpec(), settings, door), [], [])
+    own_maps, maps = OwnMaps(), settings.evidence == "map"
+    first, told_at, now = None, -STEP, 0.0
+    with closing(_messages(path)) as messages:
+        for stamp, topic, kind, read in messages:
+            first = stamp if first is None else first
+            now = stamp - first
+            with _telling(path):
+                door.hear(topic, kind, read)
+            if now >= told_at + STEP:
+                heard.maps += own_maps.of(heard.body, now) if maps else ()
+                heard.scans += () if maps else scans_of(heard.body, now)
+                told_at = now
+    heard.maps += own_maps.of(heard.body, now, at_last=True) if maps else ()
+    heard.scans += () if maps else scans_of(heard.body, told_at + STEP)
+    return heard
 
 
-def _why(door: RecordedDoor, body: Ros2Body, settings: Ros2Settings) -> str:
-    """Say why a recording has no scan to replay."""
-    scans = [topic for topic, kind in door.topics.items() if kind == SCANS]
-    if not scans:
-        return f"no topic of {SCANS} in it"
-    if body.latest is None:
-        wanted = settings.scan
-        return f"nothing on {wanted}; {nearest_name(wanted, scans)}: give --scan"
+def _why(heard: _Heard) -> str:
+    """Say why a recording has nothing to replay."""
+    door, body, settings = heard.door, heard.body, heard.door.settings
+    maps = settings.evidence == "map"
+    kind, wanted = (MAPS, settings.map) if maps else (SCANS, settings.scan)
+    topics = [topic for topic, told in door.topics.items() if told == kind]
+    if not topics:
+        other = "" if maps or MAPS not in door.topics.values() else "; maps are: give --evidence map"
+        return f"no topic of {kind} in it{other}"
+    frame = body.latest and body.latest.frame if not maps else body.grids.latest and body.grids.latest.frame
+    if frame is None and door.senseless:
+        return f"no map on {wanted} has as many cells as it says"
+    if frame is None:
+        return f"nothing on {wanted}; {nearest_name(wanted, topics)}: give --{'map' if maps else 'scan'}"
     frames = ", ".join(sorted(body.transforms.frames)) or "none"
     return (
-        f"TF joins no scan's frame {body.latest.frame} to {settings.map_frame}; frames told of: {frames}; "
-        "give --map-frame, or record /tf and /tf_static"
+        f"TF joins no {'map' if maps else 'scan'}'s frame {frame} to {settings.map_frame}; frames told of: "
+        f"{frames}; give --map-frame, or record /tf and /tf_static"
     )
 
 
+def _messages(path: Path) -> Generator[Recorded, None, None]:
+    """Yield what is of use in a recording, in the order in which it was recorded.
+
+    Raises:
+        InputError: it cannot be read, or not to its end.
+    """
+    with _telling(path):
+        yield from _of_mcap(path) if path.suffix == ".mcap" else _of_folder(path)
+
+
 @contextmanager
-def _opened(path: Path) -> Iterator[Iterator[Recorded]]:
-    """Open a recording, its messages in the order in which they were recorded."""
-    if path.suffix == ".mcap":
-        with open_input(path, "recording") as file:
-            yield _of_mcap(make_reader(file).iter_messages())
-        return
+def _telling(path: Path) -> Iterator[None]:
+    """Say in a line what is wrong with a recording, whatever library unpacks, decompresses or queries."""
+    try:
+        yield
+    except InputError:
+        raise
+    except Exception as error:
+        said = " ".join(str(error).split()) or type(error).__name__
+        raise InputError(f"cannot read recording {path}: {said[:300]}; it is cut off or damaged") from error
+
+
+def _of_folder(path: Path) -> Iterator[Recorded]:
     if not (path / "metadata.yaml").exists():
         raise InputError(f"{path}: no metadata.yaml in it; give a rosbag2 folder or an MCAP file")
-    with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:
-        wanted = [each for each in reader.connections if each.msgtype in (SCANS, TRANSFORMS)]
-        yield (
-            (stamp * 1e-9, each.topic, each.msgtype, reader.deserialize(data, each.msgtype))
-            for each, stamp, data in reader.messages(wanted)
-        )
+    with AnyReader([path], default_typestore=typestore()) as reader:
+        wanted = [each for each in reader.connections if each.msgtype in KINDS]
+        for each, stamp, data in reader.messages(wanted):
+            yield stamp * 1e-9, each.topic, each.msgtype, partial(reader.deserialize, data, each.msgtype)
 
 
-def _of_mcap(messages: Any) -> Iterator[Recorded]:
+def _of_mcap(path: Path) -> Iterator[Recorded]:
+    store = typestore()
+    with open_input(path, "recording") as file:
+        for schema, channel, message in make_reader(file).iter_messages():
+            if schema is not None and schema.name in KINDS:
+                read = partial(store.deserialize_cdr, message.data, schema.name)
+                yield message.log_time * 1e-9, channel.topic, schema.name, read
+
+
+def typestore() -> Typestore:
+    """Return the types of messages that recordings may have without telling them."""
     store = get_typestore(Stores.ROS2_HUMBLE)
-    for schema, channel, message in messages:
-        if schema is not None and schema.name in (SCANS, TRANSFORMS):
-            data = store.deserialize_cdr(message.data, schema.name)
-            yield message.log_time * 1e-9, channel.topic, schema.name, data
+    store.register(get_types_from_msg(_PATCH, PATCHES))
+    return store

@@ -11,6 +11,9 @@ from vedette.ros2.door import Deviation, Grid, Joint, Patch
 from vedette.ros2.scans import LaserSweep
 from vedette.ros2.transforms import Matrix, deviations, matrix
 
+MOST_SIDE = 1e3  # of a map's cell [m]
+MOST_METRES = 2.1e7  # from the origin of its frame to a map
+
 
 def seconds(stamp: Any) -> float:
     """Return a ``builtin_interfaces/Time`` [s]."""
@@ -48,10 +51,11 @@ def grid_of(message: Any) -> Grid | None:
     """Return a ``nav_msgs/OccupancyGrid``; None: it makes no sense."""
     info, cells = message.info, np.asarray(message.data, np.int8)
     T = _transform(info.origin.position, info.origin.orientation)
-    if not info.resolution > 0.0 or len(cells) != info.height * info.width:
+    T = np.eye(4) if T is None else T
+    lies_somewhere = np.isfinite(T).all() and np.abs(T).max() <= MOST_METRES
+    if not (0.0 < info.resolution <= MOST_SIDE and lies_somewhere) or len(cells) != info.height * info.width:
         return None
-    cells = cells.reshape(info.height, info.width)
-    return Grid(message.header.frame_id, info.resolution, np.eye(4) if T is None else T, cells)
+    return Grid(message.header.frame_id, info.resolution, T, cells.reshape(info.height, info.width))
 
 
 def patch_of(message: Any) -> Patch | None:

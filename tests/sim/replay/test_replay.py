@@ -53,7 +53,7 @@ def test_the_map_is_that_of_the_building_and_everybody_has_it(
 ) -> None:
     replayed = Replay(recorded, ReplaySetup(robots)).run()
     known = replayed.classes != UNKNOWN
-    assert (replayed.scans, replayed.complete, replayed.agreed) == (len(recorded.scans), True, True)
+    assert (replayed.sights, replayed.complete, replayed.agreed) == (len(recorded.scans), True, True)
     assert np.mean(replayed.classes[known] != truth(building, replayed)[known]) < 0.03
     assert np.count_nonzero(replayed.classes == FREE) > 0.97 * np.count_nonzero(~building.solid)
     assert replayed.known_m2[-1] == pytest.approx(np.count_nonzero(known) * 0.01)
@@ -104,7 +104,7 @@ def test_a_replay_that_is_stopped_says_how_far_it_came(recorded: RecordedLog) ->
     replay = Replay(recorded, ReplaySetup())
     replayed = replay.run(lambda share: replay.stop() if share > 0.3 else None)
     assert not replayed.complete
-    assert 0.2 < replayed.scans / replayed.of_scans < 0.4
+    assert 0.2 < replayed.sights / replayed.of_sights < 0.4
     assert ReplayedBuilding.of(replayed).complete is False
 
 

@@ -39,8 +39,9 @@ def map_png(replayed: Replayed, path: Path | str) -> None:
         for i, (name, way) in enumerate(zip(replayed.names, replayed.ways, strict=True)):
             colour = palette.unit(palette.robot_colour(i))
             axes.plot(*way.T, color=colour, lw=1.0, alpha=0.8, label=name)
-            axes.plot(*way[0], "o", color=colour, ms=5)
-        title = f"{replayed.name}: {many(replayed.scans, 'scan')}, {replayed.known_m2[-1]:.0f} m² known"
+            axes.plot(*way[:1].T, "o", color=colour, ms=5)
+        seen = many(replayed.sights, "map" if replayed.maps else "scan")
+        title = f"{replayed.name}: {seen}, {replayed.known_m2[-1]:.0f} m² known"
         axes.set_title(title, loc="left", fontsize=11, fontweight="bold")
         if len(replayed.names) > 1:
             axes.legend(loc="best", fontsize=8, framealpha=0.9)

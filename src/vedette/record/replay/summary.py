@@ -22,8 +22,9 @@ class Replayed:
     counts: NDArray[np.int64]  # (4, BINS) unknown cells tried and seen, as `count_sightings` counts them
     times: tuple[float, ...]  # [s]
     known_m2: tuple[float, ...]  # area that the robot knew then that knew most
-    scans: int  # that were told
-    of_scans: int
+    sights: int  # scans, or maps, that were told
+    of_sights: int
+    maps: bool  # they were maps
     way_m: float
     reach_m: float
     agreed: bool  # all robots hold one map
@@ -33,7 +34,7 @@ class Replayed:
     @property
     def complete(self) -> bool:
         """Whether the log has gone through whole."""
-        return self.scans == self.of_scans
+        return self.sights == self.of_sights
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,7 @@ class ReplayedBuilding:
     log: str
     robots: tuple[str, ...]
     scans: int
+    maps: int
     complete: bool
     way_m: float
     time_s: float
@@ -69,7 +71,8 @@ class ReplayedBuilding:
         return cls(
             replayed.name,
             replayed.names,
-            replayed.scans,
+            0 if replayed.maps else replayed.sights,
+            replayed.sights if replayed.maps else 0,
             replayed.complete,
             replayed.way_m,
             replayed.times[-1],

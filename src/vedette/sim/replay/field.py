@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.agent.effects import Motion
-from vedette.agent.events import Event, Pose, Scan
-from vedette.logs import RecordedScan
+from vedette.agent.events import Event, Pose, Scan, Sensed
+from vedette.logs import RecordedMap, RecordedScan, Sight
+from vedette.logs.recorded import place_of
+from vedette.missions.explore.own_map import OwnMap
 from vedette.outcome import Outcome
 from vedette.sim.worlds.logged import beams
 
@@ -18,11 +20,11 @@ from vedette.sim.worlds.logged import beams
 class RecordedRobots:
     """A robot for each share of a log: all begin at once, and stand when theirs is over."""
 
-    def __init__(self, shares: Sequence[Sequence[RecordedScan]], reach: float, no_return: str) -> None:
-        """Take shares of at least one scan each; ``reach`` [m] and ``no_return`` as for `logged`."""
+    def __init__(self, shares: Sequence[Sequence[Sight]], reach: float, no_return: str) -> None:
+        """Take shares of at least one sight each; ``reach`` [m] and ``no_return`` as for `logged`."""
         self.shares = shares
-        self._times = [[scan.time - share[0].time for scan in share] for share in shares]
-        self._told = [0] * len(shares)  # scans
+        self._times = [[sight.time - share[0].time for sight in share] for share in shares]
+        self._told = [0] * len(shares)  # sights
         self._reach, self._no_return = reach, no_return
         self._alive: NDArray[np.bool_] = np.ones(len(shares), np.bool_)
 
@@ -32,8 +34,8 @@ class RecordedRobots:
         return max(times[-1] for times in self._times)
 
     @property
-    def scans_told(self) -> int:
-        """How many scans the team has been told by now."""
+    def told(self) -> int:
+        """How many sights the team has been told by now."""
         return sum(self._told)
 
     @property
@@ -42,21 +44,30 @@ class RecordedRobots:
         return self._alive
 
     def pose(self, i: int) -> tuple[float, float, float]:
-        """Return x, y [m] and heading [rad] of a robot's lidar, frame of the log."""
-        scan = self.shares[i][max(self._told[i], 1) - 1]
-        return scan.x, scan.y, scan.heading
+        """Return x, y [m] and heading [rad] of a robot, frame of the log; its map's, if none was told."""
+        sight = self.shares[i][max(self._told[i], 1) - 1]
+        place = place_of(sight)
+        if place is None:
+            assert isinstance(sight, RecordedMap), "scans have places"
+            return (*sight.middle, 0.0)
+        return place
 
     def sense(self, i: int, now: float) -> list[Event]:
-        """Return the poses and scans of a robot up to now that it has not been told yet."""
+        """Return the poses and sights of a robot up to now that it has not been told yet."""
         until = bisect_right(self._times[i], now + 1e-9)
         events: list[Event] = [Pose(*self.pose(i))]
-        for scan in self.shares[i][self._told[i] : until]:
-            ranges, hits = beams(scan, self._reach, self._no_return)
-            said = ranges > 0.0
-            events.append(Pose(scan.x, scan.y, scan.heading))
-            events.append(Scan(scan.angles[said], np.where(hits, ranges, np.inf)[said]))
+        for sight in self.shares[i][self._told[i] : until]:
+            if isinstance(sight, RecordedMap):
+                events.append(Sensed(OwnMap(sight.classes, sight.resolution, *sight.corner), now))
+            else:
+                events += Pose(sight.x, sight.y, sight.heading), self._scan(sight)
         self._told[i] = until
         return events
+
+    def _scan(self, scan: RecordedScan) -> Scan:
+        ranges, hits = beams(scan, self._reach, self._no_return)
+        said = ranges > 0.0
+        return Scan(scan.angles[said], np.where(hits, ranges, np.inf)[said])
 
     def carry_out(self, i: int, motion: Motion, now: float) -> None:
         """Go where the log says, whatever the agent wants."""

@@ -15,9 +15,10 @@ from vedette.agent.mates import Mate
 from vedette.domains.mapping.planners import DEFAULT
 from vedette.domains.mapping.sightings import BINS
 from vedette.errors import InputError
-from vedette.logs import RecordedLog, RecordedScan
-from vedette.maps import UNKNOWN
-from vedette.maps.lattice import Lattice
+from vedette.logs import RecordedLog, Sight
+from vedette.logs.recorded import way_of
+from vedette.maps import UNKNOWN, GridFrame
+from vedette.maps.bounds import Bounds, Extent
 from vedette.missions.explore.assemble import assemble
 from vedette.missions.explore.exploring import Exploring
 from vedette.missions.explore.options import ExploreOptions
@@ -37,7 +38,7 @@ class Following(Exploring):
     """Sees what was recorded: no mate was in those scans, and the mission ends with the log."""
 
     def observe(self, seen: Scan | Sensed, pose: Pose, mates: Sequence[Mate], now: float) -> None:
-        """Add a scan to the robot's own evidence, whoever is said to stand where now."""
+        """Add a scan, or take over a map, whoever is said to stand where now."""
         super().observe(seen, pose, (), now)
 
     def nothing_left(self, value: float, now: float) -> bool:
@@ -59,18 +60,19 @@ class ReplaySetup:
     seed: int = 0  # of what befalls messages
     link_loss: float = 0.0
 
-    def shares(self, log: RecordedLog) -> list[tuple[RecordedScan, ...]]:
-        """Cut a log into as many pieces of as many scans.
+    def shares(self, log: RecordedLog) -> list[tuple[Sight, ...]]:
+        """Cut a log into as many pieces of as many scans, or maps.
 
         Raises:
-            InputError: it has too few scans.
+            InputError: it has too few.
         """
-        if len(log.scans) < 2 * self.robots:
+        sights, what = log.sights, "map" if log.maps else "scan"
+        if len(sights) < (self.robots if log.maps else 2 * self.robots):
             raise InputError(
-                f"{log.name} has {many(len(log.scans), 'scan')}, too few for {many(self.robots, 'robot')}"
+                f"{log.name} has {many(len(sights), what)}, too few for {many(self.robots, 'robot')}"
             )
-        ends = np.linspace(0, len(log.scans), self.robots + 1).round().astype(int).tolist()
-        return [log.scans[a:b] for a, b in pairwise(ends)]
+        ends = np.linspace(0, len(sights), self.robots + 1).round().astype(int).tolist()
+        return [sights[a:b] for a, b in pairwise(ends)]
 
 
 class Replay:
@@ -80,13 +82,17 @@ class Replay:
         """Prepare to replay a log.
 
         Raises:
-            InputError: it cannot be cut so, or covers too much; planner, scheme or fusion are unknown.
+            InputError: it cannot be cut so, or covers too much; planner, scheme or fusion are unknown, or
+                maps cannot be fused so.
         """
         self.log, self.setup = log, setup
-        self.frame = frame_of(log, setup.resolution, setup.reach)
+        if log.maps:
+            _check_maps(log, setup)
         self.robots = RecordedRobots(setup.shares(log), setup.reach, setup.no_return)
         self.specs = [_spec(log, setup.reach, number) for number in range(1, setup.robots + 1)]
         self._options = ExploreOptions(setup.planner, setup.scheme, setup.fusion, False)
+        self._frame = frame_of(log, setup.resolution, setup.reach)
+        self.lattice = self._options.lattice(setup.resolution, _middle(self._frame))
         _ = self._options.negotiates_by
         links = ExploreSetup(seed=setup.seed, link_loss=setup.link_loss, scheme=setup.scheme)
         self.simulation = Simulation(self._agent, self.robots, links)
@@ -95,7 +101,7 @@ class Replay:
     def _agent(self, robot: int, boot: int) -> Agent:
         spec, most = self.specs[robot], Most.of(self.specs)
         return assemble(
-            Lattice(self.frame, bounded=False), spec, self._options, robot, boot,
+            self.lattice, spec, self._options, robot, boot,
             robots=len(self.specs), most=most, explorer=Following,
         )  # fmt: skip
 
@@ -128,29 +134,59 @@ class Replay:
         most = max(np.count_nonzero(mission.fusion.classes.blocks != UNKNOWN) for mission in self.missions)
         return float(most) * self.setup.resolution**2
 
+    def _extent(self, mission: Following) -> Extent:
+        """Return the rows and columns of the lattice where the log lies, and where a robot knows anything."""
+        bounds, frame = Bounds(), self._frame
+        row, col = self.lattice.frame.cell(*frame.centres(np.zeros(1, np.int64))[0].tolist())
+        bounds.hold(row, row + frame.rows, col, col + frame.cols)
+        rows, cols = mission.known
+        if rows.stop > rows.start:
+            bounds.hold(rows.start, rows.stop, cols.start, cols.stop)
+        return bounds.extent
+
     def _replayed(self, times: Sequence[float], known: Sequence[float]) -> Replayed:
         missions = self.missions
-        maps = [mission.fusion.classes.window() for mission in missions]
+        most = max(missions, key=lambda mission: int(np.count_nonzero(mission.fusion.classes.blocks)))
+        extent = self._extent(most)
         counts = sum((mission.own.counts for mission in missions), np.zeros((4, BINS), np.int64))
         return Replayed(
             name=self.log.name,
-            frame=self.frame,
-            classes=max(maps, key=lambda classes: int(np.count_nonzero(classes))),
+            frame=self.lattice.frame.window(*extent),
+            classes=most.fusion.classes.window(*extent),
             counts=counts,
             times=tuple(times),
             known_m2=tuple(known),
-            scans=self.robots.scans_told,
-            of_scans=len(self.log.scans),
+            sights=self.robots.told,
+            of_sights=len(self.log.sights),
+            maps=bool(self.log.maps),
             way_m=self.log.way,
             reach_m=self.setup.reach,
             agreed=len({mission.fusion.digest for mission in missions}) == 1,
             names=tuple(spec.name for spec in self.specs),
-            ways=tuple(np.array([(scan.x, scan.y) for scan in share]) for share in self.robots.shares),
+            ways=tuple(way_of(share) for share in self.robots.shares),
         )
+
+
+def _check_maps(log: RecordedLog, setup: ReplaySetup) -> None:
+    if setup.fusion == "channel":
+        raise InputError(
+            f"{log.name} holds maps, and --fusion channel cannot take back what an older one said; leave it "
+            "out"
+        )
+    if not any(each.classes.any() for each in log.maps):
+        raise InputError(f"{log.name}: nothing of its maps is known; record some of a mission")
+
+
+def _middle(frame: GridFrame) -> tuple[float, float]:
+    """Return the corner of a frame's cells [m] about which an open lattice has room for all of it."""
+    x = frame.origin_x + frame.cols // 2 * frame.resolution
+    return x, frame.origin_y + frame.rows // 2 * frame.resolution
 
 
 def _spec(log: RecordedLog, reach: float, number: int) -> PlatformSpec:
     """Return the robot that a log is of, as far as the log tells."""
+    if not log.scans:
+        return PlatformSpec(f"robot-{number}", range=reach)
     scan = log.scans[0]
     count = len(scan.angles)
     step = float(np.median(np.diff(scan.angles))) if count > 1 else math.radians(1.0)
