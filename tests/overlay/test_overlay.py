@@ -171,6 +171,20 @@ def test_a_flapping_link_does_not_re_form_the_tree_again_and_again() -> None:
     assert len(epochs) <= 10
 
 
+def test_a_link_that_is_cut_for_seconds_comes_up_only_while_it_is_whole() -> None:
+    net = whole(2, [(0, 1)])
+    came_up = []
+    for _ in range(40):
+        net.cut ^= {(0, 1), (1, 0)}
+        for _ in range(30):
+            before = [node.overlay._peers[1 - i].up for i, node in net.nodes.items()]
+            net.run(0.1)
+            now = [node.overlay._peers[1 - i].up for i, node in net.nodes.items()]
+            came_up += [bool(net.cut) for was, is_up in zip(before, now, strict=True) if is_up and not was]
+    assert came_up.count(False) >= 10
+    assert True not in came_up
+
+
 def test_a_link_that_loses_hellos_is_used_only_where_there_is_no_better_way() -> None:
     class Patchy(Network):
         def _send(self, sender: int, to: int, payload: bytes) -> None:

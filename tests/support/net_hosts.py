@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import shutil
 import subprocess
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from itertools import count
+from pathlib import Path
+from tempfile import gettempdir
 from types import TracebackType
 from typing import Any, Self
 
@@ -46,7 +49,9 @@ class Hosts:
     tag: str = field(default_factory=lambda: f"v{os.getpid() % 100_000}x{next(_MADE)}")
 
     def __enter__(self) -> Self:
-        """Make them."""
+        """Make them; one such network at a time, since all have the same addresses on this machine."""
+        self._turn = (Path(gettempdir()) / "vedette-hosts.lock").open("w")
+        fcntl.flock(self._turn, fcntl.LOCK_EX)
         try:
             for host in range(self.count):
                 _do("ip", "netns", "add", self.name(host))
@@ -65,6 +70,7 @@ class Hosts:
         """Take them away, with the cables that end there."""
         for host in range(self.count):
             subprocess.run(["ip", "netns", "del", self.name(host)], capture_output=True, check=False)
+        self._turn.close()
 
     def name(self, host: int) -> str:
         """The namespace of a host."""

@@ -149,11 +149,15 @@ class Peer:
         return self.up and self.hello is not None and bool(self.hello.flags & UP)
 
     def judge(self, own_boot: int, now: float) -> None:
-        """Decide whether to use the link: both ends hear each other, and it has not failed just now."""
+        """Decide whether to use the link: both ends hear each other, and it has not failed just now.
+
+        One that failed has to be heard anew: what came before says nothing of a link that comes and goes.
+        """
         hello = self.hello
         two_way = hello is not None and hello.echo is not None and hello.echo.boot == own_boot
         agrees = hello is not None and hello.terms == self.terms
-        up = self.reachable and two_way and agrees and now < self.heard + self.lease and now >= self._trusted
+        fresh = self._trusted <= self.heard and now < self.heard + self.lease
+        up = self.reachable and two_way and agrees and fresh
         if up and not self.up:
             self.up, self._up_since = True, now
             self.tell(now)
@@ -187,7 +191,7 @@ class Peer:
         if self.up:
             probe = max(self.heard + QUIET * self.lease, self._last_sent + PROBE)
             return min(due, probe, self.heard + self.lease)
-        return min(due, self._trusted) if now < self._trusted else due
+        return due
 
     # -- speaking ----------------------------------------------------------------------------------
 
