@@ -16,6 +16,7 @@ from msgspec import inspect
 from bench.cases import Result
 from bench.criteria import BenchReport
 from bench.crowds import CrowdResult
+from bench.decomposition import Shares
 from bench.large.cases import LargeResult
 from bench.scale.report import ScaleReport
 from bench.stonesoup.__main__ import StoneSoupReport
@@ -40,6 +41,7 @@ KINDS: Mapping[str, type] = {
     "bench-stonesoup": StoneSoupReport,
     "bench-mission": Result,
     "bench-crowd": CrowdResult,
+    "bench-decomposition": Shares,
     "bench-large": LargeResult,
 }
 
