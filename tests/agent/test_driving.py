@@ -77,6 +77,21 @@ def test_work_that_cannot_be_reached_is_released() -> None:
     assert state(agent) is State.DRIVING
 
 
+def test_a_robot_that_somebody_keeps_from_work_gives_it_back_at_once_and_asks_for_some_when_it_may() -> None:
+    team = driving_team()
+    agent, before = team.agents[0], team.decisions()
+    team.kept = {0}
+    team.run(0.2)
+    assert (state(agent), toy(agent).strategy, toy(agent).released) == (State.PAUSED, None, 0)
+    assert last_goal(team.driven[0][-1]) is None
+    team.run(2.5)
+    assert team.decisions()[0] > before[0]
+    assert state(agent) is State.PAUSED
+    team.kept = set()
+    team.run(2.5)
+    assert state(agent) is State.DRIVING
+
+
 @pytest.mark.parametrize("event", [Arrived(), Stuck()])
 def test_events_that_nobody_waits_for_do_nothing(event: Event) -> None:
     agent = toy_agent(0, [np.ones(12)], np.ones(12))

@@ -129,6 +129,10 @@ class ToyMission:
         self.strategy = None
         return True
 
+    def stand_by(self) -> None:
+        """Drop it."""
+        self.strategy = None
+
     def release(self, now: float) -> None:
         """Drop it."""
         self.released += 1
@@ -204,6 +208,7 @@ class Team:
         """Plant the tree; robot 0 is the root."""
         self.agents = list(agents)
         self.alive = [True] * len(agents)
+        self.kept: set[int] = set()  # those whom somebody keeps from work
         self.lose = lose
         self.log: list[Post] = []
         self.driven: list[list[Drive]] = [[] for _ in agents]
@@ -271,7 +276,7 @@ class Team:
         self._tick += 0.1
         for robot in range(len(self.agents)):
             if self.alive[robot]:
-                self.tell(robot, Pose(1.0 + 10.0 * robot, 1.0, 0.0))
+                self.tell(robot, Pose(1.0 + 10.0 * robot, 1.0, 0.0, at_work=robot not in self.kept))
 
     def run_round(self) -> None:
         """Let time pass until everybody has decided once more; 5 s at most."""

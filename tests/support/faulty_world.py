@@ -299,6 +299,10 @@ class SiteMission:
         self.strategy = None
         return True
 
+    def stand_by(self) -> None:
+        """Drop it."""
+        self.strategy = None
+
     def release(self, now: float) -> None:
         """Drop it."""
         self.strategy = None

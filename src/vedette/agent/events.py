@@ -27,6 +27,7 @@ class Pose:
     slowed: float = 0.0  # time without progress on its way [s]
     deviation: float = 0.0  # standard deviation of x and of y, as a localiser's covariance has it [m]
     heading_deviation: float = 0.0  # [rad]
+    at_work: bool = True  # False: somebody beside the robot keeps it from what its agent wants
 
 
 @dataclass(frozen=True, eq=False)

@@ -80,11 +80,25 @@ class GroundBehaviour:
 
     def follow(self, agent: Agent, pose: Pose, now: float, news: bool) -> list[Effect]:
         """Drive where the latest decision wants the robot; after the last one, home or nowhere."""
+        if not pose.at_work or self.state is State.PAUSED:
+            return self._pause(agent, pose)
         effects = self._follow_decision(agent, pose, now) if news else []
         waiting = self.state is State.RETURNING and self.driver.standing
         if waiting and agent.is_due("home", HOME_AGAIN, now):
             effects += self._go_home(agent, pose, now, blocked=False)
         return effects
+
+    def _pause(self, agent: Agent, pose: Pose) -> list[Effect]:
+        """Give the work back while somebody keeps the robot from it; ask for some when that is over."""
+        if pose.at_work:
+            self.state = State.IDLE
+            agent.rounds.want()
+        elif self.state not in (State.PAUSED, State.RETURNING, State.DONE):
+            self.state = State.PAUSED
+            self.mission.stand_by()
+            agent.rounds.want()
+            return [self.driver.go(None)]
+        return []
 
     def _follow_decision(self, agent: Agent, pose: Pose, now: float) -> list[Effect]:
         if not agent.finished:
@@ -153,6 +167,8 @@ class GroundBehaviour:
 
     def look_out(self, agent: Agent, pose: Pose, now: float) -> list[Effect]:
         """Make room for mates, and ask for a round when the present goal has lost its point."""
+        if not pose.at_work:
+            return []
         effects = self._make_room(agent, pose, now) if agent.is_due("look out", LOOK_OUT_PERIOD, now) else []
         checks = agent.is_due("check", CHECK_PERIOD, now)
         if checks and self.state is State.DRIVING and self.mission.served():

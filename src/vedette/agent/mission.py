@@ -98,7 +98,7 @@ class Mission(Protocol[BeliefT, StrategyT, ImpactT]):
         """Do the slow part of planning, the present strategy restated for the round included.
 
         ``pose``: where the robot will be when its strategy starts. ``blocked``: the robot cannot go on as it
-        would, so that its mates count as obstacles.
+        would, so that its mates count as obstacles. A robot that is kept from work takes none up.
         """
 
     def reach(self, now: float) -> Reach | None:
@@ -132,6 +132,9 @@ class GroundMission(Mission[BeliefT, StrategyT, ImpactT], Protocol[BeliefT, Stra
 
     def reached(self, pose: Pose, mates: Sequence[Mate], now: float) -> bool:
         """Note that the robot is at its goal, and go on to the next; False: it has to look on from here."""
+
+    def stand_by(self) -> None:
+        """Leave the present strategy to others: somebody keeps the robot from it."""
 
     def release(self, now: float) -> None:
         """Give up the present strategy: the robot cannot carry it out."""

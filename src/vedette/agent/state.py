@@ -30,6 +30,7 @@ class State(Enum):
     DRIVING = "driving"
     YIELDING = "making room"
     STUCK = "stuck"
+    PAUSED = "paused"  # by somebody beside the robot
     IDLE = "idle"  # nothing it can do is worth doing
     RETURNING = "returning"
     FLYING = "flying"

@@ -165,12 +165,13 @@ class Ros2Body:
             self.frame(self.settings.map_frame), self.frame(self.settings.base_frame)
         )
         if isinstance(told, Gap):
-            return self._pose
+            return self._pose and replace(self._pose, at_work=self.at_work is None)
         return self._pose_at(told, self.goals.slowed)
 
     def _pose_at(self, T_map_base: Matrix, slowed: float = 0.0) -> Pose:
         x, y, heading = place(self.settings.T_team_map @ T_map_base)
-        return Pose(x, y, heading, slowed, self._deviation.place, self._deviation.heading)
+        deviation, at_work = self._deviation, self.at_work is None
+        return Pose(x, y, heading, slowed, deviation.place, deviation.heading, at_work)
 
     def _note(self, pose: Pose) -> None:
         """Remember where the robot is, and count its way."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from math import atan2, cos, hypot, inf, pi, tau
+from math import atan2, hypot, inf
 from typing import Any
 
 import numpy as np
@@ -16,13 +16,12 @@ from rclpy.node import Node
 from rclpy.task import Future
 
 from vedette.ros2_robots.planner import WayFinder
+from vedette.ros2_robots.steering import steer, turn, within
 
 TOLERANCE_XY, TOLERANCE_YAW = 0.1, 0.1  # of a goal [m, rad]
-LOOKAHEAD = 0.35  # [m]
 REPLAN = 2.0  # [s]
 PATIENCE = 10.0  # without a way, or without movement; then the goal is given up [s]
 NEAR = 3.0  # within which other robots are seen [m]
-GAP = 0.06  # that is kept to other robots [m]
 UNKNOWN = 9000
 
 Pose = tuple[float, float, float]
@@ -121,33 +120,14 @@ class Navigator:
     ) -> tuple[float, float]:
         x, y, yaw = here
         if hypot(path[-1, 0] - x, path[-1, 1] - y) < TOLERANCE_XY:
-            off = _within(run.goal[2] - yaw)
+            off = within(run.goal[2] - yaw)
             if abs(off) < TOLERANCE_YAW:
                 self._finish("succeeded")
                 return 0.0, 0.0
-            return 0.0, self._turn(off)
-        away = np.hypot(*(path - (x, y)).T)
-        nearest = int(away.argmin())
-        ahead = np.flatnonzero(away[nearest:] > LOOKAHEAD)
-        aim = path[nearest + int(ahead[0])] if len(ahead) else path[-1]
-        off = _within(atan2(aim[1] - y, aim[0] - x) - yaw)
-        ahead_speed = self.speed * max(cos(off), 0.0) if abs(off) < 0.8 else 0.0
-        ahead_speed = min(ahead_speed, max(hypot(path[-1, 0] - x, path[-1, 1] - y), 0.1))
-        step = 0.3
-        u, v = x + step * np.cos(yaw), y + step * np.sin(yaw)
-        for ox, oy, radius in others:
-            closer = hypot(ox - u, oy - v) < hypot(ox - x, oy - y)
-            if closer and hypot(ox - x, oy - y) < self.radius + radius + GAP + 0.15:
-                ahead_speed = 0.0
-        return ahead_speed, self._turn(off)
-
-    def _turn(self, off: float) -> float:
-        return min(max(3.0 * off, -self.turn_rate), self.turn_rate)
-
-
-def _within(angle: float) -> float:
-    return (angle + pi) % tau - pi
+            return 0.0, turn(off, self.turn_rate)
+        discs = np.asarray(others, np.float64).reshape(-1, 3)
+        return steer(here, path, self.speed, self.turn_rate, lambda at: self.planner.room(at, discs))
 
 
 def _apart(a: Pose, b: Pose) -> bool:
-    return hypot(a[0] - b[0], a[1] - b[1]) > 0.1 or abs(_within(a[2] - b[2])) > 0.3
+    return hypot(a[0] - b[0], a[1] - b[1]) > 0.1 or abs(within(a[2] - b[2])) > 0.3

@@ -13,6 +13,8 @@ from vedette.ros2_robots.building import Building
 
 INFLATED = 0.5  # beyond the robot's rim costs rise toward walls [m]
 STEEPNESS = 8.0  # of that rise [1/m]
+MARGIN = 0.03  # beyond its rim that a way leaves at least [m]
+GAP = 0.06  # that a robot keeps to others beside that [m]
 TOLERANCE = 0.5  # a goal that is in the way of something is moved so far at most [m]
 
 
@@ -32,9 +34,10 @@ class WayFinder:
         rows, cols = np.indices(room.shape)
         x, y = self._centres(rows, cols)
         for dx, dy, radius in discs:
-            np.minimum(room, np.hypot(x - dx, y - dy) - radius, out=room)
-        free = room > self._radius
-        start, end = self._cell(here), self._nearest(free, self._cell(goal))
+            np.minimum(room, np.hypot(x - dx, y - dy) - radius - GAP, out=room)
+        start = self._cell(here)
+        free = room > min(self._radius + MARGIN, float(room[start]))  # who is nearer already may leave
+        end = self._nearest(free, self._cell(goal))
         if end is None:
             return None
         free[start] = True
@@ -46,6 +49,21 @@ class WayFinder:
             return None
         cells = np.array(search.traceback(end))
         return np.column_stack(self._centres(cells[:, 0], cells[:, 1]))
+
+    def room(self, places: NDArray[np.float64], discs: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return ``(k,)`` how far the robot's rim is from walls and discs at places ``(k, 2)`` [m].
+
+        Of discs, ``(n, 3)`` x, y, radius [m], a gap is kept. What is far is only told to be so.
+        """
+        side, reach = self._building.resolution, int(2.0 * self._radius / self._building.resolution) + 2
+        row, col = self._cell(places.mean(axis=0).tolist())
+        row, col = max(row - reach, 0), max(col - reach, 0)
+        walls = np.argwhere(self._building.solid[row : row + 2 * reach + 1, col : col + 2 * reach + 1])
+        x, y = self._centres(walls[:, 0] + row, walls[:, 1] + col)
+        beside = [np.maximum(np.abs(places[:, i, None] - at) - side / 2, 0.0) for i, at in enumerate((x, y))]
+        to_walls = np.hypot(*beside).min(axis=1, initial=reach * side)
+        away = np.hypot(places[:, 0, None] - discs[:, 0], places[:, 1, None] - discs[:, 1]) - discs[:, 2]
+        return np.asarray(np.minimum(to_walls, away.min(axis=1, initial=np.inf) - GAP) - self._radius)
 
     def _centres(
         self, rows: NDArray[np.int64], cols: NDArray[np.int64]

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from math import cos, pi, radians, sin
 from pathlib import Path
 from typing import Any
@@ -108,8 +109,10 @@ class RobotNode:
         until, dx, dy, turn = self.spec["lost"]
         return in_world(self.start, (dx, dy, radians(turn))) if now < until else self.start
 
-    def tell(self, now: float, stamp: Time, at: Pose, moving: tuple[float, float], scan: Any) -> None:
-        """Publish where the robot is, and now and then what its lidar sees."""
+    def tell(
+        self, now: float, stamp: Time, at: Pose, moving: tuple[float, float], look: Callable[[], Any]
+    ) -> None:
+        """Publish where the robot is, and now and then what its lidar sees, which costs most of the time."""
         here = seen_from(self.start, at)
         drift = self._joint("map", "odom", seen_from(self.map_frame(now), self.start), stamp)
         self._tf.publish(TFMessage(transforms=[drift, self._joint("odom", "base_link", here, stamp)]))
@@ -123,6 +126,7 @@ class RobotNode:
         self._odom.publish(odometry)
         if now >= self.next_scan - 1e-9:
             self.next_scan += 1.0 / self.spec["rate"]
+            scan = look()
             self._scan.publish(self._sweep(stamp, scan))
             if self._map is not None:
                 x, y, yaw = self.spec["mount"]
@@ -169,6 +173,7 @@ class Strangers:
         self._starts = [(x, y, radians(yaw)) for x, y, yaw in (spec["start"] for spec in self._specs)]
         self._env = self._make()
         self._sim_time, self._speed, self.now = sim_time, speed, 0.0
+        self.collided = [False] * len(self._specs)  # whether each robot has touched something
         self.nodes = [Node("robot", namespace=spec["namespace"], context=context) for spec in self._specs]
         self.robots = [self._robot(i) for i in range(len(self._specs))]
         self._clock = self.nodes[0].create_publisher(Clock, "/clock", 10) if sim_time else None
@@ -207,7 +212,16 @@ class Strangers:
         with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
             yaml.safe_dump(world, file)
             file.flush()
-            return irsim.make(file.name, headless=True, log_level="ERROR", seed=0)
+            env = irsim.make(file.name, headless=True, log_level="ERROR", seed=0)
+        for body in env.robot_list:
+            body.sensors = []  # lidars look when a scan is due, not at every step
+        return env
+
+    def _look(self, i: int) -> Any:
+        """Return what a robot's lidar sees now."""
+        body = self._env.robot_list[i]
+        body.lidar.step(body.state[0:3])
+        return body.lidar.get_scan()
 
     def _body(self, i: int) -> dict[str, Any]:
         spec = self._specs[i]
@@ -245,20 +259,16 @@ class Strangers:
             for i, robot in enumerate(self.robots)
         ]
         self._env.step([list(each) for each in moving], list(range(len(moving))))
+        self.collided = [a or bool(b.collision) for a, b in zip(self.collided, self._env.robot_list, strict=True)]
         self.now += STEP
         stamp = self._stamp()
         if self._clock is not None:
             self._clock.publish(Clock(clock=stamp))
         for i, robot in enumerate(self.robots):
-            robot.tell(self.now, stamp, self.pose(i), moving[i], self._env.get_lidar_scan(i))
+            robot.tell(self.now, stamp, self.pose(i), moving[i], partial(self._look, i))
 
     def _stamp(self) -> Time:
         if self._sim_time:
             nanoseconds = round(self.now * 1e9)
             return Time(sec=nanoseconds // 10**9, nanosec=nanoseconds % 10**9)
         return self.nodes[0].get_clock().now().to_msg()
-
-    @property
-    def collided(self) -> Sequence[bool]:
-        """Whether each robot has touched something."""
-        return [bool(robot.collision) for robot in self._env.robot_list]

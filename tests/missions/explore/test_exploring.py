@@ -15,6 +15,7 @@ from vedette.agent.events import Pose
 from vedette.agent.mates import Mate
 from vedette.domains.mapping import views
 from vedette.domains.mapping.planners import planner
+from vedette.domains.mapping.platform import STAY
 from vedette.domains.mapping.sightings import BINS
 from vedette.domains.mapping.stops import CLEARANCES
 from vedette.fusion import ReplicatedEvidence
@@ -132,6 +133,23 @@ def test_a_released_stop_is_left_alone_for_a_while_and_a_reached_one_is_followed
     prepared(mission, now=1.1 + AVOID_TIME)
     assert reachable(mission, second)
     assert not reachable(mission, first)
+
+
+def test_a_robot_that_is_kept_from_work_claims_nothing_ends_nothing_and_holds_nothing_against_a_stop() -> None:
+    mission = explorer()
+    look(mission, HERE)
+    prepared(mission)
+    first = mission.strategy.targets[0].tolist()
+    mission.stand_by()
+    assert mission.goal() is None
+    belief = mission.freeze(0.0)
+    mission.prepare(belief, replace(HERE, at_work=False), [], False, 1.0)
+    nothing = mission.objective.nothing(belief)
+    assert mission.platform.reply(belief, nothing, mission.strategy) == STAY
+    assert mission.platform.slack(belief, nothing) == 0.0
+    assert not mission.nothing_left(0.0, 1.0)
+    prepared(mission, now=1.1)
+    assert reachable(mission, first)
 
 
 def test_a_goal_is_served_when_a_mate_has_seen_most_of_what_it_was_to_reveal() -> None:

@@ -217,6 +217,12 @@ class MappingPlatform:
         self.cut_short = True
         return False
 
+    def stand_by(self) -> None:
+        """Leave all stops of the round to others."""
+        assert self.stops is not None
+        self.stops = replace(self.stops, first_leg=np.full_like(self.stops.first_leg, np.inf))
+        self.cut_short = self.daring = False
+
     @property
     def leads_anywhere(self) -> bool:
         """Tell whether the robot can reach any stop of the round."""

@@ -70,6 +70,7 @@ class Exploring:
     _failures: Failures = field(init=False)
     _ways: Ways = field(init=False)
     _left: list[Leftover] | None = None  # as of the last round; None: there was a stop
+    _at_work: bool = True  # as of the last round; a robot that is kept from work ends nothing
 
     def __post_init__(self) -> None:
         self.codec = MapImpactCodec(self.frame.coarse(planning_factor(self.frame.resolution)).size)
@@ -164,8 +165,11 @@ class Exploring:
             self._doubtful(belief),
         )
         self.platform.prepare(belief)
+        self._at_work = pose.at_work
+        if not pose.at_work:
+            self.platform.stand_by()
         self.strategy = self.platform.carry_over(self.strategy)
-        if self.platform.leads_anywhere:
+        if self.platform.leads_anywhere or not pose.at_work:
             self._resort.goal, self._left = None, None
         elif self.platform.ground is not None:
             self._left = leftovers(belief, self.platform)
@@ -270,6 +274,10 @@ class Exploring:
             return self._resort.facing(pose)
         return self._looking.toward(pose, float(np.arctan2(ahead[1], ahead[0])), distance)
 
+    def stand_by(self) -> None:
+        """Drop the tour; nothing is held against its stops."""
+        self.strategy, self._resort.goal = STAY, None
+
     def release(self, now: float) -> None:
         """Drop the tour; leave its first stop alone for a while, after some tries until the map changes.
 
@@ -290,7 +298,7 @@ class Exploring:
 
     def nothing_left(self, value: float, now: float) -> bool:
         """Tell whether nothing reachable is worth seeing, now or in a while, and all was tried."""
-        tried = not self.platform.cut_short and self._resort.goal is None
+        tried = self._at_work and not self.platform.cut_short and self._resort.goal is None
         return value <= 0.0 and tried and not self._failures.postponed(now)
 
     def route(
