@@ -80,6 +80,44 @@ def test_a_place_that_was_reached_is_asked_for_again_if_it_is_wanted_again() -> 
     assert sent(goals) == [Ask(2, THERE)]
 
 
+def test_a_robot_that_need_not_face_anywhere_is_there_before_it_stands_and_goes_on_without_a_halt() -> None:
+    goals, near = Errands(), (1.9, 0.1, 2.0)
+    goals.want(THERE, 0.0, facing=False)
+    goals.accepted(1, 0.1)
+    goals.tick((1.7, 0.0, 2.0), 3.0)
+    assert told(goals) == []
+    goals.tick(near, 3.1)
+    goals.tick(near, 3.2)
+    goals.status(1, ActionStatus.EXECUTING, 3.3)
+    assert (told(goals), sent(goals)) == ([Arrived()], [Ask(1, THERE)])
+    goals.want(ELSEWHERE, 3.4, facing=False)
+    assert sent(goals) == [Ask(2, ELSEWHERE)]  # which ends the other
+    goals.status(1, ActionStatus.ABORTED, 3.5)
+    assert told(goals) == []
+
+
+def test_a_robot_that_is_there_is_held_back_from_its_last_touch_if_it_is_to_stand() -> None:
+    goals = Errands()
+    goals.want(THERE, 0.0, facing=False)
+    goals.accepted(1, 0.1)
+    goals.tick((1.9, 0.1, 2.0), 3.1)
+    goals.want(None, 3.2)
+    assert sent(goals) == [Ask(1, THERE), Cancel(1)]
+    goals.want(THERE, 4.0, facing=False)
+    goals.accepted(2, 4.1)
+    goals.tick((1.9, 0.1, 2.0), 4.2)
+    goals.status(2, ActionStatus.SUCCEEDED, 5.0)
+    goals.want(None, 6.0)
+    assert sent(goals) == [Ask(2, THERE)]  # nothing runs that could be cancelled
+    assert told(goals) == [Arrived(), Arrived()]
+
+
+def test_a_robot_that_is_to_face_somewhere_is_there_when_the_navigator_says_so() -> None:
+    goals = driving()
+    goals.tick((1.99, 0.0, 2.0), 3.1)
+    assert told(goals) == []
+
+
 def test_a_status_before_the_answer_is_an_answer() -> None:
     goals = Errands()
     goals.want(THERE, 0.0)
@@ -193,15 +231,16 @@ def test_whatever_is_said_in_whatever_order_one_want_has_at_most_one_outcome() -
         "gone": lambda g, t: g.gone(t),
         "stand": lambda g, t: g.want(None, t),
         "long": lambda g, t: g.tick(HERE, t + REJECTED),
+        "there": lambda g, t: g.tick(THERE, t),
     }
     for names in product(acts, repeat=5):
         goals = Errands()
-        goals.want(THERE, 0.0)
+        goals.want(THERE, 0.0, facing=False)
         for step, name in enumerate(names):
             acts[name](goals, 0.1 * step)
         assert len(goals.outcomes) <= 1, names
         if "stand" in names and not any(
-            n in ("succeeded", "aborted", "canceled", "long") for n in names[: names.index("stand")]
+            n in ("succeeded", "aborted", "canceled", "long", "there") for n in names[: names.index("stand")]
         ):
             assert goals.outcomes == [], names
         if goals.wanted is None:

@@ -72,3 +72,4 @@ def test_without_rclpy_no_team_is_shown_and_one_line_says_what_it_needs(tmp_path
     assert isinstance(ended.exception, InputError)
     assert "they need rclpy, nav2_msgs, tf2_msgs and the extra ros2-robots" in str(ended.exception)
     assert "\n" not in str(ended.exception)
+    assert not (tmp_path / "out").exists()  # nothing of a mission that there was not

@@ -7,6 +7,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from math import floor
 from pathlib import Path
+from shutil import rmtree
 from tempfile import TemporaryDirectory
 from typing import Any, TypeVar
 
@@ -227,11 +228,21 @@ class _Processes:
     schedule: Schedule | None  # of faults
 
     def watched_by(self, watcher: Watcher[ReportT], folder: OutputFolder) -> ReportT:
-        """Run the team to the end of its mission; what it says goes into the folder."""
+        """Run the team to the end of its mission; what it says goes into the folder, if it starts."""
+        logs = folder / "agents"
+        were_there = logs.exists()
+        try:
+            return self._run(watcher, logs)
+        except InputError:
+            if not were_there:
+                rmtree(logs, ignore_errors=True)
+            raise
+
+    def _run(self, watcher: Watcher[ReportT], logs: Path) -> ReportT:
         text = None if self.schedule is None else faults_text(self.schedule)
         with ExitStack() as stack:
             secrets = stack.enter_context(TemporaryDirectory(prefix="vedette-team-"))
-            private, logs, around = Path(secrets), folder / "agents", {}
+            private, around = Path(secrets), {}
             if isinstance(self.plan, Ros2Plan):
                 around = environment()
                 self.plan.write(private)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Iterable
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -23,9 +23,9 @@ class OutputFolder:
     takes its place, and an `InputWarning` says so.
     """
 
-    def __init__(self, path: Path) -> None:
-        """Take a folder that is there."""
-        self._path = path
+    def __init__(self, path: Path, *, made: bool = False) -> None:
+        """Take a folder that is there; ``made`` for this run."""
+        self._path, self._made = path, made
         self._entered = ExitStack()
         self._identity = path.stat()
 
@@ -42,7 +42,10 @@ class OutputFolder:
         if force and out is None:
             text = "--force changes nothing without --out: the results go into a new folder"
             warnings.warn(text, InputWarning, stacklevel=2)
-        return cls(new_directory("runs", stem) if out is None else output_directory(out, force, inputs))
+        if out is None:
+            return cls(new_directory("runs", stem), made=True)
+        made = not out.exists()
+        return cls(output_directory(out, force, inputs), made=made)
 
     def __enter__(self) -> Self:
         """Keep the folder to this run.
@@ -56,8 +59,11 @@ class OutputFolder:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Leave it to others."""
+        """Leave it to others; one that was made for a run that came to nothing is gone again."""
         self._entered.close()
+        if self._made and error is not None:
+            with suppress(OSError):  # something is in it
+                self._path.rmdir()
 
     @property
     def path(self) -> Path:

@@ -57,7 +57,13 @@ class McapFile(Generic[RosT]):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Close, after an interruption too: what was recorded until then is valid."""
+        """Close, after an interruption too: what was recorded until then is valid.
+
+        Where bad input ends a mission before anything is recorded, no file is left.
+        """
+        if isinstance(error, InputError) and not self._channels:
+            self._closed = True
+            self._files.__exit__(kind, error, trace)
         self.close()
 
     def _write_rest(self) -> None:

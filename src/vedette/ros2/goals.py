@@ -14,6 +14,7 @@ from typing import TypeAlias
 
 from vedette.agent.events import Arrived, Stuck
 
+THERE = 0.2  # a robot this near a place has reached it, if it need not face anywhere [m]
 SAME_PLACE = 0.05  # a goal this near the present one is the same [m] ...
 SAME_HEADING = 0.02  # ... if it faces the same way [rad]
 ANSWER = 5.0  # a goal is given up that has not been answered for so long [s]
@@ -76,6 +77,8 @@ class Errands:
     _state: _State = _State.STANDING
     _goal: int = 0  # number of the latest
     _since: float = 0.0  # in this state
+    _facing: bool = True  # whether the heading of the present place matters
+    _rolling: bool = False  # the robot has reached the place, and the navigator is still at its last touch
     _rejected: float | None = None  # since when this place is rejected
     _spot: tuple[Place, float] | None = None  # where the robot last moved to, and when
 
@@ -92,20 +95,23 @@ class Errands:
         ``facing``: whether the heading matters.
         """
         if place is None:
-            if self._state in (_State.ASKED, _State.DRIVING):
+            if self._rolling or self._state in (_State.ASKED, _State.DRIVING):
                 self.orders.append(Cancel(self._goal))
+            self._rolling = False
             self._stand()
             return
         if self.wanted is not None and _near(place, self.wanted):
             faces = _turn(place[2], self.wanted[2]) <= SAME_HEADING
             if faces or not facing:
+                self._facing |= facing
                 return
-        self.wanted, self._rejected, self._spot = place, None, None
+        self.wanted, self._facing, self._rejected, self._spot = place, facing, None, None
         self._ask(now)
 
     def _ask(self, now: float) -> None:
         assert self.wanted is not None
         self._goal += 1
+        self._rolling = False
         self._enter(_State.ASKED, now)
         self.orders.append(Ask(self._goal, self.wanted))
 
@@ -125,7 +131,7 @@ class Errands:
     def accepted(self, goal: int, now: float) -> None:
         """Hear that a goal is taken up; one that nobody wants any more is cancelled."""
         if goal != self._goal or self._state is _State.STANDING:
-            if self._state is _State.STANDING:  # else the newer goal takes its place
+            if self._state is _State.STANDING and not self._rolling:  # else a newer goal takes its place
                 self.orders.append(Cancel(goal))
             return
         if self._state is _State.ASKED:
@@ -141,6 +147,7 @@ class Errands:
     def status(self, goal: int, status: int, now: float) -> None:
         """Hear how a goal stands, from the status topic or with its result."""
         if goal != self._goal or self._state not in (_State.ASKED, _State.DRIVING):
+            self._rolling &= goal != self._goal or status <= ActionStatus.CANCELING
             return
         if status == ActionStatus.SUCCEEDED:
             self.said = ""
@@ -155,6 +162,7 @@ class Errands:
 
     def gone(self, now: float) -> None:
         """Hear that there is no navigator, or another than the one that took the goal up: ask again later."""
+        self._rolling = False
         if self._state in (_State.ASKED, _State.DRIVING):
             self._rejected = now if self._rejected is None else self._rejected
             self._enter(_State.REJECTED, now)
@@ -174,6 +182,14 @@ class Errands:
                 self._ask(now)
         elif self._state is _State.DRIVING:
             self._watch(at, now)
+            if self._state is _State.DRIVING and self._is_there(at):
+                self.said, self._rolling = "", True
+                self._stand()
+                self.outcomes.append(Arrived())
+
+    def _is_there(self, at: Place | None) -> bool:
+        """Tell whether the robot is where it is to be: it need not wait until it stands and has turned."""
+        return not self._facing and at is not None and self.wanted is not None and _near(at, self.wanted, THERE)
 
     def _watch(self, at: Place | None, now: float) -> None:
         """Give up a goal that the robot does not move for; the navigator's own recoveries have their time."""
@@ -185,8 +201,8 @@ class Errands:
             self._give_up(f"the robot did not move for {UNMOVED:g} s")
 
 
-def _near(a: Place, b: Place) -> bool:
-    return hypot(a[0] - b[0], a[1] - b[1]) <= SAME_PLACE
+def _near(a: Place, b: Place, within: float = SAME_PLACE) -> bool:
+    return hypot(a[0] - b[0], a[1] - b[1]) <= within
 
 
 def _moved(a: Place, b: Place) -> bool:

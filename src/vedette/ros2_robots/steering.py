@@ -8,7 +8,7 @@ from math import atan2, cos, hypot, pi, sin, tau
 import numpy as np
 from numpy.typing import NDArray
 
-LOOKAHEAD = 0.35  # along the way [m]
+LOOKAHEAD = 0.6  # along the way [m]
 SAMPLE = 0.05  # of a line in sight [m]
 SOON = 0.3  # what lies so far ahead decides how fast a robot drives [s]
 SLOWEST = 0.1  # near the way's end [m/s]
