@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from tests.support.ros2_doors import FakeDoor, at, scan
-from vedette.agent.effects import Drive, Route
+from tests.support.ros2_routes import route
+from vedette.agent.effects import Drive
 from vedette.agent.events import Arrived, Pose, Scan, Stuck
 from vedette.errors import InputError
-from vedette.maps import GridFrame
 from vedette.ros2.body import Ros2Body
 from vedette.ros2.door import Answer, Deviation, GoalStatus, NavigatorGone, Told, Word
 from vedette.ros2.goals import ActionStatus
@@ -24,10 +24,6 @@ START = (10.0, 5.0, 90.0)  # of the robot's map frame in the team's
 
 def body_of(door: FakeDoor, **settings: object) -> Ros2Body:
     return Ros2Body(PlatformSpec(), Ros2Settings(start=START, **settings), door)  # type: ignore[arg-type]
-
-
-def route(*path: tuple[float, float], facing: float | None = None) -> Drive:
-    return Drive(Route(np.array(path), np.ones((2, 2), np.bool_), GridFrame(0.1, 2, 2), facing=facing))
 
 
 @pytest.mark.parametrize(("namespace", "prefix"), [("", ""), ("robot1", ""), ("/robot1", "robot1/")])

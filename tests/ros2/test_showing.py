@@ -11,6 +11,11 @@ from rosbags.typesys import Stores, get_typestore
 from tests.support.mapping_scenes import SPEC
 from tests.support.ros2_doors import FakeDoor, at
 from vedette.agent.events import Pose, Sensed
+from vedette.domains.mapping.belief import planning_factor
+from vedette.domains.mapping.impact import Impact
+from vedette.domains.mapping.objective import MappingObjective
+from vedette.kernels.coverage import LAYERS
+from vedette.kernels.misses import CERTAIN
 from vedette.maps import FREE
 from vedette.maps.frame import GridFrame
 from vedette.maps.lattice import Lattice
@@ -71,6 +76,26 @@ def test_a_map_that_has_not_changed_is_not_shown_again() -> None:
     assert shown(door) == {}
     showing(2.0 * GRID_PERIOD)
     assert set(shown(door)) == {"tour", "markers", "/diagnostics"}
+
+
+def test_what_the_team_will_see_is_shown_beside_what_the_robot_itself_will() -> None:
+    showing, door = a_showing()
+    planning = showing.agent.mission.frame.coarse(planning_factor(0.1))
+    cells = planning.cell(0.25, 0.25), planning.cell(1.25, 0.25)
+    one, other = (
+        Impact(np.array([(row * planning.cols + col) * LAYERS], np.uint32), np.array([CERTAIN], np.uint8))
+        for row, col in cells
+    )
+    showing.agent.rounds.impact = one
+    showing.agent.rounds.team_impact = MappingObjective().combine(one, other)
+    showing(0.0)
+    told = shown(door)
+    sure = [int(np.count_nonzero(told[topic].data == 100)) for topic in ("impact", "team_impact")]
+    assert sure == [1, 2]
+    assert told["impact"].info.resolution == pytest.approx(planning.resolution)
+    showing.agent.rounds.decisions += 1  # on the same map
+    showing(GRID_PERIOD)
+    assert {"impact", "team_impact"} <= set(shown(door))
 
 
 def test_what_keeps_the_robot_from_its_work_is_a_warning() -> None:

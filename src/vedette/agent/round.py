@@ -113,10 +113,10 @@ class Round:
         return self.negotiator is not None and self.negotiator.replied
 
     @property
-    def value_seen(self) -> float | None:
-        """What the team's choice is worth as far as this robot holds it; None: not all of it."""
+    def team_seen(self) -> Any:
+        """The impact of the team's choice; None: this robot does not hold all of it."""
         whole = all(reach is None for reach in self._told(self.heard).values())
-        return self.negotiator.value_held() if self.negotiator is not None and whole else None
+        return self.negotiator.team_held() if self.negotiator is not None and whole else None
 
     # -- evidence comes together ------------------------------------------------------------------------
 

@@ -56,6 +56,7 @@ class Rounds:
     cuts: int = 0  # children that did not answer in time
     bound_ratios: list[float] = field(default_factory=list)
     impact: Any = None  # own impact of the last decision
+    team_impact: Any = None  # and all robots' together; None: not all of it is held here
     blocked: bool = False  # the robot could not go on: its mates count as obstacles in the next round
     round: Round | None = None  # that is going on
     _sequence: int = 0
@@ -211,7 +212,9 @@ class Rounds:
             self.patience.together(now)
             self._attendance.attended(round_.children)
         self._end(now)
-        value = self._opinion.of(outcome.value, round_.value_seen)
+        self.team_impact = round_.team_seen
+        seen = None if self.team_impact is None else round_.participant.value(self.team_impact)
+        value = self._opinion.of(outcome.value, seen)
         self.decided(Decision(now, value, round_.approximate or not took_part, round_.blocked))
         if lonely:
             return effects

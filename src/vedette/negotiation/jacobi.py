@@ -108,7 +108,7 @@ class JacobiNode(Generic[ImpactT]):
         """Whether an iterate has begun here: everybody replies in each."""
         return bool(self._strategies)
 
-    def value_held(self) -> None:
+    def team_held(self) -> None:
         """Nothing: the round may end with the strategies of an earlier iterate."""
 
     def cut(self, neighbour: int) -> list[Outgoing[ImpactT]]:

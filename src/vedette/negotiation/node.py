@@ -90,10 +90,10 @@ class Negotiator(Protocol[ImpactT]):
     def replied(self) -> bool:
         """Whether this platform has had its say in the round."""
 
-    def value_held(self) -> float | None:
-        """Return what the impacts held are worth together, own one included; None: they are not all here.
+    def team_held(self) -> ImpactT | None:
+        """Return the impacts held together, own one included; None: they are not all here.
 
-        At the end of a round whose messages are whole it is the outcome's value, whatever that says.
+        At the end of a round whose messages are whole it is worth the outcome's value, whatever that says.
         """
 
     def cut(self, neighbour: int) -> list[Outgoing[ImpactT]]:

@@ -154,12 +154,15 @@ class TokenNode(Generic[ImpactT]):
         """Whether the token has been here."""
         return bool(self.turns)
 
-    def value_held(self) -> float | None:
-        """Return what the impacts held are worth together; see `Negotiator`."""
-        return self._team_value() if self._links.heard_all else None
+    def team_held(self) -> ImpactT | None:
+        """Return the impacts held together; see `Negotiator`."""
+        return self._team() if self._links.heard_all else None
+
+    def _team(self) -> ImpactT:
+        return self._own.combine(self._links.others(), self._own.impact)
 
     def _team_value(self) -> float:
-        return self._own.value(self._own.combine(self._links.others(), self._own.impact))
+        return self._own.value(self._team())
 
     def _take(self, sender: int, token: Token[ImpactT]) -> list[Outgoing[ImpactT]]:
         """Take the token: from the parent to reply, from a child to hand it on."""

@@ -21,6 +21,7 @@ from vedette.ros2.door import (
     Joint,
     NavigatorGone,
     Patch,
+    Reason,
     Told,
     Word,
 )
@@ -149,6 +150,8 @@ class Ros2Body:
                 (self.goals.accepted if accepted else self.goals.rejected)(goal, now)
             case GoalStatus(goal, status):
                 self.goals.status(goal, status, now)
+            case Reason(goal, said):
+                self.goals.explained(goal, said)
             case NavigatorGone():
                 self.goals.gone(now)
             case Word():

@@ -70,6 +70,14 @@ class GoalStatus:
 
 
 @dataclass(frozen=True)
+class Reason:
+    """Why the navigator gave a goal up, in words; it may never come."""
+
+    goal: int
+    said: str
+
+
+@dataclass(frozen=True)
 class NavigatorGone:
     """There is no navigator now."""
 
@@ -92,7 +100,9 @@ class Notice:
     cdr: bytes
 
 
-Told: TypeAlias = Joint | LaserSweep | Grid | Patch | Deviation | Answer | GoalStatus | NavigatorGone | Word
+Told: TypeAlias = (
+    Joint | LaserSweep | Grid | Patch | Deviation | Answer | GoalStatus | Reason | NavigatorGone | Word
+)
 
 
 class Door(Protocol):

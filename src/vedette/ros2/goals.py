@@ -21,6 +21,7 @@ ANSWER = 5.0  # a goal is given up that has not been answered for so long [s]
 AGAIN = 2.0  # a goal that was rejected, as by a navigator that is not active yet, is sent again [s]
 REJECTED = 60.0  # ... for so long; then the robot is stuck [s]
 UNMOVED = 30.0  # a robot that neither moves nor turns for so long while driving is stuck [s]
+GIVEN_UP = "the navigator gave the goal up"
 MOVED = 0.1  # less is no movement [m]
 TURNED = 0.2  # less is no turn [rad]
 
@@ -76,6 +77,7 @@ class Errands:
     slowed: float = 0.0  # time since the robot last moved or turned while it should [s]
     _state: _State = _State.STANDING
     _goal: int = 0  # number of the latest
+    _aborted: int = 0  # the latest that the navigator gave up
     _since: float = 0.0  # in this state
     _facing: bool = True  # whether the heading of the present place matters
     _rolling: bool = False  # the robot has reached the place, and the navigator is still at its last touch
@@ -154,11 +156,17 @@ class Errands:
             self._stand()
             self.outcomes.append(Arrived())
         elif status == ActionStatus.ABORTED:
-            self._give_up("the navigator gave the goal up")
+            self._aborted = goal
+            self._give_up(GIVEN_UP)
         elif status == ActionStatus.CANCELED:
             self._give_up("somebody else cancelled the goal")
         elif status in (ActionStatus.ACCEPTED, ActionStatus.EXECUTING):
             self.accepted(goal, now)
+
+    def explained(self, goal: int, why: str) -> None:
+        """Hear why a goal was given up, if that is still the latest trouble."""
+        if goal == self._aborted and self.said.startswith(GIVEN_UP):
+            self.said = f"{GIVEN_UP}: {why}"
 
     def gone(self, now: float) -> None:
         """Hear that there is no navigator, or another than the one that took the goal up: ask again later."""
@@ -189,7 +197,9 @@ class Errands:
 
     def _is_there(self, at: Place | None) -> bool:
         """Tell whether the robot is where it is to be: it need not wait until it stands and has turned."""
-        return not self._facing and at is not None and self.wanted is not None and _near(at, self.wanted, THERE)
+        return (
+            not self._facing and at is not None and self.wanted is not None and _near(at, self.wanted, THERE)
+        )
 
     def _watch(self, at: Place | None, now: float) -> None:
         """Give up a goal that the robot does not move for; the navigator's own recoveries have their time."""

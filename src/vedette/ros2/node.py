@@ -19,10 +19,11 @@ from uuid import uuid4
 import numpy as np
 
 from vedette.errors import InputError
-from vedette.ros2.door import Answer, GoalStatus, NavigatorGone, Notice, Told, Word
-from vedette.ros2.goals import Place
+from vedette.ros2.door import Answer, GoalStatus, NavigatorGone, Notice, Reason, Told, Word
+from vedette.ros2.goals import ActionStatus, Place
 from vedette.ros2.messages import deviation_of, grid_of, joints_of, patch_of, seconds, sweep_of
 from vedette.ros2.offered import Offered, Writer
+from vedette.ros2.reasons import reason_of
 from vedette.ros2.settings import Ros2Settings
 
 HOW = "start it where ROS 2 is set up: source /opt/ros/<distro>/setup.bash"
@@ -66,6 +67,7 @@ class RosDoor:
     time: float | None = None  # that /clock shows [s]
     _told: deque[Told] = field(default_factory=deque)
     _goals: dict[bytes, int] = field(default_factory=dict)  # our numbers by the names that goals travel with
+    _explained: deque[int] = field(default_factory=lambda: deque(maxlen=MOST_GOALS))  # goals asked about
     _was_there: bool = False  # the navigator
     _publishers: dict[str, Any] = field(default_factory=dict)
 
@@ -156,6 +158,8 @@ class RosDoor:
         action = self.node.resolve_topic_name(self.settings.navigate_to_pose)
         send_goal = self._action.Impl.SendGoalService
         self._asker = self.node.create_client(send_goal, f"{action}/_action/send_goal")
+        get_result = self._action.Impl.GetResultService
+        self._explainer = self.node.create_client(get_result, f"{action}/_action/get_result")
         self._canceller = self.node.create_client(self._cancel_goal, f"{action}/_action/cancel_goal")
         qos = ros("rclpy.qos").qos_profile_action_status_default
         self.node.create_subscription(status, f"{action}/_action/status", self._hear_status, qos)
@@ -194,6 +198,21 @@ class RosDoor:
             goal = self._goals.get(bytes(told.goal_info.goal_id.uuid))
             if goal is not None:
                 self._told.append(GoalStatus(goal, int(told.status)))
+                if told.status == ActionStatus.ABORTED and goal not in self._explained:
+                    self._explained.append(goal)
+                    self._ask_why(goal, told.goal_info.goal_id)
+
+    def _ask_why(self, goal: int, name: Any) -> None:
+        """Ask for a goal's result, which may get lost; nobody waits for it."""
+        request = self._action.Impl.GetResultService.Request()
+        request.goal_id = name
+
+        def note(done: Any) -> None:
+            said = reason_of(done.result().result)
+            if said:
+                self._told.append(Reason(goal, said))
+
+        self._explainer.call_async(request).add_done_callback(note)
 
     # -- for those who use the robot's ROS ----------------------------------------------------------------
 

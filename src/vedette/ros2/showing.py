@@ -81,7 +81,7 @@ class Showing:
     _anchored: bool = False  # where the team's frame lies was told
     _due: float = 0.0
     _grids_due: float = 0.0
-    _digest: int | None = None  # of the map that was shown last
+    _news: tuple[int, int] | None = None  # the map and the decision that were shown last
 
     def __call__(self, now: float) -> None:
         """Show what is due."""
@@ -111,23 +111,24 @@ class Showing:
         return cast(Exploring, self.agent.mission)
 
     def _grids(self, stamp: int, now: float) -> Iterator[tuple[str, str, Any]]:
-        """Yield the team's map, and what its robots will have seen of it, where that is news."""
-        mission, digest = self._mission, self.agent.mission.fusion.digest
-        if now < self._grids_due or digest == self._digest:
+        """Yield the team's map, and what will be seen of it: by this robot, by all; where that is news."""
+        mission, rounds = self._mission, self.agent.rounds
+        news = mission.fusion.digest, rounds.decisions
+        if now < self._grids_due or news == self._news:
             return
-        self._grids_due, self._digest = now + GRID_PERIOD, digest
+        self._grids_due, self._news = now + GRID_PERIOD, news
         known = mission.known
         frame = mission.frame.window(*known)
         if not frame.size:
             return
         classes = mission.fusion.classes.window(*known)
         yield "team_map", "nav_msgs/msg/OccupancyGrid", self._messages.map_grid(stamp, frame, classes)
-        if self.agent.rounds.impact is not None:
-            factor = planning_factor(mission.frame.resolution)
-            whole, part = mission.frame.coarse(factor), frame.coarse(factor)
-            miss = final_miss(moved(self.agent.rounds.impact, whole, part), part.size)
-            share = (1.0 - miss).reshape(part.shape)
-            yield "impact", "nav_msgs/msg/OccupancyGrid", self._messages.share_grid(stamp, part, share)
+        factor = planning_factor(mission.frame.resolution)
+        whole, part = mission.frame.coarse(factor), frame.coarse(factor)
+        for topic, impact in (("impact", rounds.impact), ("team_impact", rounds.team_impact)):
+            if impact is not None:
+                share = 1.0 - final_miss(moved(impact, whole, part), part.size).reshape(part.shape)
+                yield topic, "nav_msgs/msg/OccupancyGrid", self._messages.share_grid(stamp, part, share)
 
     def _rest(self, stamp: int) -> Iterator[tuple[str, str, Any]]:
         """Yield the robot's tour, its frontiers and mates, its condition."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 from math import cos, pi, radians, sin
@@ -259,7 +259,9 @@ class Strangers:
             for i, robot in enumerate(self.robots)
         ]
         self._env.step([list(each) for each in moving], list(range(len(moving))))
-        self.collided = [a or bool(b.collision) for a, b in zip(self.collided, self._env.robot_list, strict=True)]
+        self.collided = [
+            a or bool(b.collision) for a, b in zip(self.collided, self._env.robot_list, strict=True)
+        ]
         self.now += STEP
         stamp = self._stamp()
         if self._clock is not None:

@@ -135,7 +135,7 @@ def test_a_released_stop_is_left_alone_for_a_while_and_a_reached_one_is_followed
     assert not reachable(mission, first)
 
 
-def test_a_robot_that_is_kept_from_work_claims_nothing_ends_nothing_and_holds_nothing_against_a_stop() -> None:
+def test_a_robot_that_is_kept_from_work_claims_and_ends_nothing_and_holds_nothing_against_a_stop() -> None:
     mission = explorer()
     look(mission, HERE)
     prepared(mission)
