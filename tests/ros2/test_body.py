@@ -4,18 +4,15 @@ from __future__ import annotations
 
 from math import pi
 
-import numpy as np
 import pytest
 
 from tests.support.ros2_doors import FakeDoor, at, scan
 from tests.support.ros2_routes import route
 from vedette.agent.effects import Drive
 from vedette.agent.events import Arrived, Pose, Scan, Stuck
-from vedette.errors import InputError
 from vedette.ros2.body import Ros2Body
-from vedette.ros2.door import Answer, Deviation, GoalStatus, NavigatorGone, Told, Word
+from vedette.ros2.door import Answer, Deviation, GoalStatus, NavigatorGone, Word
 from vedette.ros2.goals import ActionStatus
-from vedette.ros2.robot import awaited
 from vedette.ros2.settings import Ros2Settings
 from vedette.team import PlatformSpec
 
@@ -133,36 +130,6 @@ def test_an_aborted_goal_is_told_as_stuck_and_a_dead_navigator_is_asked_again() 
     assert [goal for goal, _ in door.asked] == [1, 2]
     door.told = [Answer(2, accepted=True), GoalStatus(2, ActionStatus.ABORTED)]
     assert [type(event) for event in body.sense(5.1)] == [Pose, Stuck]
-
-
-@pytest.mark.parametrize(
-    ("told", "named"),
-    [
-        ([], "nothing on scan"),
-        ([scan(1.0)], "no transform from map to 'base_link'"),
-        ([scan(1.0), *at(1.0, 0.0)[:2]], "no transform from map to 'laser'"),
-        ([scan(1.0), *at(1.0, 0.0, prefix="other/")], "frames told of: other/base_link"),
-    ],
-)
-def test_what_a_robot_does_not_tell_is_named_in_one_line(told: list[Told], named: str) -> None:
-    door, time = FakeDoor(told), [0.0]
-    with pytest.raises(InputError, match=named) as raised:
-        awaited(
-            PlatformSpec(),
-            Ros2Settings(wait=2.0),
-            door,
-            lambda: time[0],
-            lambda span: time.__setitem__(0, time[0] + span),
-        )
-    assert "\n" not in str(raised.value)
-    assert time[0] == pytest.approx(2.0, abs=0.1)
-
-
-def test_a_bodys_lidar_is_what_its_scans_tell_of_it() -> None:
-    door = FakeDoor([scan(1.0), *at(1.0, 0.0)])
-    body = awaited(PlatformSpec(radius=0.3), Ros2Settings(), door, lambda: 0.0, lambda span: None)
-    assert (body.hull.radius, body.hull.range, body.hull.beams) == (0.3, 6.0, 11)
-    assert body.hull.view == pytest.approx(np.degrees(1.1))
 
 
 def test_a_paused_robot_stands_whatever_its_agent_wants_and_goes_on_where_that_wants_it_by_then() -> None:

@@ -8,29 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.support.ros2_doors import FakeDoor, at, scan
+from tests.support.ros2_doors import SENSOR, WHOLE, FakeDoor, at, scan
 from vedette.ros2.check import SCAN, Finding, check, could_start
 from vedette.ros2.door import Joint, Told
 from vedette.ros2.offered import Offered, Writer
 from vedette.ros2.scans import LaserSweep
 from vedette.ros2.settings import Ros2Settings
 
-SENSOR, LATCHED = Writer(reliable=False, kept=False), Writer(reliable=True, kept=True)
-NAMES = {
-    "scan": "/r/scan",
-    "map": "/r/map",
-    "pose": "/r/amcl_pose",
-    "navigate_to_pose": "/r/navigate_to_pose",
-}
-NAMES |= {"tf": "/r/tf", "tf_static": "/r/tf_static"}
-TF = "tf2_msgs/msg/TFMessage"
-WHOLE = Offered(
-    {"/r/scan": (SCAN,), "/r/tf": (TF,), "/r/tf_static": (TF,)},
-    NAMES,
-    {"/r/scan": (SENSOR,), "/r/tf": (Writer(True, False),), "/r/tf_static": (LATCHED,)},
-    navigator=True,
-    state="active",
-)
 BEGUN = 1.7e9  # the time of day [s]
 
 

@@ -9,9 +9,27 @@ import numpy as np
 
 from vedette.ros2.door import Joint, Notice, Told
 from vedette.ros2.goals import Place
-from vedette.ros2.offered import Offered
+from vedette.ros2.offered import Offered, Writer
 from vedette.ros2.scans import LaserSweep
 from vedette.ros2.transforms import planar
+
+SCAN = "sensor_msgs/msg/LaserScan"
+SENSOR, LATCHED = Writer(reliable=False, kept=False), Writer(reliable=True, kept=True)
+NAMES = {
+    "scan": "/r/scan",
+    "map": "/r/map",
+    "pose": "/r/amcl_pose",
+    "navigate_to_pose": "/r/navigate_to_pose",
+}
+NAMES |= {"tf": "/r/tf", "tf_static": "/r/tf_static"}
+TF = "tf2_msgs/msg/TFMessage"
+WHOLE = Offered(  # of a robot in the namespace r that offers all that is needed
+    {"/r/scan": (SCAN,), "/r/tf": (TF,), "/r/tf_static": (TF,)},
+    NAMES,
+    {"/r/scan": (SENSOR,), "/r/tf": (Writer(True, False),), "/r/tf_static": (LATCHED,)},
+    navigator=True,
+    state="active",
+)
 
 
 @dataclass
@@ -26,6 +44,7 @@ class FakeDoor:
     shown: list[Notice] = field(default_factory=list)
     time: float | None = None
     offer: Offered | None = None
+    navigator: bool = True
     telling: Callable[[], list[Told]] | None = None  # what comes whenever it is asked, beside ``told``
 
     def take(self) -> Sequence[Told]:

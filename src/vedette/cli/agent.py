@@ -6,16 +6,18 @@ import os
 import signal
 import threading
 import time
+import warnings
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
 import click
+from msgspec.structs import replace
 
 from vedette.cli.options import FILE, Positive
-from vedette.errors import InputError
+from vedette.errors import InputError, InputWarning
 from vedette.interrupt import ENDINGS
-from vedette.net.config import load_config
+from vedette.net.config import AgentConfig, load_config
 from vedette.net.start import agent_process
 
 WATCH_PERIOD = 1.0  # [s]
@@ -30,13 +32,20 @@ WATCH_PERIOD = 1.0  # [s]
     show_default=True,
     help="Of the simulated body and the mission, in seconds a second; the same for the whole team.",
 )
+@click.option(
+    "--wait",
+    type=Positive("s", most=86400.0),
+    help="For a robot that runs ROS 2 to tell what is needed, before the agent ends; else as its file says.",
+)
 @click.option("--starter", type=int, hidden=True, help="Stop when this process, the parent, ends.")
-def agent(config_path: Path, speed: float, starter: int | None) -> None:
+def agent(config_path: Path, speed: float, wait: float | None, starter: int | None) -> None:
     """Run the robot that CONFIG.yaml describes, with the neighbours it names, until Ctrl-C or SIGTERM.
 
     docs/how-to/network.md explains the file. Exit status: 0 stopped, 2 bad input.
     """
     config = load_config(config_path)
+    if wait is not None:
+        config = _waiting(config, wait)
     try:
         process = agent_process(
             config, config_path.resolve().parent, speed, lambda line: _tell(f"vedette: {line}", err=True)
@@ -64,6 +73,14 @@ def _tell(line: str, err: bool = False) -> None:
     """Print a line; a robot goes on where that fails, as on a full disk."""
     with suppress(InputError):
         click.echo(line, err=err)
+
+
+def _waiting(config: AgentConfig, wait: float) -> AgentConfig:
+    """Return what a robot's file says, but for how long its agent waits for it [s]."""
+    if config.body.ros2 is None:
+        warnings.warn("--wait changes nothing: this robot's body is simulated", InputWarning, stacklevel=2)
+        return config
+    return replace(config, body=replace(config.body, ros2=replace(config.body.ros2, wait=wait)))
 
 
 def _outlive(starter: int, stop: Callable[[], None]) -> None:

@@ -12,13 +12,13 @@ from vedette.errors import InputError, nearest_name
 from vedette.ros2.body import Ros2Body
 from vedette.ros2.door import Door, Joint, Told
 from vedette.ros2.offered import Offered
-from vedette.ros2.robot import POLL
 from vedette.ros2.scans import LaserSweep, Lidar
 from vedette.ros2.settings import Ros2Settings
 from vedette.ros2.transforms import Gap
 from vedette.team import PlatformSpec
 
 LOOKED = 5.0  # so long the robot is listened to [s]
+POLL = 0.05  # [s]
 SLOW = 1.0  # fewer scans a second are too few [Hz]
 LATE = 1.0  # a transform that comes so long after its scan is late [s]
 APART = 2.0  # clocks that differ by more are worth a word [s]
@@ -41,16 +41,22 @@ class OpenDoor(Door, Protocol):
 
 
 @dataclass
-class _Heard:
-    """Remembers what passes through a door; ``vedette.ros2.door.Door``'s ``take`` for a body."""
+class Heard:
+    """Remembers what passes through a door on its way to a body."""
 
-    door: OpenDoor
+    body: Ros2Body
     clock: Callable[[], float]  # time of day [s]
     stamps: list[float] = field(default_factory=list)  # of scans [s]
     offsets: list[float] = field(default_factory=list)  # of stamps from the time of day [s]
     joints: deque[Joint] = field(default_factory=lambda: deque(maxlen=1000))
 
-    def note(self, told: Told) -> None:
+    def listen(self) -> None:
+        """Take in what has come."""
+        for told in self.body.door.take():
+            self._note(told)
+            self.body.take_in(told, 0.0)
+
+    def _note(self, told: Told) -> None:
         match told:
             case LaserSweep():
                 self.stamps.append(told.stamp)
@@ -66,29 +72,32 @@ def check(
     sleep: Callable[[float], None] = time.sleep,
 ) -> list[Finding]:
     """Listen to a robot for a while; return what there is to say."""
-    body, heard = Ros2Body(PlatformSpec(), settings, door), _Heard(door, clock)
+    heard = Heard(Ros2Body(PlatformSpec(), settings, door), clock)
     until = clock() + LOOKED
     while clock() < until:
-        for told in door.take():
-            heard.note(told)
-            body.take_in(told, 0.0)
+        heard.listen()
         sleep(POLL)
-    offered = door.offered()
+    return findings(heard, door.offered())
+
+
+def findings(heard: Heard, offered: Offered) -> list[Finding]:
+    """Return what there is to say of a robot that was listened to."""
+    body, settings = heard.body, heard.body.settings
     return [
         *_scans(settings, offered, body, heard),
         *_own_map(settings, offered, body),
         *_frames(settings, offered, body),
         *_clocks(settings, offered, body, heard),
-        _navigator(settings, offered),
+        _navigator(offered),
     ]
 
 
-def could_start(findings: list[Finding]) -> bool:
+def could_start(found: list[Finding]) -> bool:
     """Tell whether an agent could."""
-    return all(finding.good is not False for finding in findings)
+    return all(finding.good is not False for finding in found)
 
 
-def _scans(settings: Ros2Settings, offered: Offered, body: Ros2Body, heard: _Heard) -> Iterator[Finding]:
+def _scans(settings: Ros2Settings, offered: Offered, body: Ros2Body, heard: Heard) -> Iterator[Finding]:
     topic = offered.names["scan"]
     types = offered.types.get(topic, ())
     if body.latest is None:
@@ -156,7 +165,7 @@ def _frames(settings: Ros2Settings, offered: Offered, body: Ros2Body) -> Iterato
             yield Finding(True, f"{source} lies in {target}")
 
 
-def _clocks(settings: Ros2Settings, offered: Offered, body: Ros2Body, heard: _Heard) -> Iterator[Finding]:
+def _clocks(settings: Ros2Settings, offered: Offered, body: Ros2Body, heard: Heard) -> Iterator[Finding]:
     simulated = bool(offered.writers.get("/clock"))
     if settings.use_sim_time and body.door.time is None:
         yield Finding(False, "nothing on /clock; start the simulation, or leave use_sim_time out")
@@ -173,14 +182,15 @@ def _clocks(settings: Ros2Settings, offered: Offered, body: Ros2Body, heard: _He
     if newest is not None:
         late = heard.stamps[-1] - newest
         if abs(late) > LATE:
+            order = "after" if late > 0.0 else "before"
             yield Finding(
                 False,
-                f"the latest scan is stamped {late:.1f} s after the latest transform of "
+                f"the latest scan is stamped {abs(late):.1f} s {order} the latest transform of "
                 f"{settings.base_frame}; set the clocks of the robot's computers alike (chrony)",
             )
 
 
-def _navigator(settings: Ros2Settings, offered: Offered) -> Finding:
+def _navigator(offered: Offered) -> Finding:
     action = offered.names["navigate_to_pose"]
     if offered.navigator:
         if offered.state in (None, "active"):

@@ -115,6 +115,10 @@ class Door(Protocol):
     def time(self) -> float | None:
         """What ``/clock`` shows [s]; None: nothing yet."""
 
+    @property
+    def navigator(self) -> bool:
+        """Whether there is one."""
+
     def ask(self, goal: int, place: Place, frame: str) -> None:
         """Send the navigator a goal; ``place``: x, y [m], heading [rad], in a frame of the robot's."""
 

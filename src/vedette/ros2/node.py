@@ -98,7 +98,7 @@ class RosDoor:
 
     def take(self) -> Sequence[Told]:
         """Return what has been told since the last call."""
-        there = self._there
+        there = self.navigator
         if self._was_there and not there:
             self._told.append(NavigatorGone())
         self._was_there = there
@@ -165,12 +165,13 @@ class RosDoor:
         self.node.create_subscription(status, f"{action}/_action/status", self._hear_status, qos)
 
     @property
-    def _there(self) -> bool:
+    def navigator(self) -> bool:
+        """Whether there is one."""
         return bool(self._asker.service_is_ready() and self._canceller.service_is_ready())
 
     def ask(self, goal: int, place: Place, frame: str) -> None:
         """Send a goal; where there is no navigator, it is as good as rejected."""
-        if not self._there:
+        if not self.navigator:
             self._told.append(Answer(goal, accepted=False))
             return
         x, y, heading = place
@@ -250,7 +251,7 @@ class RosDoor:
             {name: tuple(types) for name, types in node.get_topic_names_and_types()},
             names,
             {topic: self._writers(topic) for topic in topics},
-            self._there,
+            self.navigator,
             self._state_of(NAVIGATOR),
         )
 

@@ -30,6 +30,7 @@ class RecordedDoor:
     """What a robot told in its time; nobody takes orders; ``vedette.ros2.door.Door``."""
 
     settings: Ros2Settings
+    navigator: bool = False
     time: float | None = None  # no /clock is needed: the recording has its own
     topics: dict[str, str] = field(default_factory=dict)  # what there was, with its type
     senseless: int = 0  # maps whose size is not what it says
