@@ -38,12 +38,12 @@ test-all: ready-dev ## Run all tests, the slow ones too
 	@$(MAKE) --no-print-directory test-ros2 ROS2=all
 
 test-ros2: ready-dev ## Run the tests with real rclpy in an environment of its own; ROS2=all: the slow ones too
-	@if [ ! -e $(ROS2_VENV)/.ready ] || [ -n "$$(find tools/ros2 -newer $(ROS2_VENV)/.ready)" ]; then \
-		tools/ros2/environment.sh $(ROS2_VENV) $(VENV) build/ros2 || { [ $$? = 3 ] && exit 0; exit 1; }; \
-	fi; \
-	if [ -e $(ROS2_VENV)/.ready ]; then \
-		tools/ros2/test.sh $(ROS2_VENV) $(if $(filter all,$(ROS2)),,-m "not slow") $(ARGS); \
-	fi
+	@for distribution in kilted$(if $(filter all,$(ROS2)), jazzy); do \
+		tools/ros2/environment.sh $$distribution $(ROS2_VENV)-$$distribution $(VENV) build/ros2-$$distribution \
+			|| { [ $$? = 3 ] && exit 0; exit 1; }; \
+	done; \
+	JAZZY="$(if $(filter all,$(ROS2)),$(CURDIR)/$(ROS2_VENV)-jazzy)" \
+		tools/ros2/test.sh $(ROS2_VENV)-kilted $(if $(filter all,$(ROS2)),,-m "not slow") $(ARGS)
 
 check: lint types contracts rust-lint ## Do all that .ci/run does: lint, types, import contracts, quick tests
 	@$(MAKE) --no-print-directory test
@@ -92,7 +92,7 @@ build: ## Compile the kernels and put them in place
 	@cp rust/target/release/lib_kernels.so $(KERNELS).new && mv $(KERNELS).new $(KERNELS)
 
 clean: ## Remove all that make has made; runs/ stays
-	rm -rf $(VENV) $(ROS2_VENV) build dist rust/target $(KERNELS) .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
+	rm -rf $(VENV) $(ROS2_VENV)-* build dist rust/target $(KERNELS) .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
 
 # Installing compiles the kernels, so make has to look at their age afresh after it.
 ready: $(INSTALLED)

@@ -156,7 +156,8 @@ def test_a_scan_that_no_lidar_sends_ends_an_agent_by_its_topic_and_field() -> No
 
 def test_a_simulated_robot_is_waited_for_in_vain(tmp_path: Path) -> None:
     file = tmp_path / "robot.yaml"
-    file.write_text("team: t\nrobot: 1\nlinks: {insecure: true}\nbody: {map: nowhere.yaml, start: [0, 0, 0]}\n")
+    body = "body: {map: nowhere.yaml, start: [0, 0, 0]}"
+    file.write_text(f"team: t\nrobot: 1\nlinks: {{insecure: true}}\n{body}\n")
     with pytest.warns(InputWarning, match="--wait changes nothing: this robot's body is simulated"):
         ended = CliRunner().invoke(commands, ["agent", str(file), "--wait", "5"])
     assert isinstance(ended.exception, InputError)

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Run tests with real rclpy, apart from all other ROS on this host and network.
 #   tools/ros2/test.sh ENVIRONMENT [PYTEST ARGUMENT]...
+# JAZZY: another environment, for teams of both; without it tests of them are skipped.
 set -euo pipefail
 environment=$(cd "$1" && pwd)
 shift

@@ -1,8 +1,7 @@
-"""The robot's own rclpy: the one module that uses it. It is imported when a body is made, not before."""
+"""A node of the robot's own ROS: what the robot tells, what it is asked for, what its users are shown."""
 
 from __future__ import annotations
 
-import importlib
 import os
 import signal
 import time
@@ -11,40 +10,22 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
-from math import cos, sin
 from threading import Thread
 from typing import Any
-from uuid import uuid4
-
-import numpy as np
 
 from vedette.errors import InputError
-from vedette.ros2.door import Answer, GoalStatus, NavigatorGone, Notice, Reason, Told, Word
-from vedette.ros2.goals import ActionStatus, Place
+from vedette.ros2.door import NavigatorGone, Notice, Told, Word
+from vedette.ros2.goals import Place
+from vedette.ros2.library import ros
 from vedette.ros2.messages import deviation_of, grid_of, joints_of, patch_of, seconds, sweep_of
+from vedette.ros2.navigator import NavigatorClient
 from vedette.ros2.offered import Offered, Writer
-from vedette.ros2.reasons import reason_of
 from vedette.ros2.settings import Ros2Settings
 
-HOW = "start it where ROS 2 is set up: source /opt/ros/<distro>/setup.bash"
-MOST_GOALS = 64  # that are remembered
 GOODBYE = 1.0  # what was ordered last has so long to get out [s]
 TOPICS = ("scan", "map", "pose", "navigate_to_pose")  # settings that name some
 NAVIGATOR = "bt_navigator"  # Nav2's node that offers the action
 OURS = "vedette"  # before the names of what we offer
-
-
-def ros(name: str) -> Any:
-    """Return a module of the robot's ROS.
-
-    Raises:
-        InputError: this Python does not have it; the line says how to get it.
-    """
-    try:
-        return importlib.import_module(name)
-    except ImportError as error:
-        missing = error.name if isinstance(error, ModuleNotFoundError) else f"{name}: {error}"
-        raise InputError(f"body.ros2: this Python has no {missing}; {HOW}") from None
 
 
 def _profile(depth: int, *, reliable: bool = True, kept: bool = False) -> Any:
@@ -66,8 +47,6 @@ class RosDoor:
     listens_only: bool = False  # offers nothing to others
     time: float | None = None  # that /clock shows [s]
     _told: deque[Told] = field(default_factory=deque)
-    _goals: dict[bytes, int] = field(default_factory=dict)  # our numbers by the names that goals travel with
-    _explained: deque[int] = field(default_factory=lambda: deque(maxlen=MOST_GOALS))  # goals asked about
     _was_there: bool = False  # the navigator
     _publishers: dict[str, Any] = field(default_factory=dict)
 
@@ -82,7 +61,8 @@ class RosDoor:
             start_parameter_services=False,
         )
         self._subscribe()
-        self._find_navigator()
+        action = self.node.resolve_topic_name(self.settings.navigate_to_pose)
+        self._navigator = NavigatorClient(self.node, action, self._told)
         if not self.listens_only:
             self._serve()
         self._executor = ros("rclpy.executors").SingleThreadedExecutor(context=self._context)
@@ -150,70 +130,18 @@ class RosDoor:
 
     # -- the navigator ------------------------------------------------------------------------------------
 
-    def _find_navigator(self) -> None:
-        """Make clients of the action's services, which tell more of a goal than its client does."""
-        self._action = ros("nav2_msgs.action").NavigateToPose
-        self._cancel_goal = ros("action_msgs.srv").CancelGoal
-        status = ros("action_msgs.msg").GoalStatusArray
-        action = self.node.resolve_topic_name(self.settings.navigate_to_pose)
-        send_goal = self._action.Impl.SendGoalService
-        self._asker = self.node.create_client(send_goal, f"{action}/_action/send_goal")
-        get_result = self._action.Impl.GetResultService
-        self._explainer = self.node.create_client(get_result, f"{action}/_action/get_result")
-        self._canceller = self.node.create_client(self._cancel_goal, f"{action}/_action/cancel_goal")
-        qos = ros("rclpy.qos").qos_profile_action_status_default
-        self.node.create_subscription(status, f"{action}/_action/status", self._hear_status, qos)
-
     @property
     def navigator(self) -> bool:
         """Whether there is one."""
-        return bool(self._asker.service_is_ready() and self._canceller.service_is_ready())
+        return self._navigator.is_there
 
     def ask(self, goal: int, place: Place, frame: str) -> None:
-        """Send a goal; where there is no navigator, it is as good as rejected."""
-        if not self.navigator:
-            self._told.append(Answer(goal, accepted=False))
-            return
-        x, y, heading = place
-        request, name = self._action.Impl.SendGoalService.Request(), uuid4().bytes
-        self._goals[name] = goal
-        if len(self._goals) > MOST_GOALS:
-            del self._goals[next(iter(self._goals))]
-        request.goal_id.uuid = np.frombuffer(name, np.uint8)
-        pose = request.goal.pose  # its stamp stays 0: the place is where it is now
-        pose.header.frame_id = frame
-        pose.pose.position.x, pose.pose.position.y = x, y
-        pose.pose.orientation.z, pose.pose.orientation.w = sin(heading / 2), cos(heading / 2)
-        answer = self._asker.call_async(request)
-        answer.add_done_callback(lambda done: self._told.append(Answer(goal, bool(done.result().accepted))))
+        """Send a goal."""
+        self._navigator.ask(goal, place, frame)
 
     def cancel(self, goal: int) -> None:
         """Cancel a goal."""
-        for name in [name for name, number in self._goals.items() if number == goal]:
-            request = self._cancel_goal.Request()
-            request.goal_info.goal_id.uuid = np.frombuffer(name, np.uint8)
-            self._canceller.call_async(request)
-
-    def _hear_status(self, message: Any) -> None:
-        for told in message.status_list:
-            goal = self._goals.get(bytes(told.goal_info.goal_id.uuid))
-            if goal is not None:
-                self._told.append(GoalStatus(goal, int(told.status)))
-                if told.status == ActionStatus.ABORTED and goal not in self._explained:
-                    self._explained.append(goal)
-                    self._ask_why(goal, told.goal_info.goal_id)
-
-    def _ask_why(self, goal: int, name: Any) -> None:
-        """Ask for a goal's result, which may get lost; nobody waits for it."""
-        request = self._action.Impl.GetResultService.Request()
-        request.goal_id = name
-
-        def note(done: Any) -> None:
-            said = reason_of(done.result().result)
-            if said:
-                self._told.append(Reason(goal, said))
-
-        self._explainer.call_async(request).add_done_callback(note)
+        self._navigator.cancel(goal)
 
     # -- for those who use the robot's ROS ----------------------------------------------------------------
 
@@ -282,7 +210,7 @@ class RosDoor:
 
     def close(self) -> None:
         """Leave; what was ordered last is given the time to get out."""
-        time.sleep(GOODBYE if self._goals else 0.0)
+        time.sleep(GOODBYE if self._navigator.was_asked else 0.0)
         self._executor.shutdown()
         self._thread.join(GOODBYE)
         self.node.destroy_node()

@@ -50,8 +50,10 @@ class Navigator:
     turn_rate: float
     to_world: Callable[[Pose], Pose]  # from the robot's map
     active_from: float = 0.0
+    fails: list[str] = field(default_factory=list)  # what befalls the next goals: abort, reject, ignore
     now: float = 0.0
     _run: _Run | None = None
+    _aborts: bool = False  # the next that it accepts
     ended: dict[str, int] = field(default_factory=dict)  # goals by how they ended
 
     def __post_init__(self) -> None:
@@ -65,8 +67,14 @@ class Navigator:
             cancel_callback=lambda handle: CancelResponse.ACCEPT,
         )
 
-    def _consider(self, request: Any) -> GoalResponse:
-        return GoalResponse.REJECT if self.now < self.active_from else GoalResponse.ACCEPT
+    async def _consider(self, request: Any) -> GoalResponse:
+        if self.now < self.active_from:
+            return GoalResponse.REJECT
+        fate = self.fails.pop(0) if self.fails else ""
+        if fate == "ignore":
+            await Future()  # for ever
+        self._aborts = fate == "abort"
+        return GoalResponse.REJECT if fate == "reject" else GoalResponse.ACCEPT
 
     def _accept(self, handle: Any) -> None:
         self._finish("aborted")
@@ -75,6 +83,8 @@ class Navigator:
         goal = self.to_world((asked.position.x, asked.position.y, yaw))
         self._run = run = _Run(handle, goal, Future())
         handle.execute(partial(self._execute, run=run))
+        if self._aborts:
+            self._finish("aborted")
 
     async def _execute(self, handle: Any, run: _Run) -> Any:
         result = NavigateToPose.Result()
@@ -87,6 +97,8 @@ class Navigator:
         else:
             if hasattr(result, "error_code"):
                 result.error_code = UNKNOWN
+            if hasattr(result, "error_msg"):
+                result.error_msg = "no way, or another goal"
             handle.abort()
         return result
 

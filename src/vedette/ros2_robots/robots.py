@@ -1,12 +1,11 @@
-"""Robots with a node each, in one building: what they tell, and how the simulation goes on."""
+"""Robots with a node each, in one building: how the simulation goes on."""
 
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
 from functools import partial
-from math import cos, pi, radians, sin
+from math import radians
 from pathlib import Path
 from typing import Any
 
@@ -14,22 +13,15 @@ import irsim
 import numpy as np
 import yaml
 from builtin_interfaces.msg import Time
-from geometry_msgs.msg import TransformStamped
-from nav_msgs.msg import OccupancyGrid, Odometry
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
 from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import LaserScan
-from tf2_msgs.msg import TFMessage
 
 from vedette.ros2_robots.building import Building
-from vedette.ros2_robots.mapper import Mapper
 from vedette.ros2_robots.navigator import Navigator, Pose
 from vedette.ros2_robots.planner import WayFinder
+from vedette.ros2_robots.robot import STEP, RobotNode, in_world
 
-STEP = 0.05  # of the simulation [s]
 NOISE = 0.01  # of a range [m]
-MAP_PERIOD = 1.0  # [s]
 DEFAULTS: Mapping[str, Any] = {
     "radius": 0.2,
     "speed": 0.5,
@@ -39,127 +31,19 @@ DEFAULTS: Mapping[str, Any] = {
     "view": 360.0,
     "beams": 240,
     "rate": 5.0,
-    "active_from": 0.0,
+    "active_from": 0.0,  # goals are rejected until then [s]
+    "fails": [],  # what befalls the first goals after that: abort, reject, ignore
     "prefix": "",
     "mount": [0.0, 0.0, 0.0],  # of the lidar: x, y, yaw [m, m, deg]
     "upside_down": False,
+    "clockwise": False,  # its beams go round the other way
+    "speckle": 0.0,  # share of its beams that are no measurement
+    "rolling": False,  # its beams are measured one after another, while the robot goes on
     "slam": False,  # it publishes a map
+    "updates": False,  # and after the first one only what has changed of it
+    "late": 0.0,  # so long after its time map -> odom is told [s]
     "lost": [0.0, 0.0, 0.0, 0.0],  # until when its map is wrong, and by how much [s, m, m, deg]
 }
-
-
-def quaternion(yaw: float, roll: float = 0.0) -> tuple[float, float, float, float]:
-    """Return x, y, z, w of a turn about z after one about x [rad]."""
-    return (
-        cos(yaw / 2) * sin(roll / 2),
-        sin(yaw / 2) * sin(roll / 2),
-        sin(yaw / 2) * cos(roll / 2),
-        cos(yaw / 2) * cos(roll / 2),
-    )
-
-
-def seen_from(frame: Pose, at: Pose) -> Pose:
-    """Return a place of the world in a frame that lies in it."""
-    dx, dy, c, s = at[0] - frame[0], at[1] - frame[1], cos(frame[2]), sin(frame[2])
-    return c * dx + s * dy, c * dy - s * dx, at[2] - frame[2]
-
-
-def in_world(frame: Pose, at: Pose) -> Pose:
-    """Return a place of a frame in the world."""
-    c, s = cos(frame[2]), sin(frame[2])
-    return frame[0] + c * at[0] - s * at[1], frame[1] + s * at[0] + c * at[1], frame[2] + at[2]
-
-
-@dataclass(eq=False)
-class RobotNode:
-    """One robot's node; its map's and its odometry's frames lie where it started, but for SLAM's mistakes."""
-
-    spec: Mapping[str, Any]
-    start: Pose
-    node: Node
-    navigator: Navigator
-    building: Building
-    next_scan: float = 0.0
-    next_map: float = 0.0
-
-    def __post_init__(self) -> None:
-        node = self.node
-        self._tf = node.create_publisher(TFMessage, "tf", 100)
-        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        self._static = node.create_publisher(TFMessage, "tf_static", latched)
-        self._odom = node.create_publisher(Odometry, "odom", 10)
-        self._scan = node.create_publisher(LaserScan, "scan", qos_profile_sensor_data)
-        self._map = node.create_publisher(OccupancyGrid, "map", latched) if self.spec["slam"] else None
-        self._mapper = Mapper(self.building)
-        x, y, yaw = self.spec["mount"]
-        roll = pi if self.spec["upside_down"] else 0.0
-        mount = self._joint("base_link", "laser", (x, y, radians(yaw)), Time(), roll)
-        self._static.publish(TFMessage(transforms=[mount]))
-
-    def _joint(self, parent: str, child: str, at: Pose, stamp: Time, roll: float = 0.0) -> TransformStamped:
-        told, prefix = TransformStamped(), self.spec["prefix"]
-        told.header.frame_id, told.header.stamp, told.child_frame_id = prefix + parent, stamp, prefix + child
-        told.transform.translation.x, told.transform.translation.y = at[0], at[1]
-        q = told.transform.rotation
-        q.x, q.y, q.z, q.w = quaternion(at[2], roll)
-        return told
-
-    def map_frame(self, now: float) -> Pose:
-        """Return where the frame of the robot's map lies in the world."""
-        until, dx, dy, turn = self.spec["lost"]
-        return in_world(self.start, (dx, dy, radians(turn))) if now < until else self.start
-
-    def tell(
-        self, now: float, stamp: Time, at: Pose, moving: tuple[float, float], look: Callable[[], Any]
-    ) -> None:
-        """Publish where the robot is, and now and then what its lidar sees, which costs most of the time."""
-        here = seen_from(self.start, at)
-        drift = self._joint("map", "odom", seen_from(self.map_frame(now), self.start), stamp)
-        self._tf.publish(TFMessage(transforms=[drift, self._joint("odom", "base_link", here, stamp)]))
-        odometry, prefix = Odometry(), self.spec["prefix"]
-        odometry.header.frame_id, odometry.header.stamp = f"{prefix}odom", stamp
-        odometry.child_frame_id = f"{prefix}base_link"
-        odometry.pose.pose.position.x, odometry.pose.pose.position.y = here[0], here[1]
-        q = odometry.pose.pose.orientation
-        q.x, q.y, q.z, q.w = quaternion(here[2])
-        odometry.twist.twist.linear.x, odometry.twist.twist.angular.z = moving
-        self._odom.publish(odometry)
-        if now >= self.next_scan - 1e-9:
-            self.next_scan += 1.0 / self.spec["rate"]
-            scan = look()
-            self._scan.publish(self._sweep(stamp, scan))
-            if self._map is not None:
-                x, y, yaw = self.spec["mount"]
-                self._mapper.look(*in_world(at, (x, y, radians(yaw))), scan)
-        if self._map is not None and now >= self.next_map:
-            self.next_map += MAP_PERIOD
-            self._map.publish(self._own_map(now, stamp))
-
-    def _own_map(self, now: float, stamp: Time) -> OccupancyGrid:
-        told, building = OccupancyGrid(), self.building
-        told.header.frame_id, told.header.stamp = f"{self.spec['prefix']}map", stamp
-        told.info.resolution = building.resolution
-        told.info.height, told.info.width = building.solid.shape
-        x, y, yaw = seen_from(self.map_frame(now), (building.left, building.lower, 0.0))
-        told.info.origin.position.x, told.info.origin.position.y = x, y
-        q = told.info.origin.orientation
-        q.x, q.y, q.z, q.w = quaternion(yaw)
-        told.data = self._mapper.occupancy.ravel().tolist()
-        return told
-
-    def _sweep(self, stamp: Time, scan: Mapping[str, Any]) -> LaserScan:
-        told = LaserScan()
-        told.header.frame_id, told.header.stamp = f"{self.spec['prefix']}laser", stamp
-        told.angle_min, told.angle_max = float(scan["angle_min"]), float(scan["angle_max"])
-        told.angle_increment = float(scan["angle_increment"])
-        told.range_min, told.range_max = float(scan["range_min"]), float(scan["range_max"])
-        told.scan_time = 1.0 / self.spec["rate"]
-        ranges = np.asarray(scan["ranges"], np.float64).ravel().copy()
-        ranges[ranges >= scan["range_max"]] = np.inf
-        if self.spec["upside_down"]:
-            ranges = ranges[::-1]
-        told.ranges = ranges.astype(np.float32).tolist()
-        return told
 
 
 class Strangers:
@@ -189,6 +73,7 @@ class Strangers:
             spec["turn_rate"],
             lambda at: in_world(self.robots[i].map_frame(self.now), at),
             spec["active_from"],
+            list(spec["fails"]),
         )
         return RobotNode(spec, self._starts[i], self.nodes[i], navigator, self.building)
 
