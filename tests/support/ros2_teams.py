@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -21,6 +21,7 @@ from vedette.net.explore.watch import ExploreWatcher
 from vedette.net.launch import TeamProcesses
 from vedette.net.team import TeamWatch
 from vedette.net.transport import Operator
+from vedette.outcome import Outcome
 from vedette.record.explore.observer import ExploreReport
 from vedette.record.summary import Setting
 from vedette.sim.starts import choose_starts
@@ -31,7 +32,7 @@ class TriedPlan(Ros2Plan):
     """A team of which robots have oddities, and files say so."""
 
     oddities: Mapping[int, Mapping[str, Any]] = field(default_factory=dict)  # by robot, from 0
-    settings: Mapping[str, Any] = field(default_factory=dict)  # of every agent's body.ros2
+    settings: Mapping[int, Mapping[str, Any]] = field(default_factory=dict)  # of body.ros2, likewise
 
     def write(self, folder: Path) -> None:
         """Write what the plan does, and the oddities."""
@@ -44,7 +45,7 @@ class TriedPlan(Ros2Plan):
     def config(self, i: int, pose: Any) -> dict[str, Any]:
         """Return what the plan does, and the settings."""
         told = super().config(i, pose)
-        told["body"]["ros2"] |= dict(self.settings)
+        told["body"]["ros2"] |= dict(self.settings.get(i, {}))
         return told
 
 
@@ -76,11 +77,15 @@ def plan(world: World, count: int, speed: float = 3.0, **told: Any) -> TriedPlan
     return TriedPlan(world, specs, starts, ExploreOptions(), 0, speed, 3.0, **told)
 
 
+WRONG = 0.005  # of the known cells may be other ones in truth
+TRIED = 240  # a test may take so long [s]
 DOMAIN = os.getpid() % 100  # of ROS, for this process's tests
 
 
 @contextmanager
-def living(plan: TriedPlan, folder: Path) -> Iterator[TeamProcesses]:
+def living(
+    plan: TriedPlan, folder: Path, team: type[TeamProcesses] = TeamProcesses
+) -> Iterator[TeamProcesses]:
     """Let robots and their agents live, apart from all others on this host."""
     private, logs = folder / "private", folder / "logs"
     private.mkdir()
@@ -88,14 +93,32 @@ def living(plan: TriedPlan, folder: Path) -> Iterator[TeamProcesses]:
     plan.write(private)
     with ExitStack() as stack:
         stack.enter_context(strangers(private, logs / "robots.log", plan.speed, around))
-        yield stack.enter_context(TeamProcesses(plan, private, logs, None, around))
+        yield stack.enter_context(team(plan, private, logs, None, around))
 
 
-def tried(plan: TriedPlan, folder: Path, max_time: float = 300.0) -> Tried:
-    """Let a team explore to the end."""
+def tried(
+    plan: TriedPlan,
+    folder: Path,
+    max_time: float = 400.0,
+    team: type[TeamProcesses] = TeamProcesses,
+    befall: Callable[[float], None] = lambda now: None,
+) -> Tried:
+    """Let a team explore to the end; ``befall`` does what is to happen by a mission's time [s]."""
     with ExitStack() as stack:
-        team = stack.enter_context(living(plan, folder))
-        operator = stack.enter_context(Operator(team.operator))
+        processes = stack.enter_context(living(plan, folder, team))
+        operator = stack.enter_context(Operator(processes.operator))
         watcher = ExploreWatcher(plan, Setting(seed=0))
-        report = TeamWatch(plan, team, operator, watcher, max_time).run()
+        watch = TeamWatch(plan, processes, operator, watcher, max_time)
+        watch.befall = lambda now: befall(watch.now)
+        report = watch.run()
     return Tried(report, plan, (folder / "logs" / "robots.log").read_text())
+
+
+def sound(ended: Tried, robots: int, outcome: Outcome = Outcome.COMPLETE) -> None:
+    """Hold a team to a whole and true map, and to no collision."""
+    summary = ended.report.summary
+    assert summary.outcome is outcome, (summary, ended.robots_said)
+    assert summary.coverage is None  # the robots do not know how large the building is
+    assert ended.covered >= 0.99
+    assert ended.wrong <= WRONG
+    assert ended.robots_said.count("collided: False") == robots, ended.robots_said
