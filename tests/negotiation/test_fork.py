@@ -55,7 +55,7 @@ def test_in_any_order_of_messages_a_round_ends_where_nobody_gains_alone(
         assert max(gains) <= 1e-8
     if scheme == "fork" and outcome.bound == outcome.value:
         return  # ended at the ceiling, before everybody heard of the last changes
-    held = [node.value_held() for node in nodes]
+    held = [team[0].value(node.team_held()) for node in nodes]
     assert held == pytest.approx([outcome.value] * n, abs=1e-9)  # everybody knows the rest of the team
 
 

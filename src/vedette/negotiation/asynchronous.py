@@ -123,9 +123,9 @@ class AsyncNode(Generic[ImpactT]):
         """Whether this platform has replied."""
         return self._slack < math.inf or self._changes > 0
 
-    def value_held(self) -> float | None:
-        """Return what the impacts held are worth together; see `Negotiator`."""
-        return self._own.value(self._together(self._branches().values(), self._own.impact))
+    def team_held(self) -> ImpactT:
+        """Return the impacts held together; see `Negotiator`."""
+        return self._together(self._branches().values(), self._own.impact)
 
     def start(self) -> list[Outgoing[ImpactT]]:
         """Begin, once the own impact is ready; messages may have arrived before."""

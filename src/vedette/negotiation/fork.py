@@ -98,11 +98,11 @@ class ForkNode(Generic[ImpactT]):
         """Whether a sweep has come by."""
         return self.sweeps > 0
 
-    def value_held(self) -> float | None:
-        """Return what the impacts held are worth together; see `Negotiator`."""
+    def team_held(self) -> ImpactT | None:
+        """Return the impacts held together; see `Negotiator`."""
         if not self._links.heard_all or (self.finished is not None and not self._quiet):
             return None
-        return self._own.value(self._own.combine(self._links.others(), self._own.impact))
+        return self._own.combine(self._links.others(), self._own.impact)
 
     def cut(self, neighbour: int) -> list[Outgoing[ImpactT]]:
         """Go on without a child and all behind it; see `Negotiator`."""
