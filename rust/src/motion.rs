@@ -3,7 +3,7 @@
 //! `steer` rolls out a small family of path followers (sideways offset, speed, look-ahead) and returns the first
 //! command of the cheapest one. All costs are seconds, so that progress, turning and courtesy trade off openly.
 
-use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 /// Steps of a roll-out.
@@ -75,6 +75,28 @@ pub fn clearance(solid: Grid, x: f64, y: f64, reach: f64) -> f64 {
         }
     }
     best.sqrt()
+}
+
+/// Clear the cells whose centre lies in a disc `x, y, r` [m].
+pub fn block_discs(free: &mut [bool], cols: usize, resolution: f64, discs: &[f64]) {
+    if cols == 0 {
+        return;
+    }
+    let rows = free.len() / cols;
+    let cells = |low: f64, high: f64, count: usize| {
+        let first = (low / resolution - 0.5).floor().clamp(0.0, count as f64) as usize;
+        first..((high / resolution + 0.5).ceil().clamp(first as f64, count as f64) as usize)
+    };
+    for disc in discs.chunks_exact(3) {
+        let (x, y, r) = (disc[0], disc[1], disc[2]);
+        for row in cells(y - r, y + r, rows) {
+            let dy = (row as f64 + 0.5) * resolution - y;
+            for col in cells(x - r, x + r, cols) {
+                let dx = (col as f64 + 0.5) * resolution - x;
+                free[row * cols + col] &= dx * dx + dy * dy >= r * r;
+            }
+        }
+    }
 }
 
 /// A polyline with its arc length at each vertex.
@@ -326,6 +348,17 @@ fn py_clearance(solid: PyReadonlyArray2<bool>, resolution: f64, x: f64, y: f64, 
     Ok(clearance(grid(&solid, resolution)?, x, y, reach))
 }
 
+#[pyfunction(name = "block_discs")]
+fn py_block_discs(
+    mut free: PyReadwriteArray2<bool>,
+    resolution: f64,
+    discs: PyReadonlyArray2<f64>,
+) -> PyResult<()> {
+    let cols = free.shape()[1];
+    block_discs(free.as_slice_mut()?, cols, resolution, discs.as_slice()?);
+    Ok(())
+}
+
 #[pyfunction(name = "steer")]
 fn py_steer(
     solid: PyReadonlyArray2<bool>,
@@ -354,6 +387,7 @@ fn py_steer(
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(py_clearance, m)?)?;
+    m.add_function(wrap_pyfunction!(py_block_discs, m)?)?;
     m.add_function(wrap_pyfunction!(py_steer, m)?)?;
     Ok(())
 }

@@ -85,6 +85,7 @@ def line_of_sight(
 
 # motion
 def clearance(solid: NDArray[np.bool_], resolution: float, x: float, y: float, reach: float) -> float: ...
+def block_discs(free: NDArray[np.bool_], resolution: float, discs: NDArray[np.float64]) -> None: ...
 def steer(
     solid: NDArray[np.bool_],
     traversable: NDArray[np.bool_],

@@ -167,8 +167,7 @@ def corridor(width: int = 8) -> NDArray[np.bool_]:
 
 def mate(robot: int, x: float, y: float, to_x: float, heard: float) -> Mate:
     """A team-mate that drives along x."""
-    path = np.array([(x, y), (to_x, y)])
-    return Mate(robot, x, y, 0.0, path, 0.0, 0.2, 0.5, heard)
+    return Mate(robot, x, y, 0.0, (0, 0, round(100 * (to_x - x)), 0), 0.0, 0.2, 0.5, heard)
 
 
 def test_the_higher_index_makes_room_in_a_corridor_and_goes_on_when_the_mate_has_passed() -> None:

@@ -9,9 +9,9 @@ import pytest
 from numpy.typing import NDArray
 
 from vedette.agent.intents import Intent
-from vedette.agent.refuges import block_discs
 from vedette.agent.rightofway import give_way, queues
 from vedette.kernels.distance import distance_field, path_to, shortcut
+from vedette.kernels.motion import block_discs
 from vedette.maps.world import World
 from vedette.sim.body import Bodies
 from vedette.sim.starts import choose_starts

@@ -48,6 +48,20 @@ def test_clearance_equals_the_distance_to_the_nearest_of_all_solid_squares(seed:
         assert motion.clearance(solid, RESOLUTION, x, y, reach) == pytest.approx(expected, abs=1e-12)
 
 
+@settings(deadline=None, max_examples=60)
+@given(st.integers(0, 2**32 - 1))
+def test_discs_block_the_cells_that_their_twin_blocks(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    free = rng.random(tuple(rng.integers(0, 30, 2))) < 0.8
+    resolution = float(rng.choice([0.05, 0.1, 0.3]))
+    discs = rng.uniform((-1.0, -1.0, 0.0), (4.0, 4.0, 1.5), (rng.integers(0, 6), 3))
+    on_centres = np.round(discs / resolution - 0.5) * resolution + 0.5 * resolution
+    for some in (discs, on_centres):
+        before, blocked = free.copy(), motion.block_discs(free, resolution, some.tolist())
+        assert np.array_equal(blocked, twin.block_discs(free, resolution, some.tolist()))
+        assert np.array_equal(free, before)
+
+
 @settings(deadline=None, max_examples=40)
 @given(st.integers(0, 2**32 - 1))
 def test_steer_equals_its_twin(seed: int) -> None:

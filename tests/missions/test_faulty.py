@@ -13,8 +13,8 @@ import pytest
 from numpy.typing import NDArray
 
 from tests.support.small_missions import robots, run, small_maze, small_office
-from vedette.agent.refuges import block_discs
 from vedette.domains.mapping.stops import CLEARANCES
+from vedette.kernels.motion import block_discs
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.maps.world import World
 from vedette.record.explore.observer import ExploreReport

@@ -25,7 +25,7 @@ def explorer(robot: int = 0) -> Exploring:
 
 def mate_at(x: float, y: float, radius: float = 0.2, heard: float = 0.0) -> Mate:
     """A team mate that stands still."""
-    return Mate(1, x, y, 0.0, np.empty((0, 2)), 0.0, radius, 0.5, heard)
+    return Mate(1, x, y, 0.0, (), 0.0, radius, 0.5, heard)
 
 
 def scan_from(pose: Pose, rng: np.random.Generator, mates: tuple[Mate, ...] = ()) -> Scan:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import hypot, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from vedette.agent.effects import Drive, Route
 from vedette.agent.events import Pose
 from vedette.agent.intents import HORIZON, Intent
 from vedette.agent.mates import Mate
+from vedette.agent.refuges import WINDOW
 from vedette.agent.rightofway import give_way, queues
 from vedette.team import PlatformSpec
 
@@ -57,7 +59,7 @@ class Driver:
         here = place - corner
         ahead = self.ahead(pose) - corner
         me = Intent(self.robot, here[0], here[1], ahead, self.spec.radius, self.spec.speed, pose.slowed)
-        others = [_intent(mate, corner) for mate in mates if not mate.silent(now)]
+        others = [_intent(mate, corner) for mate in mates if not mate.silent(now) and self._minds(mate, pose)]
         refuge = give_way(route.passable, route.frame.resolution, me, others)
         self.queueing = refuge is None and self._queues(route, me, others, place, now)
         if self.queueing:
@@ -72,6 +74,11 @@ class Driver:
             self.yielding_since = now - self._yielded_before(place)
         self.refuge = refuge + corner
         return Drive(Route(self.refuge, route.passable, route.frame, route.room))
+
+    def _minds(self, mate: Mate, pose: Pose) -> bool:
+        """Tell whether a mate is near enough for right of way, or to stand in a refuge that is looked at."""
+        corner = (WINDOW + self.spec.radius + mate.radius + 1.0) * sqrt(2.0)
+        return hypot(mate.x - pose.x, mate.y - pose.y) < max(2.0 * HORIZON + 1.0, corner)
 
     def _queues(
         self, route: Route, me: Intent, others: list[Intent], place: NDArray[np.float64], now: float

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,19 +14,24 @@ MOST_MATES = 1024  # that are kept at most; each has a path of at most 500 point
 SILENT = 3.0  # a mate not heard for so long stands where it was last [s]
 
 
-@dataclass(frozen=True, eq=False)
-class Mate:
-    """A team-mate as it last beaconed."""
+class Mate(msgspec.Struct, frozen=True, eq=False):
+    """A team-mate as it last beaconed; a large team makes thousands a second."""
 
     robot: int
     x: float  # [m], team frame
     y: float
     heading: float  # [rad]
-    path: NDArray[np.float64]  # (L, 2) its next few metres [m], team frame; empty: it stands
+    ahead: tuple[int, ...]  # x, y, x, y, ...: its next few metres, from where it is [cm]; empty: it stands
     slowed: float  # [s]
     radius: float  # [m]
     speed: float  # at most [m/s]
     heard: float  # when the beacon came [s]
+
+    @property
+    def path(self) -> NDArray[np.float64]:
+        """``(L, 2)`` its next few metres [m], team frame; empty: it stands."""
+        offsets = np.array(self.ahead[: len(self.ahead) // 2 * 2], np.float64).reshape(-1, 2) / 100.0
+        return offsets + np.array((self.x, self.y))
 
     def silent(self, now: float) -> bool:
         """Tell whether the mate may be dead: it has not been heard for seconds."""
@@ -66,15 +72,12 @@ class Mates:
 
 
 def _mate(beacon: Beacon, heard: float) -> Mate:
-    x, y = beacon.x / 100.0, beacon.y / 100.0
-    offsets = np.array(beacon.path[: len(beacon.path) // 2 * 2], np.float64).reshape(-1, 2) / 100.0
-    path = offsets + np.array((x, y))
     return Mate(
         beacon.robot,
-        x,
-        y,
+        beacon.x / 100.0,
+        beacon.y / 100.0,
         beacon.heading / 1000.0,
-        path,
+        beacon.path,
         beacon.slowed / 10.0,
         beacon.radius / 100.0,
         beacon.speed / 100.0,

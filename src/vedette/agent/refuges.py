@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from vedette.agent.intents import GAP, Intent, apart
 from vedette.kernels.distance import distance_field, path_to, shortcut
+from vedette.kernels.motion import block_discs
 
 ROOM = 0.15  # between a refuge's rim and the rim of the one that passes [m]
 WINDOW = 5.0  # half side of the square around a robot in which it looks for a refuge [m]
@@ -18,22 +19,6 @@ TRIES = 12  # refuges examined, cheapest first
 APART = 0.4  # between two of them [m]
 RETREAT = 1.0  # half side of the square within which a robot draws back for want of a refuge [m]
 DRAW_BACK = 0.1  # room that it must gain by each metre of doing so [m]
-
-
-def block_discs(
-    traversable: NDArray[np.bool_], resolution: float, discs: Iterable[tuple[float, float, float]]
-) -> NDArray[np.bool_]:
-    """Return ``traversable`` ``(R, C)`` without the cells whose centre lies in a disc ``(x, y, r)`` [m].
-
-    For a centre to keep clear of a body, ``r`` is the sum of both radii and the gap wanted.
-    """
-    free = traversable.copy()
-    for x, y, r in discs:
-        rows, cols = _box(traversable.shape, resolution, x, y, r)
-        dx = (np.arange(cols.start, cols.stop) + 0.5) * resolution - x
-        dy = (np.arange(rows.start, rows.stop) + 0.5) * resolution - y
-        free[rows, cols] &= dx[None, :] ** 2 + dy[:, None] ** 2 >= r * r
-    return free
 
 
 def refuge(

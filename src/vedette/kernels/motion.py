@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vedette import _kernels
+from vedette.kernels._arrays import floats
 
 WALL_GUARD = 0.025  # [m]
 
@@ -38,6 +40,20 @@ def clearance(solid: NDArray[np.bool_], resolution: float, x: float, y: float, r
     ``solid`` is ``(R, C)``; outside the grid is solid. ``x, y`` [m] from the grid's lower-left corner.
     """
     return _kernels.clearance(solid, resolution, x, y, reach)
+
+
+def block_discs(
+    free: NDArray[np.bool_], resolution: float, discs: Sequence[tuple[float, float, float]]
+) -> NDArray[np.bool_]:
+    """Return ``free`` ``(R, C)`` without the cells whose centre lies in a disc ``(x, y, r)`` [m].
+
+    For a centre to keep clear of a body, ``r`` is the sum of both radii and the gap wanted. A centre on the
+    rim is not in the disc; ``x, y`` from the grid's lower-left corner.
+    """
+    left = np.array(free, np.bool_, order="C")
+    if len(discs):
+        _kernels.block_discs(left, resolution, floats(discs))
+    return left
 
 
 def steer(

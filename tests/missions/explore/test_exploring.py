@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 import pytest
+from msgspec import structs
 from numpy.typing import NDArray
 
 from tests.support.explorers import HERE, exchange, explorer, mate_at, scan_from
@@ -234,17 +234,17 @@ def test_a_stop_that_mates_kept_a_robot_from_is_taken_up_again_when_one_of_them_
     tour = mission.strategy
     target = tour.targets[0].tolist()
     for chance in range(CHANCES + 1):
-        there = replace(mate_at(HERE.x + 1.0 + 1.6 * (chance % 2), HERE.y), heard=now)
+        there = structs.replace(mate_at(HERE.x + 1.0 + 1.6 * (chance % 2), HERE.y), heard=now)
         for _ in range(TRIES):
             mission.strategy = tour
             prepared(mission, now, [there])
             mission.strategy = tour
             mission.release(now)
             now += 20.0
-            there = replace(there, heard=now)
+            there = structs.replace(there, heard=now)
         prepared(mission, now, [there])
         assert not reachable(mission, target)  # while the mate stands there
-        gone = replace(there, x=there.x + (-1.6 if chance % 2 else 1.6), heard=now)
+        gone = structs.replace(there, x=there.x + (-1.6 if chance % 2 else 1.6), heard=now)
         prepared(mission, now, [gone])
         assert reachable(mission, target) == (chance < CHANCES)
 

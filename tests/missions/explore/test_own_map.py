@@ -91,7 +91,7 @@ def test_the_same_map_again_is_no_news() -> None:
 def test_a_team_mate_in_the_map_is_no_obstacle() -> None:
     own_map = room(0.05, 1.0, 0.5, 0.0)
     own_map.classes[28:32, 38:42] = OCCUPIED
-    mate = Mate(1, 3.0, 2.0, 0.0, np.empty((0, 2)), 0.0, 0.2, 0.5, 0.0)
+    mate = Mate(1, 3.0, 2.0, 0.0, (), 0.0, 0.2, 0.5, 0.0)
     assert told(explorer(), own_map)[50, 50] == OCCUPIED
     assert told(explorer(), own_map, [mate])[50, 50] == UNKNOWN
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -47,6 +48,17 @@ def clearance(solid: NDArray[np.bool_], resolution: float, x: float, y: float, r
     dy = np.maximum(np.maximum(row * resolution - y, y - (row + 1) * resolution), 0.0)
     nearest = float(np.sqrt(dx * dx + dy * dy).min(initial=np.inf))
     return float(min(border, reach, nearest))
+
+
+def block_discs(
+    free: NDArray[np.bool_], resolution: float, discs: Sequence[tuple[float, float, float]]
+) -> NDArray[np.bool_]:
+    """Take out of ``free`` the cells whose centre lies in a disc, by looking at every cell."""
+    y, x = ((np.arange(size) + 0.5) * resolution for size in free.shape)
+    left = free.copy()
+    for a, b, r in discs:
+        left &= (x[None, :] - a) ** 2 + (y[:, None] - b) ** 2 >= r * r
+    return left
 
 
 class MotionScene(NamedTuple):

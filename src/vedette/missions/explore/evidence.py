@@ -150,8 +150,9 @@ class OwnEvidence:
         if not bodies:
             return
         dx, dy, reach = np.array(bodies).T[:, :, None]  # (n, 1) each
-        off = np.hypot(ranges * np.cos(angles) - dx, ranges * np.sin(angles) - dy)
-        body = hits & (off < reach).any(axis=0)
+        beams = np.flatnonzero(hits)
+        x, y = ranges[beams] * np.cos(angles[beams]), ranges[beams] * np.sin(angles[beams])
+        body = beams[(np.hypot(x - dx, y - dy) < reach).any(axis=0)]
         hits[body] = False
         before = self.frame.resolution + BLUR * deviation
         ranges[body] = np.maximum(ranges[body] - before, 0.0)
