@@ -31,7 +31,8 @@ class Mate(msgspec.Struct, frozen=True, eq=False):
     def path(self) -> NDArray[np.float64]:
         """``(L, 2)`` its next few metres [m], team frame; empty: it stands."""
         offsets = np.array(self.ahead[: len(self.ahead) // 2 * 2], np.float64).reshape(-1, 2) / 100.0
-        return offsets + np.array((self.x, self.y))
+        path: NDArray[np.float64] = offsets + np.array((self.x, self.y))
+        return path
 
     def silent(self, now: float) -> bool:
         """Tell whether the mate may be dead: it has not been heard for seconds."""

@@ -152,7 +152,7 @@ class OwnEvidence:
         dx, dy, reach = np.array(bodies).T[:, :, None]  # (n, 1) each
         beams = np.flatnonzero(hits)
         x, y = ranges[beams] * np.cos(angles[beams]), ranges[beams] * np.sin(angles[beams])
-        body = beams[(np.hypot(x - dx, y - dy) < reach).any(axis=0)]
+        body = beams[((x - dx) ** 2 + (y - dy) ** 2 < reach**2).any(axis=0)]
         hits[body] = False
         before = self.frame.resolution + BLUR * deviation
         ranges[body] = np.maximum(ranges[body] - before, 0.0)
