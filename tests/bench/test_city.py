@@ -17,9 +17,7 @@ def test_without_a_bound_on_what_is_near_every_beacon_crosses_every_link_once() 
     places = np.random.default_rng(0).uniform(0.0, 100.0, (9, 2))
     team = Beaconing(tree_between_near(places), np.inf)
     team.beacon(places, 1, 0.0)
-    told = len(
-        messages.encode(Beacon(8, 1, 1, 9000, 9000, 0, 0, 20, 50, (40, 10, 80, 30, 120, 60, 160, 100)))
-    )
+    told = len(messages.encode(Beacon(8, 1, 1, 9000, 9000, 0, 0, 20, 50, PATH)))
     assert 9 * 8 * told * 0.95 <= team.size <= 9 * 8 * (told + 3) + 16 * 4
     assert all(len(mates.all()) == 8 for mates in team.mates)
 
