@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import msgspec
+import numpy as np
 import pytest
 
 from tests.support.agent_team import toy_team
@@ -11,15 +12,19 @@ from vedette.agent import NetworkedAgent
 from vedette.agent.networked import HELLO, Datagram
 from vedette.agent.terms import Terms, difference, fingerprint_of, flat
 from vedette.maps import GridFrame
+from vedette.maps.area import MOST_CORNERS, Area
+from vedette.maps.lattice import Lattice
+from vedette.missions.explore.assemble import terms_of
+from vedette.missions.explore.options import ExploreOptions
 
 TERMS = {"mission": "explore", "map.resolution": "0.1", "scheme": "token"}
 
 
-def pair(theirs: Terms, apart: float = 0.0) -> list[NetworkedAgent]:
-    """Two robots that reach each other, after ten seconds; the second has these terms, and such a clock."""
+def pair(theirs: Terms, ours: Terms = TERMS, apart: float = 0.0) -> list[NetworkedAgent]:
+    """Two robots that reach each other, after ten seconds; the second has ``theirs``, and such a clock."""
     team, _, _ = toy_team(Tree.chain(2))
     nodes = [
-        NetworkedAgent(team.agents[0], 0.0, terms=TERMS),
+        NetworkedAgent(team.agents[0], 0.0, terms=ours),
         NetworkedAgent(team.agents[1], 0.0, terms=theirs, time_of_day=lambda now: now + apart),
     ]
     for i in (0, 1):
@@ -51,6 +56,50 @@ def test_a_difference_refuses_the_link_and_both_name_field_and_values(name: str)
     assert here.overlay.place.neighbours == there.overlay.place.neighbours == ()
     assert here.complaints == {1: f"its link is refused: {name}: other there, {TERMS[name]} here"}
     assert there.complaints == {0: f"its link is refused: {name}: {TERMS[name]} there, other here"}
+
+
+YARD = ((0.0, 0.0), (4.0, 0.0), (4.0, 4.0))
+
+
+@pytest.mark.parametrize(
+    ("area", "said"),
+    [
+        (None, "area.corners.1.1: 0.0 there, nothing here"),
+        (((0.0, 0.0), (4.0, 0.0), (4.0, 4.5)), "area.corners.3.2: 4.0 there, 4.5 here"),
+        ((*YARD, (0.0, 4.0)), "area.corners.4.1: nothing there, 0.0 here"),
+    ],
+)
+def test_robots_whose_areas_differ_in_one_corner_refuse_each_other_and_say_which(
+    area: tuple[tuple[float, float], ...] | None, said: str
+) -> None:
+    """On one lattice or two: where the areas' boxes differ, so do the lattices."""
+    frame = GridFrame(0.1, 60, 60)
+    terms = [
+        terms_of(Lattice(frame, None if corners is None else Area.of(corners)), ExploreOptions())
+        for corners in (YARD, area)
+    ]
+    here, there = pair(terms[0], terms[1])
+    assert here.overlay.place.neighbours == there.overlay.place.neighbours == ()
+    assert here.complaints == {1: f"its link is refused: {said}"}
+    (complaint,) = there.complaints.values()
+    assert complaint.startswith(f"its link is refused: {said.partition(':')[0]}: ")
+    same = pair(terms[0], dict(terms[0]))
+    assert same[0].overlay.place.size == 2
+    open_ground = terms_of(Lattice.open(0.1), ExploreOptions())
+    assert fingerprint_of(open_ground) != fingerprint_of(terms[0])
+    assert difference(open_ground, terms[0]) is not None
+
+
+def test_an_area_of_as_many_corners_as_there_may_be_opens_a_link() -> None:
+    angles = np.linspace(0.0, 2.0 * np.pi, MOST_CORNERS, endpoint=False)
+    circle = 1e3 * np.pi * np.column_stack((np.cos(angles), np.sin(angles)))
+    terms = terms_of(Lattice(GridFrame(0.1, 60, 60), Area.of(circle.tolist())), ExploreOptions())
+    circle[500, 1] += 0.25
+    other = terms_of(Lattice(GridFrame(0.1, 60, 60), Area.of(circle.tolist())), ExploreOptions())
+    assert pair(terms, terms)[0].overlay.place.size == 2
+    here, _ = pair(terms, other)
+    assert here.overlay.place.size == 1
+    assert "its link is refused: area.corners.501.2: " in here.complaints[1]
 
 
 def test_clocks_that_are_apart_are_told_and_do_no_harm() -> None:

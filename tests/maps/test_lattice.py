@@ -52,6 +52,17 @@ def test_lattices_that_differ_in_anything_have_different_marks() -> None:
     assert Lattice.open(0.1, area=YARD).mark == lattice.mark
 
 
+def test_an_area_between_the_middles_of_all_cells_is_refused() -> None:
+    for sliver in (
+        [(0.06, 0.0), (0.14, 0.0), (0.14, 9.0), (0.06, 9.0)],
+        [(3.0, 3.0), (3.01, 3.0), (3.0, 3.01)],
+    ):
+        with pytest.raises(
+            InputError, match=r"area: no cell of 0\.1 m has its middle in it; give a larger one"
+        ):
+            Lattice.open(0.1, area=Area.of(sliver))
+
+
 def test_an_area_of_too_many_cells_is_refused_and_so_is_no_resolution() -> None:
     with pytest.raises(InputError, match="smaller area or a larger resolution"):
         Lattice.open(0.001, area=YARD)

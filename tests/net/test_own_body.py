@@ -15,6 +15,7 @@ from msgspec import yaml
 from tests.support.net_team import real_time, wait_until
 from tests.support.places import ROOT
 from tests.support.schemas import valid
+from vedette.cli.agent import agent as agent_command
 from vedette.cli.status import status as status_command
 from vedette.errors import InputError
 from vedette.net.config import load_config
@@ -151,6 +152,33 @@ def test_what_does_not_go_with_a_body_of_ones_own_is_told_with_the_file(
         load_config(path)
     assert str(path) in str(told.value)
     assert said in str(told.value)
+
+
+NEAR, FAR = [1.0, 1.0, 0.0], [448262.5, 5411932.2, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("start", "explore", "said"),
+    [
+        (FAR, {}, "and the team's ground is x -409.6 to 409.6 m, y -409.6 to 409.6 m"),
+        (NEAR, {"area": [[5, 0], [9, 0], [9, 6]]}, "team's ground is x 5.0 to 9.0 m, y 0.0"),
+        (NEAR, {"area": [[1.0, 1.0], [1.01, 1.0], [1.0, 1.01]]}, "no cell of 0.1 m has its middle"),
+        (NEAR, {"area": [[0, 0], [9, 0]]}, "explore.area: 2 corners; a polygon has 3 to 1000"),
+        (NEAR, {"area": [[0, 0], [9, 0], [18, 0]]}, "explore.area: all corners are on a line"),
+        (NEAR, {"area": [[0, 0], [9e4, 0], [9e4, 9e4]]}, "area: 900000 x 900000 cells of 0.1 m"),
+        (NEAR, {"unbounded": True}, "explore.unbounded: no real robot is told how far its ground"),
+    ],
+)  # fmt: skip
+def test_ground_that_a_robot_sees_nothing_of_is_told_in_a_line(
+    tmp_path: Path, start: list[float], explore: dict[str, Any], said: str
+) -> None:
+    (tmp_path / "own_body.py").write_text(EXAMPLE.read_text())
+    path = write(tmp_path, 1, [17551], start=start)
+    path.write_bytes(yaml.encode(yaml.decode(path.read_bytes()) | {"explore": explore}))
+    ran = CliRunner().invoke(agent_command, [str(path)])
+    assert isinstance(ran.exception, InputError), ran
+    assert str(path) in str(ran.exception)
+    assert said in str(ran.exception)
 
 
 def test_vehicles_that_fly_have_no_body_of_ones_own(tmp_path: Path) -> None:

@@ -40,7 +40,7 @@ def flat(name: str, value: object) -> Iterator[tuple[str, str]]:
     if isinstance(plain, dict):
         for key, item in plain.items():
             yield from flat(f"{name}.{key}", item)
-    elif isinstance(plain, list):
+    elif isinstance(plain, list | tuple):
         for index, item in enumerate(plain):
             yield from flat(f"{name}.{index + 1}", item)
     else:

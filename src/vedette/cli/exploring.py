@@ -172,6 +172,12 @@ def closing(summary: ExploreSummary, folder: Path) -> list[str]:
     if summary.outcome is Outcome.MAPS_DIFFER:
         holders = (", ".join(names) for names in summary.maps)
         lines.insert(1, f"maps held: one by {'; another by '.join(holders)}")
+    if summary.beyond:
+        lines.insert(
+            1,
+            f"left out: {many(summary.beyond, 'sighting')} farther off than there is room for; --area says "
+            "where the ground is",
+        )
     if summary.left_out:
         count = Counter(spot.why for spot in summary.left_out)
         said = ", ".join(f"{number} {why}" for why, number in count.items())

@@ -59,7 +59,10 @@ class Lattice:
                 "give a smaller area or a larger resolution"
             )
         corner = origin[0] + low[1] * resolution, origin[1] + low[0] * resolution
-        return cls(GridFrame(resolution, rows, cols, *corner), area, bounded=area is not None)
+        lattice = cls(GridFrame(resolution, rows, cols, *corner), area, bounded=area is not None)
+        if lattice.cells == 0:
+            raise InputError(f"area: no cell of {resolution:g} m has its middle in it; give a larger one")
+        return lattice
 
     @cached_property
     def cells(self) -> int | None:
@@ -67,6 +70,12 @@ class Lattice:
         if self.area is None:
             return self.frame.size if self.bounded else None
         return int(np.count_nonzero(self.area.holds(self.frame)))
+
+    @property
+    def room(self) -> str:
+        """Where the cells lie, in words."""
+        x_min, x_max, y_min, y_max = self.frame.extent
+        return f"x {x_min:.1f} to {x_max:.1f} m, y {y_min:.1f} to {y_max:.1f} m"
 
     @property
     def mark(self) -> int:

@@ -14,6 +14,7 @@ from msgspec import Meta, Struct
 from vedette.domains.mapping.planners import PLANNERS, planner
 from vedette.errors import InputError, nearest_name
 from vedette.fusion.gaussian import WAYS
+from vedette.maps.area import Area
 from vedette.missions.explore.assemble import FUSIONS
 from vedette.missions.explore.options import ExploreOptions
 from vedette.missions.search import options as search_options
@@ -31,6 +32,7 @@ from vedette.team import PlatformSpec
 
 OF_BODY = tuple(field.name for field in fields(PlatformSpec) if field.name not in ("name", "start"))
 MISSIONS = ("explore", "track", "search")
+RESOLUTION = 0.1  # of the map that robots make which are not simulated in one [m]
 ADMITTED = 64  # robots numbered higher are let in only by a robot that knows of so many
 
 Robot = Annotated[int, Meta(ge=1, le=MOST_ROBOTS)]
@@ -200,7 +202,10 @@ def _check_kind(body: BodySettings) -> None:
 
 def _check_ground(body: BodySettings, options: ExploreOptions) -> None:
     try:
-        options.lattice(body.resolution or 1.0)
+        if body.map is None:
+            options.lattice(body.resolution or RESOLUTION)
+        elif options.area is not None:
+            Area.of(options.area)
     except InputError as error:
         raise InputError(f"explore.{error}") from error
     if options.unbounded and body.map is None:

@@ -69,6 +69,7 @@ class AgentProcess:
     stopped: bool = False
     _reported: float = -1e9  # [s]
     _reported_at: float = -1e9  # mission time [s]
+    _remarked: bool = False  # on itself
     _said: dict[int, str] = field(default_factory=dict)  # complaints, by robot
     _heeded: int = 0  # number of the list of revoked certificates
 
@@ -186,6 +187,9 @@ class AgentProcess:
                 self._said[robot] = what
                 self.say(f"{robot_name(robot)}: {what}")
         self.transport.publish(Topic.REPORT, self.witness.report(now, at, state))
+        if (remark := self.witness.remark) is not None and not self._remarked:
+            self._remarked = True
+            self.say(remark)
 
     def _do(self, act: Callable[[], Iterable[Output]]) -> None:
         """Let the robot do something, and carry out what it wants done."""

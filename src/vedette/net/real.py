@@ -11,8 +11,6 @@ from vedette.ros2.body import Ros2Body
 from vedette.ros2.robot import ros2_body
 from vedette.ros2.showing import showing
 
-RESOLUTION = 0.1  # of the map [m]
-
 
 def real_robot(config: AgentConfig) -> Ros2Body:
     """Return the robot that a file describes, as soon as it tells what is needed.

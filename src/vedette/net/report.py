@@ -90,6 +90,7 @@ class Condition(msgspec.Struct, frozen=True, array_like=True, tag=2):
     ending: Ending = "complete"  # how the mission ends for it, once it is done
     known_m2: Real | None = None  # [m^2]; None: no map is made
     frontiers: Count | None = None  # of the latest round's map; None: there has been none
+    beyond: Count = 0  # beams, or cells of its own map, that told of ground where there is no room for any
 
 
 class Report(msgspec.Struct, frozen=True, array_like=True, tag=3):

@@ -25,6 +25,8 @@ class Known(NamedTuple):
     share: float | None  # of the cells of the team's ground; None: nobody knows how large that is
     area: float  # [m^2]
     frontiers: int | None  # where it goes on, as of the latest round; None: there has been none
+    beyond: int = 0  # beams, or cells of its own map, that told of ground where there is no room for any
+    room: str = ""  # where there is, in words
 
 
 class Teller(Protocol):
@@ -53,6 +55,7 @@ class Witness:
     clock: Clock = field(default_factory=Clock)
     malformed: int = 0  # of what is told of bodies
     status: bytes = b""  # the latest condition, for any thread
+    _known: Known | None = None  # of the latest report
     _rounds: list[float] = field(default_factory=list)  # that this robot began [s]
     _round_began: float | None = None
     _decisions: int = 0
@@ -81,11 +84,23 @@ class Witness:
         self.status = wire.encode(condition)
         return wire.encode(wire.Report(condition, self.teller.content(mission_time)))
 
+    @property
+    def remark(self) -> str | None:
+        """What whoever watches the process should know of the robot, in a line; None: nothing."""
+        known = self._known
+        if known is None or not known.beyond:
+            return None
+        return (
+            f"what the robot sees beyond {known.room} is left out: there is no room for more cells; give "
+            "explore.area, for where the ground is, or a larger body.resolution"
+        )
+
     def _condition(self, now: float, mission_time: float) -> Condition:
         agent, overlay = self.node.agent, self.node.overlay.status(now)
         x, y, heading = self.body.pose
         path = self.teller.path(mission_time).ravel().tolist()
         counted, known = self.body.figures, self.teller.known
+        self._known = known
         return Condition(
             robot=agent.robot,
             boot=agent.boot,
@@ -133,6 +148,7 @@ class Witness:
             ending=cast(Ending, agent.ending.value),
             known_m2=None if known is None else known.area,
             frontiers=None if known is None else known.frontiers,
+            beyond=0 if known is None else known.beyond,
         )
 
 

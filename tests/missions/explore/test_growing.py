@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tracemalloc
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,18 +13,20 @@ from numpy.typing import NDArray
 from tests.support.explorers import exchange, scan_from
 from tests.support.mapping_scenes import FRAME, RESOLUTION, SPEC
 from tests.support.small_missions import covered, robots, small_office
-from vedette.agent.events import Pose, Scan
+from vedette.agent.events import Pose, Scan, Sensed
 from vedette.domains.mapping.impact import NOTHING, moved
 from vedette.domains.mapping.planners import planner
 from vedette.domains.mapping.sightings import BINS
 from vedette.errors import InputError
 from vedette.fusion import ReplicatedEvidence
-from vedette.maps import UNKNOWN, GridFrame
+from vedette.maps import FREE, UNKNOWN, GridFrame
 from vedette.maps.area import Area
 from vedette.maps.laid import laid
 from vedette.maps.lattice import Lattice
 from vedette.maps.world import World
 from vedette.missions.explore.exploring import Exploring
+from vedette.missions.explore.own_map import OwnMap
+from vedette.outcome import Outcome
 from vedette.sim.explore.run import explore, prepare
 from vedette.sim.explore.simulation import ExploreSetup
 from vedette.team import Most, PlatformSpec
@@ -40,11 +43,11 @@ WHOLE = GridFrame(
 OPEN = Lattice.open(RESOLUTION, (FRAME.origin_x, FRAME.origin_y))
 
 
-def explorer(lattice: Lattice, robot: int = 0) -> Exploring:
+def explorer(lattice: Lattice, robot: int = 0, spec: PlatformSpec = SPEC) -> Exploring:
     """A robot's mission of which nothing is seen yet."""
     shape = lattice.frame.shape
     fusion = ReplicatedEvidence(robot, 1 + robot, shape, 4 * BINS, mark=lattice.mark)
-    return Exploring(lattice, SPEC, planner("tours"), fusion, most=Most.of([SPEC]))
+    return Exploring(lattice, spec, planner("tours"), fusion, most=Most.of([spec]))
 
 
 def look(mission: Exploring, pose: Pose, seed: int) -> None:
@@ -215,6 +218,87 @@ def test_three_robots_that_see_400_by_400_metres_piece_by_piece_use_memory_as_th
     assert [tiles for _, tiles in used] == pytest.approx(used[0][1] * np.arange(1, 5), rel=0.2)
     # log-odds twice; of all three, levels and stamps once; everybody's map; half of it is spare
     assert all((memory - before) / tiles < 2 * 1024 * (2 + 3 + 3) for memory, tiles in used)
+
+
+@pytest.mark.slow
+def test_three_robots_that_see_all_of_400_by_400_metres_use_memory_as_they_see_more() -> None:
+    side = 14.0 * np.arange(-14, 15)
+    places = np.array([(x, y) for x in side for y in side])[:840]
+    far = replace(SPEC, range=10.0)
+    tracemalloc.start()
+    team = [explorer(Lattice.open(0.1), robot, far) for robot in range(3)]
+    before = tracemalloc.get_traced_memory()[0]
+    used = [memory_and_tiles(team, part, k) for k, part in enumerate(np.split(places, 6))]
+    tracemalloc.stop()
+    known = team[0].fusion.known
+    assert np.count_nonzero(team[0].fusion.classes.window(*known)) * 0.01 > 0.85 * 400.0**2
+    tiles = np.array([tiles for _, tiles in used])
+    assert (np.diff(tiles) > 0.1 * tiles[-1]).all()
+    assert all((memory - before) / seen < 2 * 1024 * (2 + 3 + 3) for memory, seen in used)
+
+
+def test_a_round_freezes_the_extent_that_its_belief_has() -> None:
+    mission = explorer(OPEN)
+    look(mission, POSES[0], 0)
+    belief = mission.freeze(0.0)
+    frame, classes = belief.frame, belief.classes.copy()
+    look(mission, POSES[3], 1)
+    mission.prepare(belief, POSES[0], [], False, 0.0)
+    tour = mission.platform.reply(belief, NOTHING, mission.strategy)
+    assert belief.frame == frame
+    np.testing.assert_array_equal(belief.classes, classes)
+    assert len(tour.views)
+    assert frame.holds(tour.views).all()
+    assert mission.freeze(1.0).frame.size > frame.size
+
+
+# -- where there is no room for more cells ---------------------------------------------------------------
+
+END = 8192 * RESOLUTION / 2.0  # of an open lattice about the origin [m]
+ROUND = np.radians(np.arange(360.0) + 0.5)
+
+
+def seen_at(mission: Exploring, x: float, y: float) -> int:
+    """Let a robot see nothing within its range from a place; return how many beams had no cell to end in."""
+    before = mission.own.beyond
+    mission.observe(Scan(ROUND, np.full(360, np.inf)), Pose(x, y, 0.0), [], 0.0)
+    mission.publish(0.0)
+    return mission.own.beyond - before
+
+
+def test_what_is_seen_beyond_the_lattice_is_counted_beam_by_beam() -> None:
+    mission = explorer(Lattice.open(RESOLUTION))
+    assert seen_at(mission, 0.0, 0.0) == 0
+    assert seen_at(mission, END - 0.5 * SPEC.range, 0.0) == 120  # those that turn off by less than 60 degrees
+    assert seen_at(mission, -END + 0.5 * SPEC.range, END - 0.5 * SPEC.range) == 120 + 120 - 30
+    assert seen_at(mission, 0.0, END + 2.0 * SPEC.range) == 360
+
+
+def test_a_robot_beyond_the_lattice_plans_nothing_and_nothing_breaks() -> None:
+    mission, pose = explorer(Lattice.open(RESOLUTION)), Pose(3.0 * END, 0.0, 0.0)
+    assert seen_at(mission, pose.x, pose.y) == 360
+    belief = mission.freeze(0.0)
+    mission.prepare(belief, pose, [], False, 0.0)
+    assert mission.goal() is None
+    assert mission.ending is Outcome.COMPLETE  # a line on the way has told that there is no room
+    seen_at(mission, 0.0, 0.0)
+    mission.prepare(mission.freeze(1.0), pose, [], False, 1.0)
+    assert mission.nothing_left(0.0, 1.0) or mission.goal() is not None
+
+
+def test_cells_of_a_robots_own_map_beyond_the_lattice_are_counted_anew_with_each_version() -> None:
+    mission, rows, cols = explorer(Lattice.open(RESOLUTION)), 40, 30
+    classes = np.full((rows, cols), FREE, np.uint8)
+    for x, beyond in ((0.0, 0), (END - 10 * RESOLUTION, 20 * rows), (END + 1.0, rows * cols), (0.0, 0)):
+        told = Sensed(OwnMap(classes, RESOLUTION, x, 0.0, 0.0), 0.0)
+        mission.observe(told, Pose(0.0, 0.0, 0.0), [], 0.0)
+        assert mission.own.beyond == beyond
+
+
+def test_on_a_map_or_an_area_nothing_lies_beyond() -> None:
+    yard = Area.of([(-3.0, 2.0), (2.0, 2.0), (2.0, 12.0), (-3.0, 12.0)])
+    for lattice in (Lattice(FRAME), Lattice.open(RESOLUTION, area=yard)):
+        assert seen_at(explorer(lattice), FRAME.origin_x + 1.0, FRAME.origin_y + 1.0) == 0
 
 
 def test_a_step_costs_what_it_changes_not_what_is_known() -> None:

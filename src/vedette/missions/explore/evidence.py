@@ -16,6 +16,7 @@ from vedette.kernels.tiles import TiledGrid, Tiling
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
 from vedette.maps.bounds import Bounds
 from vedette.maps.disc import cells_under
+from vedette.maps.lattice import Lattice
 from vedette.missions.explore.learning import Learning
 from vedette.missions.explore.own_map import OwnMap
 from vedette.team import PlatformSpec
@@ -38,8 +39,9 @@ _NOTHING = np.empty(0, np.int64)
 class OwnEvidence:
     """One robot's log-odds of each cell, which of them are news, and what it learns of seeing."""
 
-    frame: GridFrame  # of the team's lattice
+    lattice: Lattice  # the team's
     spec: PlatformSpec
+    beyond: int = 0  # beams, or cells of its own map, that told of ground where there are no cells
     log_odds: TiledGrid[np.int8] = field(init=False)
     learning: Learning = field(init=False)
     seen: Bounds = field(default_factory=Bounds)  # of its cells
@@ -49,6 +51,11 @@ class OwnEvidence:
         tiling = Tiling(*self.frame.shape)
         self.log_odds = TiledGrid(tiling, np.int8)
         self.learning = Learning(tiling, self.frame.resolution, self.spec.range, self._nudge)
+
+    @property
+    def frame(self) -> GridFrame:
+        """Where the cells lie that there can be."""
+        return self.lattice.frame
 
     @property
     def counts(self) -> NDArray[np.int64]:
@@ -79,6 +86,8 @@ class OwnEvidence:
         cells = (row + extent[0].start) * self.frame.cols + col + extent[1].start
         self.log_odds.put(cells, evidence.flat[changed])
         self._note(cells)
+        if not self.lattice.bounded:
+            self.beyond = own_map.beyond(self.frame)
 
     def add(self, scan: Scan, pose: Pose, mates: Sequence[Mate], now: float) -> None:
         """Add a scan; returns from team-mates are not obstacles, and where the robot stands is free."""
@@ -98,6 +107,18 @@ class OwnEvidence:
             changed = lidar.integrate_scan(*beams, GAIN_HIT, GAIN_MISS, CLAMP, nudge)
         self._note(changed)
         self._stand(pose)
+        if not self.lattice.bounded:
+            self.beyond += self._ended_beyond(x, y, angles, ranges)
+
+    def _ended_beyond(
+        self, x: float, y: float, angles: NDArray[np.float64], ranges: NDArray[np.float64]
+    ) -> int:
+        """Count the beams from (x, y) [m], from the corner of the grid, that ended where there is no cell."""
+        reach, (rows, cols), cell = self.spec.range, self.frame.shape, self.frame.resolution
+        if reach <= x <= cols * cell - reach and reach <= y <= rows * cell - reach:
+            return 0
+        row, col = (y + ranges * np.sin(angles)) / cell, (x + ranges * np.cos(angles)) / cell
+        return int(np.count_nonzero((row < 0.0) | (col < 0.0) | (row > rows) | (col > cols)))
 
     @property
     def _nudge(self) -> float:

@@ -75,7 +75,7 @@ class Exploring:
     def __post_init__(self) -> None:
         self.codec = MapImpactCodec(self.frame.coarse(planning_factor(self.frame.resolution)).size)
         self.platform = self.planner.platform(self.spec)
-        self.own = OwnEvidence(self.frame, self.spec)
+        self.own = OwnEvidence(self.lattice, self.spec)
         self._looking = Looking(self.spec, self.frame.resolution)
         self._resort = LastResort(self._looking)
         self._doubts = Doubts(self.spec.radius)

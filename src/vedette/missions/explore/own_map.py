@@ -40,6 +40,14 @@ class OwnMap:
             bounds.hold(first_row, end_row, first_col, end_col)
         return bounds
 
+    def beyond(self, frame: GridFrame) -> int:
+        """Count the cells of this map that say something of ground outside a frame."""
+        row, col = np.nonzero(self.classes != UNKNOWN)
+        along, up = self.resolution * (col + 0.5), self.resolution * (row + 0.5)
+        c, s = cos(self.heading), sin(self.heading)
+        places = np.column_stack((self.x + c * along - s * up, self.y + s * along + c * up))
+        return int(np.count_nonzero(~frame.holds(places)))
+
     def laid(self, frame: GridFrame) -> NDArray[np.uint8]:
         """Return the classes ``(rows, cols)`` of a frame's cells as this map has them.
 

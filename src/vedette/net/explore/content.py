@@ -74,7 +74,8 @@ class ExploreTeller:
             classes *= lattice.area.holds(lattice.frame.window(*extent))
         cells = np.count_nonzero(classes)
         share = None if lattice.cells is None else float(cells / lattice.cells)
-        return Known(share, float(cells) * lattice.frame.resolution**2, mission.frontiers)
+        area = float(cells) * lattice.frame.resolution**2
+        return Known(share, area, mission.frontiers, mission.own.beyond, lattice.room)
 
     def path(self, now: float) -> NDArray[np.float64]:
         """Return the way that the robot wants to go."""
@@ -144,6 +145,7 @@ def view_of(
         digest=condition.digest,
         left_out=left_out([Leftover(*spot) for spot in told.left_out], name),
         frontiers=condition.frontiers,
+        beyond=condition.beyond,
     )
 
 

@@ -11,15 +11,16 @@ import numpy as np
 
 from vedette.agent import Agent
 from vedette.agent.body import Body, Shown
+from vedette.errors import InputError
 from vedette.maps.lattice import Lattice
 from vedette.maps.world import World
 from vedette.missions.explore.assemble import assemble, terms_of
 from vedette.missions.explore.options import ExploreOptions
-from vedette.net.config import AgentConfig, BodySettings
+from vedette.net.config import RESOLUTION, AgentConfig, BodySettings
 from vedette.net.explore.content import ExploreTeller
 from vedette.net.names import robot_name
 from vedette.net.own import OwnSettings
-from vedette.net.real import RESOLUTION, real_robot, shows
+from vedette.net.real import real_robot, shows
 from vedette.net.robot import Robot
 from vedette.net.simulated import simulated_robot
 from vedette.team import Most, PlatformSpec
@@ -76,12 +77,25 @@ def _simulated(config: AgentConfig, folder: Path, options: ExploreOptions) -> _P
 def _real(config: AgentConfig, options: ExploreOptions) -> _Place:
     lattice = options.lattice(config.body.resolution or RESOLUTION)
     body = real_robot(config)
+    _check_place(body, body.hull, lattice)
     return _Place(lattice, body.hull, body, None, {}, body.time, shows(config, body))
 
 
 def _own(body: BodySettings, own: OwnSettings, name: str, folder: Path, options: ExploreOptions) -> _Place:
-    spec = body.spec(name)
-    return _Place(options.lattice(body.resolution or RESOLUTION), spec, own.body(spec, folder), None, {})
+    spec, lattice = body.spec(name), options.lattice(body.resolution or RESOLUTION)
+    made = own.body(spec, folder)
+    _check_place(made, spec, lattice)
+    return _Place(lattice, spec, made, None, {})
+
+
+def _check_place(body: Body, spec: PlatformSpec, lattice: Lattice) -> None:
+    """Refuse a robot that sees nothing of the team's ground from where it is."""
+    (x, y, _), (x_min, x_max, y_min, y_max) = body.pose, lattice.frame.extent
+    if max(x_min - x, x - x_max, y_min - y, y - y_max) > spec.range:
+        raise InputError(
+            f"body: the robot stands at {x:.1f}, {y:.1f} m, and the team's ground is {lattice.room}; mend "
+            "where it starts in the team's frame, or explore.area"
+        )
 
 
 def _fingerprint(world: World) -> str:

@@ -169,6 +169,7 @@ class ExploreObserver:
             known_m2=known_m2,
             rate_m2_s=known_m2 / time if time > 0.0 else 0.0,
             frontiers=frontiers_left(views),
+            beyond=sum(view.beyond for view in views),
             map_errors=wrong,
             map_error_share=wrong / known if known else 0.0,
             overlap=overlap([view.seen_on(self._world.frame) for view in views]),

@@ -41,6 +41,7 @@ class ExploreSummary(MissionSummary):
     known_m2: float
     rate_m2_s: float
     frontiers: int | None
+    beyond: int
     map_errors: int
     map_error_share: float
     path_m: Mapping[str, float]

@@ -40,6 +40,7 @@ class RobotView:
     digest: int  # of what it holds, equal for two that hold the same
     left_out: tuple[LeftOut, ...] = ()
     frontiers: int | None = None  # of its latest round; None: there has been none
+    beyond: int = 0  # beams, or cells of its own map, that told of ground where there is no room for any
 
     def classes_on(self, frame: GridFrame) -> NDArray[np.uint8]:
         """Return its map as ``(R, C)`` of a grid of the observer's."""

@@ -90,6 +90,7 @@ def _view(simulation: ExploreSimulation, i: int) -> RobotView:
         mission.fusion.digest,
         left_out(mission.left_out, sample.name),
         mission.frontiers,
+        mission.own.beyond,
     )
 
 
