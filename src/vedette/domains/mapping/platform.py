@@ -102,6 +102,7 @@ class MappingPlatform:
     spec: PlatformSpec
     max_stops: int = 6
     measured: str = "unknown"  # sighting model: "unknown" length or "distance" (the paper's), or "beam"
+    stall: float = 0.0  # how often it gets stuck for good [1/m]
     x: float = 0.0
     y: float = 0.0
     obstacles: list[Disc] = field(default_factory=list)
@@ -204,7 +205,15 @@ class MappingPlatform:
             found = look(belief, ground, self.spec, close=close, closer=closer, last=last, effort=effort)
             for lot in by_way(found.only(~np.isin(found.clusters, tried)), ground):
                 stops = find_stops(
-                    belief, ground, self.spec, model, least, lot, dare=dare, tours=self.ahead > 1
+                    belief,
+                    ground,
+                    self.spec,
+                    model,
+                    least,
+                    lot,
+                    dare=dare,
+                    tours=self.ahead > 1,
+                    stall=self.stall,
                 )
                 self.considered = np.concatenate((self.considered, stops.targets))
                 self.stops = self._without_left_alone(stops, LEFT_ALONE_AT_LAST if last else LEFT_ALONE)

@@ -119,6 +119,7 @@ def find_stops(
     *,
     dare: float = 0.0,
     tours: bool = True,
+    stall: float = 0.0,
 ) -> Stops:
     """Turn viewpoints into stops that reveal at least ``least_area`` [m^2] in expectation.
 
@@ -127,6 +128,8 @@ def find_stops(
     In a large building a stop must promise more than in a small one, and a gap that the body does not fit
     through more than another: behind most of them is the inside of a wall or of furniture, and nothing leads
     on.  docs/theory.md (V66)
+    A robot that stalls, ``stall`` times a metre, does not get there with the probability that grows with the
+    way: it then stands where nothing is unknown.  docs/theory.md (V107)
     Legs between stops are worked out for ``tours`` only; else they are infinite.
     """
     frame, targets, views = belief.frame, found.targets, found.views
@@ -141,13 +144,16 @@ def find_stops(
     enough = area * frame.resolution**2 >= asked
     starts, cells, shares = _select(starts, cells, shares, enough)
     targets, views = targets[enough], views[enough]
+    way = ground.field.ravel()[views]
+    arrives = np.exp(-stall * np.where(np.isfinite(way), way, 0.0)).astype(np.float32)
+    expected = shares * np.repeat(arrives, np.diff(starts))
     target_points, view_points = frame.centres(targets), frame.centres(views)
     return Stops(
         target_points,
         view_points,
         np.array([unknown_near(belief.classes, frame, x, y) for x, y in target_points], np.int64),
-        Footprints(starts, belief.planning_cells(cells), quantise(shares)),
-        ground.field.ravel()[views] / np.float32(spec.speed),
+        Footprints(starts, belief.planning_cells(cells), quantise(expected)),
+        way / np.float32(spec.speed),
         _legs(belief, ground, views) / np.float32(spec.speed) if tours else _no_legs(len(views)),
     )
 

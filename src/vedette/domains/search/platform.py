@@ -20,13 +20,14 @@ from vedette.domains.search.flights import (
     time_to,
 )
 from vedette.domains.search.goals import NO_GOALS, Goals, find_goals, promise, share_left
+from vedette.domains.search.gusts import expected_footprints
 from vedette.domains.search.impact import Impact
 from vedette.domains.search.options import FlightOptions, boxes_of, quantised_looks, with_promises
 from vedette.domains.search.paths import impact_of
 from vedette.errors import InputError
 from vedette.kernels import search
 from vedette.problem import Reach
-from vedette.vehicle import drive
+from vedette.vehicle import CALM, Gust, check_gusts, drive
 
 MOST_CANDIDATES = 300
 HYSTERESIS = 0.01  # a new flight must gain this share more than the present one
@@ -56,6 +57,7 @@ class SearchPlatform:
     controls: int = 5
     choices: int = 3  # turn rates, odd
     looks: int | None = None  # a step; None: enough to move by half the range between two
+    gusts: tuple[Gust, ...] = CALM  # winds that may carry it off its way
     pose: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
     present: Flight | None = None
     options: FlightOptions | None = None
@@ -73,6 +75,7 @@ class SearchPlatform:
                 f"{self.choices} choices in each of {self.controls} controls are more than {MOST_CANDIDATES} "
                 "candidates; take fewer controls: each is then held for longer"
             )
+        check_gusts(self.gusts)
         if self.looks is not None and self.looks < 1:
             raise InputError(f"looks must be at least 1 a step; got {self.looks}")
 
@@ -101,7 +104,9 @@ class SearchPlatform:
         turn_rates = np.vstack((present, np.hstack((np.tile(kept, (len(chosen), 1)), chosen))))
         tree = branches(turn_rates)
         poses = look_poses(tree, self.pose, self.speed, belief.dt, self.looks_a_step(belief.dt))
-        starts, cells, probability = self.detector.footprints(belief.frame, poses)
+        starts, cells, probability = expected_footprints(
+            self.detector, belief.frame, tree, poses, belief.dt, self.gusts
+        )
         paths = quantised_looks(tree, starts, cells, probability)
         after, delays = self._afterwards(belief, goals, poses[tree.ends, -1], len(towards))
         places = [tuple(place) for place in goals.places.tolist()]

@@ -58,6 +58,25 @@ def discounted(horizon: int, gamma: float, tail: float = 1.0) -> Worth:
     return _worth(np.float64(gamma) ** np.arange(max(horizon, 0)), tail)
 
 
+def endless(horizon: int, gamma: float, tail: float = 1.0) -> Worth:
+    """``w_k = gamma^k`` for ever: as `discounted`, and what is promised counts by when it would be detected.
+
+    A promise ``D`` horizons after the horizon is worth ``gamma^(K (1 + D))`` instead of a share of the last
+    step's: so gamma alone says how far ahead the team looks. docs/search.md (V56)
+
+    Raises:
+        InputError: gamma is not in (0, 1), or nothing is promised.
+    """
+    if not 0.0 < gamma < 1.0:
+        raise InputError(f"gamma must be more than 0 and less than 1 for an endless horizon; got {gamma}")
+    if not (math.isfinite(tail) and 0.0 < tail <= 1.0):
+        raise InputError(f"tail must be more than 0 and at most 1 for an endless horizon; got {tail}")
+    ahead = np.concatenate((np.arange(max(horizon, 0)), horizon * (1.0 + DELAYS)))
+    weights = np.power(gamma, ahead, dtype=np.float64)
+    weights[max(horizon, 0) :] *= tail
+    return Worth(weights, horizon)
+
+
 def mean_time(horizon: int, tail: float = 1.0) -> Worth:
     """``w_k = 1 - k / K``: the largest psi has the least mean time to detection, cut at the horizon K.
 
@@ -75,4 +94,4 @@ def _worth(weights: NDArray[np.float64], tail: float) -> Worth:
     return Worth(np.append(weights, tail * weights[-1] / (1.0 + DELAYS)), len(weights))
 
 
-WORTHS = {"plain": plain, "discounted": discounted, "mean-time": mean_time}
+WORTHS = {"plain": plain, "discounted": discounted, "endless": endless, "mean-time": mean_time}

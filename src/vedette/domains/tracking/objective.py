@@ -55,19 +55,28 @@ class TrackingObjective(Objective[Tracks, Impact]):
     def values(self, belief: Tracks, others: Impact, own: Sequence[Impact]) -> NDArray[np.float64]:
         """``value(others * own_k)`` for every k, by one kernel call that redoes only what own_k sees."""
         rows = impacts.stack(own, belief.blocks)
-        near = (rows.targets, _near(rows.blocks, belief))
-        values = chain_values(
-            belief.motion, self.measure, (others.targets, _near(others.blocks, belief)), rows.starts, near
-        )
+        values = self._within(belief, others, rows)
         return values + self._after(belief, others, rows) if belief.layers else values
+
+    def _within(self, belief: Tracks, others: Impact, rows: Impacts) -> NDArray[np.float64]:
+        """The horizon's part of the values."""
+        near = (rows.targets, _near(rows.blocks, belief))
+        theirs = (others.targets, _near(others.blocks, belief))
+        return chain_values(belief.motion, self.measure, theirs, rows.starts, near)
+
+    def layer_weights(self, belief: Tracks) -> NDArray[np.float64]:
+        """(B,) What a nat is worth in each layer after the horizon."""
+        return belief.tail.weights
 
     def _after(self, belief: Tracks, others: Impact, rows: Impacts) -> NDArray[np.float64]:
         """The tail's part of the values."""
         tail, k = belief.tail, belief.horizon
         theirs = np.zeros((len(belief), len(belief.layers), 3))
         theirs[others.targets] = others.blocks[:, k:]
-        before = tail.worth(np.arange(len(belief)), theirs)
-        more = tail.worth(rows.targets, theirs[rows.targets] + rows.blocks[:, k:]) - before[rows.targets]
+        weights = self.layer_weights(belief)
+        before = tail.worth(np.arange(len(belief)), theirs, weights)
+        then = tail.worth(rows.targets, theirs[rows.targets] + rows.blocks[:, k:], weights)
+        more = then - before[rows.targets]
         whose = np.repeat(np.arange(len(rows)), np.diff(rows.starts))
         return np.asarray(before.sum() + np.bincount(whose, more, len(rows)))
 
@@ -78,7 +87,59 @@ class TrackingObjective(Objective[Tracks, Impact]):
 
 def _near(blocks: NDArray[np.float64], belief: Tracks) -> NDArray[np.float64]:
     """Return the horizon's part of blocks (N, K + B, 3)."""
-    return np.ascontiguousarray(blocks[:, : belief.horizon])
+    return _first(blocks, belief.horizon)
+
+
+def _first(blocks: NDArray[np.float64], steps: int) -> NDArray[np.float64]:
+    return np.ascontiguousarray(blocks[:, :steps])
+
+
+class Endless(TrackingObjective):
+    """``sum_k gamma^(k-1) 1/2 ln det(1 + P_{k|k-1} I_k)`` over all time to come, gamma a step's discount.
+
+    A sum of the trajectory's gains over the first 1, 2, ... steps with weights >= 0, as gamma^k falls: so it
+    is monotone and submodular as they are. Beyond the horizon layers count by the discount of their steps,
+    the last one for ever. docs/tracking.md (V91)
+    """
+
+    gamma = 0.98  # a second
+
+    def discount(self, belief: Tracks) -> float:
+        """Of a step."""
+        return float(self.gamma**belief.dt)
+
+    def _within(self, belief: Tracks, others: Impact, rows: Impacts) -> NDArray[np.float64]:
+        """``sum_k (gamma^(k-1) - gamma^k) J_k + gamma^(K-1) J_K``, J_k the gain of the first k steps."""
+        return np.asarray(
+            sum(
+                weight
+                * chain_values(
+                    belief.motion,
+                    self.measure,
+                    (others.targets, _first(others.blocks, k)),
+                    rows.starts,
+                    (rows.targets, _first(rows.blocks, k)),
+                )
+                for k, weight in enumerate(self._weights(belief), 1)
+            )
+        )
+
+    def _weights(self, belief: Tracks) -> list[float]:
+        gamma = self.discount(belief)
+        falls = [gamma ** (k - 1) * (1.0 - gamma) for k in range(1, belief.horizon)]
+        return [*falls, gamma ** (belief.horizon - 1)]
+
+    def layer_weights(self, belief: Tracks) -> NDArray[np.float64]:
+        """(B,) Discounted steps in each layer."""
+        return belief.tail.discounted(belief.horizon, self.discount(belief))
+
+    def gradient(self, belief: Tracks, team: Impact) -> NDArray[np.float64]:
+        """Derivative of the horizon's part by each number in ``team.blocks``, (M, K, 3)."""
+        total = np.zeros((len(team.targets), belief.horizon, 3))
+        for k, weight in enumerate(self._weights(belief), 1):
+            part = chain_gradient(belief.motion, self.measure, (team.targets, _first(team.blocks, k)))
+            total[:, :k] += weight * part
+        return total
 
 
 class FinalEntropy(TrackingObjective):
@@ -106,6 +167,7 @@ class FinalVariance(TrackingObjective):
 
 OBJECTIVES: dict[str, type[TrackingObjective]] = {
     "trajectory": TrackingObjective,
+    "endless": Endless,
     "final-entropy": FinalEntropy,
     "final-variance": FinalVariance,
 }

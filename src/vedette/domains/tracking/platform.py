@@ -20,7 +20,7 @@ from vedette.domains.tracking.sensing import Sensor
 from vedette.domains.tracking.transit import nearest_worth, times_to_see
 from vedette.errors import InputError
 from vedette.problem import Reach
-from vedette.vehicle import drive
+from vedette.vehicle import carried, drive
 
 MOST_OTHERS = 8  # targets beside the present one that it may go to after the horizon
 EPSILON = 1e-9  # a new course must gain this share more than the present one
@@ -44,6 +44,7 @@ class TrackingPlatform:
     continuous: bool = False  # improve the best sequence of right, straight and left by its gradient
     pose: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))  # [m, m, rad], team frame
     present: Course | None = None
+    wind: tuple[float, float] = (0.0, 0.0)  # that carries it off its way [m/s], team frame
     courses: list[Course] = field(default_factory=list)  # that are compared; set by prepare
     candidates: Impacts | None = None  # what each would observe
     _near: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
@@ -141,6 +142,7 @@ class TrackingPlatform:
 
     def _impacts(self, belief: Tracks, courses: Sequence[Course]) -> Impacts:
         poses = drive(self.pose, np.array([course.rates for course in courses]), self.speed, belief.dt)
+        poses = carried(poses, belief.dt * np.arange(1.0, belief.horizon + 1.0), self.wind)
         near = self.sensor.foresee(poses, *self._expected(belief), self.speed * belief.dt)
         if not belief.layers:
             return impacts.stack_dense(near, self._near)

@@ -43,10 +43,26 @@ class Tail:
         """(B, T) Geometric means of the variances of a position [m^2]."""
         return np.asarray(np.sqrt(np.linalg.det(self.covariances)))
 
-    def worth(self, targets: NDArray[np.int64], blocks: NDArray[np.float64]) -> NDArray[np.float64]:
-        """``sum_b w_b 1/2 ln det(1 + P_b I_b)`` of rows (N,) of targets with information (N, B, 3)."""
+    def discounted(self, before: int, gamma: float) -> NDArray[np.float64]:
+        """(B,) ``sum gamma^k`` over the steps k of each layer, after so many before; the last never ends."""
+        ends = before + np.array((0.0, *self.ends[:-1])) / self.dt
+        left = gamma**ends / (1.0 - gamma)
+        return np.asarray(left - np.append(left[1:], 0.0))
+
+    def worth(
+        self,
+        targets: NDArray[np.int64],
+        blocks: NDArray[np.float64],
+        weights: NDArray[np.float64] | None = None,
+    ) -> NDArray[np.float64]:
+        """``sum_b w_b 1/2 ln det(1 + P_b I_b)`` of rows (N,) of targets with information (N, B, 3).
+
+        ``weights``: (B,) of the layers; without them their steps.
+        """
         p = self.covariances[:, targets].swapaxes(0, 1)
         xx, xy, yy = np.moveaxis(blocks, -1, 0)
         a, b, c = p[..., 0, 0], p[..., 0, 1], p[..., 1, 1]
         growth = a * xx + 2.0 * b * xy + c * yy + (a * c - b * b) * (xx * yy - xy * xy)  # (V37)
-        return np.asarray((0.5 * np.log1p(np.maximum(growth, 0.0))) @ self.weights)
+        return np.asarray(
+            (0.5 * np.log1p(np.maximum(growth, 0.0))) @ (self.weights if weights is None else weights)
+        )

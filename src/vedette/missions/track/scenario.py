@@ -103,7 +103,7 @@ class TrackScenario(Struct, forbid_unknown_fields=True, frozen=True, kw_only=Tru
     horizon: Annotated[int, Meta(ge=1, le=50)] = 6  # [steps]
     decisions: Annotated[int, Meta(ge=1, le=5)] = 5  # turn rates chosen independently in a horizon
     tail: Annotated[float, Meta(ge=0.0, le=86400.0)] | None = None  # [s] after the horizon; see ``layers``
-    objective: Literal["trajectory", "final-entropy", "final-variance"] = "trajectory"
+    objective: Literal["trajectory", "endless", "final-entropy", "final-variance"] = "trajectory"
 
     @property
     def vehicle_names(self) -> list[str]:
@@ -125,7 +125,7 @@ class TrackScenario(Struct, forbid_unknown_fields=True, frozen=True, kw_only=Tru
         """Ends of the layers of time after the horizon [s].
 
         Where no tail is given there is one if the fastest takes longer to cross the area than `FAR` horizons
-        and `LONG`: `TAIL` times as long as that takes.
+        and `LONG`: `TAIL` times as long as that takes. An endless objective has one in any case.
         """
         if self.tail is not None:
             return edges(self.tail)
@@ -133,6 +133,8 @@ class TrackScenario(Struct, forbid_unknown_fields=True, frozen=True, kw_only=Tru
         fastest = max(vehicle.speed for vehicle in self.vehicles)
         crossing = math.hypot(x1 - x0, y1 - y0) / max(fastest, 1e-9)
         far = fastest > 0.0 and crossing > max(LONG, FAR * self.horizon * self.step)
+        if self.objective == "endless" and not far:
+            return edges(TAIL * LONG)
         return edges(TAIL * crossing) if far else ()
 
     def prior(self) -> Tracks:
