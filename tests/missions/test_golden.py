@@ -37,6 +37,7 @@ GOLDEN: dict[str, Any] = {
     "known_m2": 101.05,
     "rate_m2_s": 1.229319,
     "frontiers": 1,
+    "beyond": 0,
     "map_errors": 0,
     "map_error_share": 0.0,
     "path_m": {"robot-1": 35.354265, "robot-2": 36.549873},
