@@ -58,6 +58,13 @@ def test_times_are_the_stamps_that_rise_steadily(tmp_path: Path) -> None:
     assert [scan.time for scan in read(tmp_path, "\n".join(lines)).scans] == [0.0, 0.25, 2.0]
 
 
+def test_readings_of_nothing_and_stamps_that_are_none_do_no_harm(tmp_path: Path) -> None:
+    lines = [flaser([1.0, 0.0, -1.0, 9.0], 0.0, 0.0, 0.0, stamp) for stamp in (math.nan, math.inf, math.nan)]
+    log = read(tmp_path, "\n".join(lines))
+    np.testing.assert_array_equal(log.scans[0].ranges, [1.0, math.nan, math.nan, math.inf])
+    assert [scan.time for scan in log.scans] == pytest.approx([0.0, 0.1, 0.2])
+
+
 @pytest.mark.parametrize("stamps", [(5.0, 5.0, 5.0), (9.0, 3.0, 4.0), (0.0, 1.0, 1000.0)])
 def test_without_such_stamps_the_robot_is_taken_to_drive_half_a_metre_a_second(
     tmp_path: Path, stamps: tuple[float, ...]
@@ -76,6 +83,7 @@ def test_without_such_stamps_the_robot_is_taken_to_drive_half_a_metre_a_second(
         ("FLASER 0 0 0 0 0 0 0 0 h 0", "it must have 1 to 20000 readings, not 0"),
         ("FLASER 2 1 nan 0 0 0 0 0 0 0 h 0", "a number of it is not finite"),
         ("FLASER 1 1 1e9 0 0 0 0 0 0 h 0", "its pose is more than 100000 m from the origin"),
+        ("FLASER 1 1 0 0 1e300 0 0 0 0 h 0", "its heading is 1e\\+300 rad"),
         ("FLASER 1 one 0 0 0 0 0 0 0 h 0", "could not convert"),
         (ROBOTLASER[:60], "line 2: not a ROBOTLASER1 message"),
     ],

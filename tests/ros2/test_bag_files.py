@@ -11,7 +11,7 @@ from mcap.writer import CompressionType
 from rosbags.rosbag2 import CompressionMode, StoragePlugin
 
 from tests.support.recordings import carmen_log
-from tests.support.ros_recordings import Told, tour, write_folder, write_mcap
+from tests.support.ros_recordings import Told, joint, scan, tour, write_folder, write_mcap
 from vedette.cli.recordings import recording
 from vedette.errors import InputError
 from vedette.logs import RecordedLog
@@ -116,6 +116,35 @@ def test_damage_is_told_in_a_line(
     file.unlink()
     assert read_or_refused(folder) is not None
     assert any(said)
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "said"),
+    [
+        ("ranges", np.zeros(0, np.float32), "/scan: ranges has 0 beams; a lidar has at least 2"),
+        ("angle_increment", np.inf, "/scan: angle_increment is inf; it must be a number other than 0"),
+        ("angle_increment", 0.0, "/scan: angle_increment is 0; it must be a number other than 0"),
+        ("range_max", np.nan, "/scan: range_max is nan m; it must be a number above 0"),
+    ],
+)
+def test_a_scan_that_is_none_is_told_with_its_topic_and_field(
+    tmp_path: Path, field: str, value: object, said: str
+) -> None:
+    made = scan(1.0, np.full(360, 3.0))
+    setattr(made, field, value)
+    folder = write_folder(tmp_path / "walk", [(1.0, "/scan", made)])
+    assert read_or_refused(folder) == f"{folder}: {said}"
+
+
+@pytest.mark.parametrize("x", [np.nan, np.inf, 1e300])
+def test_a_transform_that_leads_nowhere_joins_nothing(tmp_path: Path, x: float) -> None:
+    told: list[Told] = [
+        (0.0, "/tf_static", joint(0.0, "map", "laser", x, 0.0, 0.0)),
+        (1.0, "/scan", scan(1.0, np.full(360, 3.0))),
+    ]
+    assert "TF joins no scan's frame laser to map" in (
+        read_or_refused(write_folder(tmp_path / "walk", told)) or ""
+    )
 
 
 def test_what_is_no_recording_is_called_by_its_name(

@@ -21,6 +21,7 @@ SAME = 0.2  # readings so near the longest one say that nothing came back [m]
 MOST_READINGS = 20_000  # of a scan
 LONGEST_LINE = 1_000_000  # [bytes]
 FARTHEST = 1e5  # from the origin, of a pose [m]
+MOST_TURNED = 1e4  # by a robot whose heading grows with each turn [rad]
 _GZIP = b"\x1f\x8b"
 
 
@@ -39,7 +40,8 @@ def read_carmen(path: Path) -> RecordedLog:
     """Read the front lidar's scans of a CARMEN log: ``FLASER`` and ``ROBOTLASER1``, other messages aside.
 
     The pose is the lidar's own, corrected by mapping if the log is. A reading as long as the longest of the
-    log, or as the lidar's range where the line gives it, is one that did not come back.
+    log, or as the lidar's range where the line gives it, is one that did not come back; one of 0 or less is
+    none.
 
     Raises:
         InputError: the file cannot be read, has no scan, or a line that does not fit its own count.
@@ -63,7 +65,11 @@ def read_carmen(path: Path) -> RecordedLog:
             time,
             *each.pose,
             each.pose[2] + each.angles,
-            np.where(each.ranges >= min(longest - SAME, each.range), np.inf, each.ranges),
+            np.select(
+                [each.ranges <= 0.0, each.ranges >= min(longest - SAME, each.range)],
+                [np.nan, np.inf],
+                each.ranges,
+            ),
         )
         for time, each in zip(times([each.stamp for each in readings], poses).tolist(), readings, strict=True)
     )
@@ -123,10 +129,12 @@ def _pose(words: list[bytes]) -> tuple[float, float, float]:
     x, y, heading = _numbers(words, 3).tolist()
     if max(abs(x), abs(y)) > FARTHEST:
         raise ValueError(f"its pose is more than {FARTHEST:g} m from the origin")
+    if abs(heading) > MOST_TURNED:
+        raise ValueError(f"its heading is {heading:g} rad")
     return x, y, heading
 
 
 def _stamp(words: list[bytes]) -> float:
     """Return the time of ``time host time`` that the logger gave, or the robot's, or none."""
-    numbers = [float(word) for word in (words[2:3] or words[:1])]
-    return numbers[0] if numbers else 0.0
+    stamp = next((float(word) for word in (words[2:3] or words[:1])), 0.0)
+    return stamp if math.isfinite(stamp) else 0.0

@@ -19,7 +19,6 @@ from vedette.input_file import open_input
 from vedette.logs import RecordedLog, RecordedMap, RecordedScan
 from vedette.ros2.body import Ros2Body
 from vedette.ros2.recorded import KINDS, MAPS, PATCHES, SCANS, STEP, OwnMaps, Recorded, RecordedDoor, scans_of
-from vedette.ros2.scans import Lidar
 from vedette.ros2.settings import Ros2Settings
 from vedette.team import PlatformSpec
 
@@ -51,9 +50,9 @@ def read_bag(path: Path, settings: Ros2Settings, evidence: str | None = None) ->
         heard = _heard(path, replace(settings, evidence="map"))
     if not heard.scans and not heard.maps:
         raise InputError(f"{path}: {_why(heard)}")
-    latest = heard.body.latest
-    lidar = 0.0 if latest is None else Lidar.of(latest, settings.scan).range
-    return RecordedLog(path.stem, tuple(heard.scans), lidar, tuple(heard.maps))
+    lidar = heard.door.lidar
+    reach = 0.0 if lidar is None else lidar.range
+    return RecordedLog(path.stem, tuple(heard.scans), reach, tuple(heard.maps))
 
 
 @dataclass(eq=False)
@@ -76,7 +75,10 @@ def _heard(path: Path, settings: Ros2Settings) -> _Heard:
             first = stamp if first is None else first
             now = stamp - first
             with _telling(path):
-                door.hear(topic, kind, read)
+                try:
+                    door.hear(topic, kind, read)
+                except InputError as error:
+                    raise InputError(f"{path}: {error}") from error
             if now >= told_at + STEP:
                 heard.maps += own_maps.of(heard.body, now) if maps else ()
                 heard.scans += () if maps else scans_of(heard.body, now)

@@ -35,7 +35,7 @@ def sweep_of(message: Any) -> LaserSweep:
 
 
 def joints_of(message: Any, *, fixed: bool) -> Iterator[Joint]:
-    """Yield the transforms of a ``tf2_msgs/TFMessage``; one whose quaternion is 0 is left out."""
+    """Yield the transforms of a ``tf2_msgs/TFMessage``; what makes no sense is left out."""
     for told in message.transforms:
         T = _transform(told.transform.translation, told.transform.rotation)
         if T is not None:
@@ -50,10 +50,8 @@ def deviation_of(message: Any) -> Deviation:
 def grid_of(message: Any) -> Grid | None:
     """Return a ``nav_msgs/OccupancyGrid``; None: it makes no sense."""
     info, cells = message.info, np.asarray(message.data, np.int8)
-    T = _transform(info.origin.position, info.origin.orientation)
-    T = np.eye(4) if T is None else T
-    lies_somewhere = np.isfinite(T).all() and np.abs(T).max() <= MOST_METRES
-    if not (0.0 < info.resolution <= MOST_SIDE and lies_somewhere) or len(cells) != info.height * info.width:
+    T = _transform(info.origin.position, info.origin.orientation, upright=True)
+    if T is None or not 0.0 < info.resolution <= MOST_SIDE or len(cells) != info.height * info.width:
         return None
     return Grid(message.header.frame_id, info.resolution, T, cells.reshape(info.height, info.width))
 
@@ -66,7 +64,14 @@ def patch_of(message: Any) -> Patch | None:
     return Patch(message.y, message.x, cells.reshape(message.height, message.width))
 
 
-def _transform(at: Any, turn: Any) -> Matrix | None:
-    """Return a translation and a rotation as a matrix; None for a quaternion of zeros."""
-    quaternion = (turn.x, turn.y, turn.z, turn.w)
-    return matrix((at.x, at.y, at.z), quaternion) if any(quaternion) else None
+def _transform(at: Any, turn: Any, *, upright: bool = False) -> Matrix | None:
+    """Return a translation and a rotation as a matrix; None where it is none, or leads nowhere.
+
+    A quaternion of zeros is none; where such things are to be ``upright``, as maps are, it turns nothing.
+    """
+    place, quaternion = (at.x, at.y, at.z), (turn.x, turn.y, turn.z, turn.w)
+    if upright and not any(quaternion):
+        quaternion = (0.0, 0.0, 0.0, 1.0)
+    if not np.isfinite((*place, *quaternion)).all() or max(map(abs, place)) > MOST_METRES:
+        return None
+    return matrix(place, quaternion) if any(quaternion) else None

@@ -14,6 +14,7 @@ from vedette.ros2.door import Grid, Notice, Told
 from vedette.ros2.goals import Place
 from vedette.ros2.grids import classes_of_occupancy
 from vedette.ros2.messages import grid_of, joints_of, patch_of, sweep_of
+from vedette.ros2.scans import Lidar
 from vedette.ros2.settings import Ros2Settings
 from vedette.ros2.transforms import Gap, place
 
@@ -33,17 +34,24 @@ class RecordedDoor:
     navigator: bool = False
     time: float | None = None  # no /clock is needed: the recording has its own
     topics: dict[str, str] = field(default_factory=dict)  # what there was, with its type
+    lidar: Lidar | None = None  # as its first scan has it
     senseless: int = 0  # maps whose size is not what it says
     _told: deque[Told] = field(default_factory=deque)
 
     def hear(self, topic: str, kind: str, read: Callable[[], Any]) -> None:
-        """Take in a message, of whatever topic, if it is the robot's and of use."""
+        """Take in a message, of whatever topic, if it is the robot's and of use.
+
+        Raises:
+            InputError: the first scan is none.
+        """
         self.topics[topic] = kind
         maps = self.settings.evidence == "map"
         if kind == TRANSFORMS and topic in self._names("tf", "tf_static", "/tf", "/tf_static"):
             self._told += joints_of(read(), fixed=topic.endswith("tf_static"))
         elif kind == SCANS and not maps and topic in self._names(self.settings.scan):
-            self._told.append(sweep_of(read()))
+            sweep = sweep_of(read())
+            self.lidar = self.lidar or Lidar.of(sweep, topic)
+            self._told.append(sweep)
         elif kind == MAPS and maps and topic in self._names(self.settings.map):
             self._hear_map(grid_of(read()))
         elif kind == PATCHES and maps and topic in self._names(f"{self.settings.map}_updates"):
