@@ -93,6 +93,36 @@ def test_robots_that_do_not_know_how_far_their_ground_goes_are_told_of_without_a
     assert " left)" in ran.out
 
 
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (("--area", "0,0;4,0"), "area: 2 corners; a polygon has 3 to 1000"),
+        (("--area", ""), "--area: '' must be x,y in m"),
+        (("--area", "0,0;4,0;4;0,4"), "--area: '4' must be x,y in m"),
+        (("--area", "0,0,1;4,0,1;4,4,1"), "--area: '0,0,1' must be x,y in m"),
+        (("--area", "0,0;4,nan;4,4"), "area: corner [4, nan]; give metres within 2.1e+07"),
+        (("--area", "0,0;1e9,0;4,4"), "area: corner [1e+09, 0]; give metres within 2.1e+07"),
+        (
+            ("--area", "1,1;3,3;2,2;4,4"),
+            "area: all corners are on a line; give them in order round the ground",
+        ),
+        (("--area", "3,3;3,3;3,3"), "area: all corners are on a line; give them in order round the ground"),
+        (("--area", "90,90;94,90;94,94"), "that is free lies in it; its corners are in m"),
+        (("--area", "0,0;4,0;4,4", "--starts", "6,2"), "start 6,2 is not all within the area"),
+        (
+            ("--area", "0,0;9e5,0;9e5,9e5", "--unbounded"),
+            "9000000 x 9000000 cells of 0.1 m; at most 67108864",
+        ),
+        (("--area", "5.01,5.01;5.04,5.01;5,5.04", "--unbounded"), "no cell of 0.1 m has its middle in it"),
+    ],
+)
+def test_an_area_that_does_not_fit_is_told_in_one_line(
+    vedette: Command, world: Path, options: tuple[str, ...], said: str
+) -> None:
+    refused(vedette("explore", world / "map.yaml", *options, "--out", "out"), said)
+    assert not Path("out").exists()
+
+
 @pytest.mark.parametrize("corner", [(448262.5, 5411932.25), (-19_999_000.03, 19_999_000.07)])
 def test_a_mission_far_from_the_origin_goes_as_one_that_is_near(
     vedette: Command, world: Path, tmp_path: Path, corner: tuple[float, float]

@@ -88,6 +88,26 @@ def test_two_processes_with_bodies_of_ones_own_explore_a_hall_together(tmp_path:
     assert one["frontiers"] == 0
 
 
+@real_time
+def test_a_robot_at_the_end_of_all_room_says_once_that_what_it_sees_beyond_is_left_out(
+    tmp_path: Path,
+) -> None:
+    (tmp_path / "own_body.py").write_text(EXAMPLE.read_text())
+    own = {"make": "own_body:HallRobot", "settings": {"size": [412.0, HEIGHT]}}
+    path = write(tmp_path, 1, [free_port()], own=own, start=[408.0, 3.0, 0.0])
+    path.write_bytes(yaml.encode(yaml.decode(path.read_bytes()) | {"robots": 1}))
+    command = [sys.executable, "-m", "vedette", "agent", str(path), "--speed", "10"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as agent:
+        beyond = []
+        wait_until(
+            lambda: [beyond.append(said["beyond"]) for said in told([path]) if said] and beyond[-1], 60.0
+        )
+        agent.terminate()
+        _, err = agent.communicate(timeout=30.0)
+    line = "vedette: what the robot sees beyond x -409.6 to 409.6 m, y -409.6 to 409.6 m is left out: "
+    assert [each.startswith(line) for each in err.splitlines()].count(True) == 1, err
+
+
 def test_the_example_takes_at_most_forty_lines_and_is_the_one_that_is_explained() -> None:
     code = EXAMPLE.read_text(encoding="utf-8")
     assert len(code.splitlines()) <= 40

@@ -35,9 +35,7 @@ class Area:
         for x, y in points:
             if not (abs(x) <= MOST_METRES and abs(y) <= MOST_METRES):
                 raise InputError(f"area: corner [{x:g}, {y:g}]; give metres within {MOST_METRES:g}")
-        if max(x for x, _ in points) == min(x for x, _ in points) or (
-            max(y for _, y in points) == min(y for _, y in points)
-        ):
+        if _on_a_line(points):
             raise InputError("area: all corners are on a line; give them in order round the ground")
         return cls(points)
 
@@ -66,3 +64,11 @@ class Area:
     def close(self, classes: NDArray[np.uint8], frame: GridFrame) -> NDArray[np.uint8]:
         """Return the ``(R, C)`` classes of a grid with walls wherever the ground is not the team's."""
         return np.where(self.holds(frame), classes, np.uint8(OCCUPIED))
+
+
+def _on_a_line(points: Sequence[tuple[float, float]]) -> bool:
+    """Tell whether no three of some points make a triangle, up to rounding."""
+    away = np.array(points) - points[0]
+    far = away[np.hypot(*away.T).argmax()]
+    off = np.abs(away[:, 0] * far[1] - away[:, 1] * far[0])
+    return bool(off.max() <= 1e-9 * (far @ far))
