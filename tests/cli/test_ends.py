@@ -58,7 +58,7 @@ def test_only_ends_with_status_0_are_completed_or_ordered() -> None:
 def test_what_there_was_no_room_for_is_counted_with_the_remedy() -> None:
     lines = closing(replace(summary(Outcome.COMPLETE), beyond=1), Path("runs"))
     assert lines[1] == (
-        "left out: 1 sighting farther off than there is room for; --area says where the ground is"
+        "left out: 1 beam farther off than there is room for; --area says where the ground is"
     )
 
 

@@ -82,6 +82,6 @@ def test_of_ground_whose_size_nobody_knows_no_share_is_told_but_how_much_how_fas
     cells = [line.split("│")[3].strip() for line in rows if re.match("│ robot-[12].*old", line)]
     assert cells == ["120 m², 4.0 m²/s, 3 frontiers left", "25.0 %"]
     lost = said({0: replace(open_ground, beyond=17)})
-    assert any("3 frontiers left, 17 sightings beyond all room" in line for line in lost)
+    assert any("3 frontiers left, 17 beams beyond all room" in line for line in lost)
     robots = json.loads(team_status({0: open_ground}).to_json())["robots"]
     assert (robots["robot-1"]["known"], robots["robot-1"]["known_m2"]) == (None, 120.4)

@@ -175,7 +175,7 @@ def closing(summary: ExploreSummary, folder: Path) -> list[str]:
     if summary.beyond:
         lines.insert(
             1,
-            f"left out: {many(summary.beyond, 'sighting')} farther off than there is room for; --area says "
+            f"left out: {many(summary.beyond, 'beam')} farther off than there is room for; --area says "
             "where the ground is",
         )
     if summary.left_out:

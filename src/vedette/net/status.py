@@ -119,7 +119,7 @@ def _known(said: Condition) -> str:
     lasted = 0.0 if said.began is None else said.time - said.began
     rate = f", {said.known_m2 / lasted:.1f} m²/s" if lasted > 0.0 else ""
     left = "" if said.frontiers is None else f", {many(said.frontiers, 'frontier')} left"
-    beyond = f", {said.beyond} sightings beyond all room" if said.beyond else ""
+    beyond = f", {said.beyond} beams beyond all room" if said.beyond else ""
     return f"{said.known_m2:.0f} m²{rate}{left}{beyond}"
 
 
