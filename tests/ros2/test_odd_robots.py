@@ -20,8 +20,8 @@ pytestmark = pytest.mark.slow
     [
         {"upside_down": True, "mount": [0.1, 0.05, 20.0]},
         {"clockwise": True, "speckle": 0.1},
-        {"rolling": True, "mount": [0.1, 0.0, 0.0], "turn_rate": 2.0},
-        {"rolling": True, "clockwise": True},
+        {"rolling": True, "mount": [0.1, 0.0, 0.0], "beams": 180},
+        {"rolling": True, "clockwise": True, "beams": 180},
         {"view": 180.0, "mount": [0.12, 0.0, 0.0]},
         {"rate": 2.0, "beams": 90},
     ],

@@ -11,7 +11,9 @@ from builtin_interfaces.msg import Time
 from numpy.typing import NDArray
 from sensor_msgs.msg import LaserScan
 
-Look = Callable[[], Mapping[str, Any]]  # what ir-sim's lidar sees from where it is now
+PARTS = 3  # of a step, for a lidar that measures one beam after another
+Look = Callable[[float], Mapping[str, Any]]
+"""What ir-sim's lidar sees from where it was at a share of the latest step; at 1 from where it is now."""
 
 
 @dataclass(eq=False)
@@ -22,28 +24,37 @@ class Lidar:
     frame: str
     step: float  # of the simulation [s]
     next: float = 0.0
-    _parts: list[tuple[Time, NDArray[np.float64]]] = field(default_factory=list)  # of a turn that goes on
+    _parts: list[NDArray[np.float64]] = field(default_factory=list)  # of a turn that goes on: ranges [m]
+    _began: Time | None = None  # when that did
     _rng: np.random.Generator = field(default_factory=lambda: np.random.default_rng(0))
 
     def sweep(self, now: float, stamp: Time, look: Look) -> tuple[LaserScan, Mapping[str, Any]] | None:
         """Return a scan and what was seen in the end, if one is due; looking costs most of the time."""
-        parts = max(round(1.0 / (self.spec["rate"] * self.step)), 1) if self.spec["rolling"] else 1
-        if not self._parts and now < self.next - 1e-9:
-            return None
-        seen = look()
-        self._parts.append((stamp, np.asarray(seen["ranges"], np.float64).ravel()))
-        if len(self._parts) < parts:
+        if self.spec["rolling"]:
+            return self._turn(stamp, look)
+        if now < self.next - 1e-9:
             return None
         self.next += 1.0 / self.spec["rate"]
-        pieces, first = self._parts, self._parts[0][0]
-        self._parts = []
-        n = len(pieces[0][1])
-        share = np.arange(n) * parts // n  # of the turn, when each was measured
+        seen = look(1.0)
+        return self._scan(stamp, seen, np.asarray(seen["ranges"], np.float64).ravel()), seen
+
+    def _turn(self, stamp: Time, look: Look) -> tuple[LaserScan, Mapping[str, Any]] | None:
+        """Look a part of the beams at a time, from where the robot was then; when all are through, a scan."""
+        self._began = self._began or _earlier(stamp, self.step)
+        for part in range(PARTS):
+            seen = look((part + 0.5) / PARTS)
+            self._parts.append(np.asarray(seen["ranges"], np.float64).ravel())
+        count = PARTS * max(round(1.0 / (self.spec["rate"] * self.step)), 1)
+        if len(self._parts) < count:
+            return None
+        n = len(self._parts[0])
+        part_of = np.arange(n) * count // n
         if self.spec["upside_down"] != self.spec["clockwise"]:
-            share = share[::-1]
-        ranges = np.choose(share, [ranges for _, ranges in pieces])
-        told = self._scan(first, seen, ranges)
-        told.time_increment = self.step * parts / n if parts > 1 else 0.0
+            part_of = part_of[::-1]
+        ranges = np.array(self._parts)[part_of, np.arange(n)]
+        told = self._scan(self._began, seen, ranges)
+        told.time_increment = self.step * count / PARTS / n
+        self._began, self._parts = None, []
         return told, seen
 
     def _scan(self, stamp: Time, seen: Mapping[str, Any], ranges: NDArray[np.float64]) -> LaserScan:
@@ -63,3 +74,9 @@ class Lidar:
             told.angle_increment, ranges = -told.angle_increment, ranges[::-1]
         told.ranges = ranges.astype(np.float32).tolist()
         return told
+
+
+def _earlier(stamp: Time, span: float) -> Time:
+    """Return a time so much before another [s]."""
+    nanoseconds = stamp.sec * 10**9 + stamp.nanosec - round(span * 1e9)
+    return Time(sec=nanoseconds // 10**9, nanosec=nanoseconds % 10**9)

@@ -102,11 +102,12 @@ class Strangers:
             body.sensors = []  # lidars look when a scan is due, not at every step
         return env
 
-    def _look(self, i: int) -> Any:
-        """Return what a robot's lidar sees now."""
-        body = self._env.robot_list[i]
-        body.lidar.step(body.state[0:3])
-        return body.lidar.get_scan()
+    def _look(self, i: int, before: Pose, share: float) -> Any:
+        """Return what a robot's lidar sees from a share of the way from where it was ``before``."""
+        lidar, here = self._env.robot_list[i].lidar, self.pose(i)
+        at = [then + share * (now - then) for then, now in zip(before, here, strict=True)]
+        lidar.step(np.array(at)[:, None])
+        return lidar.get_scan()
 
     def _body(self, i: int) -> dict[str, Any]:
         spec = self._specs[i]
@@ -152,7 +153,7 @@ class Strangers:
         if self._clock is not None:
             self._clock.publish(Clock(clock=stamp))
         for i, robot in enumerate(self.robots):
-            robot.tell(self.now, stamp, self.pose(i), moving[i], partial(self._look, i))
+            robot.tell(self.now, stamp, self.pose(i), moving[i], partial(self._look, i, poses[i]))
 
     def _stamp(self) -> Time:
         if self._sim_time:
