@@ -137,6 +137,17 @@ def test_a_robot_whose_clocks_agree_is_begun_with_at_once_whatever_this_hosts_cl
     assert body.hull.view == pytest.approx(np.degrees(1.1))
 
 
+def test_frames_that_come_late_are_no_reason_to_wait_for_ever() -> None:
+    watch = Watched()
+
+    def telling() -> list[Told]:
+        now = BEGUN + watch.now
+        return [*at(now - 0.7, 0.0), scan(now)]
+
+    waited(watch, FakeDoor(offer=WHOLE, telling=telling))
+    assert watch.now < 1.0
+
+
 def test_what_comes_while_an_agent_waits_is_waited_for_no_more() -> None:
     watch = Watched()
     whole, begun = tells(watch), tells(watch, LaserSweep)

@@ -188,7 +188,7 @@ class Ros2Body:
         """Return the scans whose transforms have come by now, each with where the robot was then."""
         due = []
         while self._waiting:
-            placed = self.placed(self._waiting[0])
+            placed = self._placed(self._waiting[0])
             if placed in (Gap.NOT_YET, Gap.UNCONNECTED):
                 break
             self._waiting.popleft()
@@ -208,7 +208,12 @@ class Ros2Body:
         self._seen = sweep.stamp
         self._waiting.append(sweep)
 
-    def placed(self, sweep: LaserSweep) -> tuple[Pose, Scan] | Gap:
+    @property
+    def places_scans(self) -> bool:
+        """Tell whether TF covers any of the scans that wait."""
+        return any(not isinstance(self._placed(sweep), Gap) for sweep in self._waiting)
+
+    def _placed(self, sweep: LaserSweep) -> tuple[Pose, Scan] | Gap:
         """Return a scan in the team's frame, as taken where the robot was in its middle."""
         map_frame, T_team_map = self.frame(self.settings.map_frame), self.settings.T_team_map
         middle = 0.5 * (sweep.stamp + sweep.ends)

@@ -87,6 +87,6 @@ def what_is_missing(body: Ros2Body) -> str | None:
         found = body.transforms.lookup(body.frame(settings.map_frame), body.frame(frame))
         if isinstance(found, Gap):
             return f"no transform from {settings.map_frame} to {frame}"
-    if isinstance(body.placed(sweep), Gap):
+    if not body.places_scans:
         return f"no transform from {settings.map_frame} to {sweep.frame} at the time of its scans"
     return None if body.door.navigator else f"nobody offers {settings.navigate_to_pose}"

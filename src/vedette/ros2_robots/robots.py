@@ -20,6 +20,7 @@ from vedette.ros2_robots.building import Building
 from vedette.ros2_robots.navigator import Navigator, Pose
 from vedette.ros2_robots.planner import WayFinder
 from vedette.ros2_robots.robot import STEP, RobotNode, in_world
+from vedette.ros2_robots.steering import within
 
 NOISE = 0.01  # of a range [m]
 DEFAULTS: Mapping[str, Any] = {
@@ -104,8 +105,9 @@ class Strangers:
 
     def _look(self, i: int, before: Pose, share: float) -> Any:
         """Return what a robot's lidar sees from a share of the way from where it was ``before``."""
-        lidar, here = self._env.robot_list[i].lidar, self.pose(i)
-        at = [then + share * (now - then) for then, now in zip(before, here, strict=True)]
+        lidar, (x, y, yaw) = self._env.robot_list[i].lidar, self.pose(i)
+        left = 1.0 - share
+        at = x + left * (before[0] - x), y + left * (before[1] - y), yaw + left * within(before[2] - yaw)
         lidar.step(np.array(at)[:, None])
         return lidar.get_scan()
 
