@@ -16,7 +16,7 @@ import pytest
 from tests.support.relay import Relay
 from tests.support.ros2_beside import Beside
 from tests.support.ros2_teams import DOMAIN, TRIED, living, plan, sound, tried
-from tests.support.small_missions import TWO_ROOMS, drawn, small_maze
+from tests.support.small_missions import small_maze
 from vedette.net.explore.ros2_plan import environment, strangers
 from vedette.net.launch import TeamProcesses
 
@@ -96,14 +96,14 @@ def test_a_network_that_is_gone_for_a_while_parts_robots_and_they_finish_togethe
         cut: list[float] = []
 
         def befall(now: float) -> None:
-            if not cut and now > 12.0:
+            if not cut and now > 8.0:
                 relay.cut()
                 cut.append(time.monotonic())
             elif len(cut) == 1 and time.monotonic() > cut[0] + 8.0:
                 relay.mend()
                 cut.append(time.monotonic())
 
-        ended = tried(plan(drawn(TWO_ROOMS), 2, speed=2.0), tmp_path, team=Relayed, befall=befall)
+        ended = tried(plan(small_maze(), 2, speed=2.0), tmp_path, team=Relayed, befall=befall)
     assert len(cut) == 2
     assert ended.report.summary.apart_s > 0.0
     sound(ended, 2)

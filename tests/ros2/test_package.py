@@ -44,17 +44,21 @@ def test_the_launch_file_starts_one_agent_with_the_robots_file(monkeypatch: pyte
             setattr(double, part, type(part, (Made,), {}))
         monkeypatch.setitem(sys.modules, name, double)
     told = runpy.run_path(str(PACKAGE / "launch" / "agent.launch.py"))["generate_launch_description"]()
-    argument, node = told.given[0]
-    assert argument.given == ("config",)
+    *arguments, node = told.given[0]
+    assert [argument.given for argument in arguments] == [("config",), ("namespace",), ("wait",)]
+    assert [argument.named.get("default_value") for argument in arguments] == [None, "", "60"]
+    assert node.named["namespace"].given == ("namespace",)
     assert (node.named["package"], node.named["executable"]) == ("vedette_ros", "agent")
-    assert [each.given for each in node.named["arguments"]] == [("config",)]
+    config, option, wait = node.named["arguments"]
+    assert (config.given, option, wait.given) == (("config",), "--wait", ("wait",))
 
 
 @pytest.mark.parametrize(
     ("given", "own"),
     [
         (["robot.yaml"], ["robot.yaml"]),
-        (["robot.yaml", "--speed", "2", "--ros-args", "-r", "__ns:=/a"], ["robot.yaml", "--speed", "2"]),
+        (["robot.yaml", "--speed", "2", "--ros-args", "-r", "__node:=a"], ["robot.yaml", "--speed", "2"]),
+        (["robot.yaml", "--ros-args", "-r", "__ns:=/a"], ["robot.yaml", "--namespace", "/a"]),
     ],
 )
 def test_the_agent_leaves_out_what_ros_adds(given: list[str], own: list[str]) -> None:

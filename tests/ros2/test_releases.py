@@ -23,7 +23,7 @@ class Mixed(TeamProcesses):
         if i != 1:
             return command
         there = [f"LD_LIBRARY_PATH={JAZZY}/lib", f"AMENT_PREFIX_PATH={JAZZY}"]
-        return ["env", *there, f"{JAZZY}/bin/python", *command[1:]]
+        return ["env", "--unset=_ROS_WHEELS_BOOTSTRAP_COMPLETE", *there, f"{JAZZY}/bin/python", *command[1:]]
 
 
 @pytest.mark.slow

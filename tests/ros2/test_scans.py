@@ -68,7 +68,9 @@ def test_beams_either_way_round_meet_the_wall(increment: float) -> None:
     at = -increment * 10 + increment * np.arange(21)
     T = planar(0.5, 1.0, 0.3)
     told = beams(
-        sweep(facing_the_wall([T] * 21, at), angle_min=float(at[0]), angle_increment=increment), T, T, "free"
+        sweep(facing_the_wall([T] * 21, at), angle_min=float(at[0]), angle_increment=increment),
+        [T, T],
+        "free",
     )
     on_the_wall(told)
     assert (told.x, told.y) == (0.5, 1.0)
@@ -80,7 +82,7 @@ def test_a_lidar_upside_down_and_off_centre_meets_the_wall() -> None:
     T = T_map_base @ T_base_laser
     at = -1.0 + 0.1 * np.arange(21)
     turned = [planar(T[0, 3], T[1, 3], 0.3)] * 21
-    told = beams(sweep(facing_the_wall(turned, -at)), T, T, "free")
+    told = beams(sweep(facing_the_wall(turned, -at)), [T, T], "free")
     on_the_wall(told)
     assert (told.x, told.y) == pytest.approx(T[:2, 3].tolist())
 
@@ -92,14 +94,24 @@ def test_a_scan_from_a_robot_that_drives_and_turns_is_straightened() -> None:
     at = -1.0 + 0.05 * np.arange(n)
     scan = sweep(facing_the_wall(poses, at), angle_increment=0.05, time_increment=0.002)
     assert scan.ends == pytest.approx(5.0 + 40 * 0.002)
-    on_the_wall(beams(scan, first, last, "free"))
-    crooked = ends(beams(scan, last, last, "free"))
+    on_the_wall(beams(scan, [first, last], "free"))
+    crooked = ends(beams(scan, [last, last], "free"))
+    assert np.abs(crooked[:, 0] - WALL).max() > 0.05
+
+
+def test_a_scan_in_whose_middle_the_robot_begins_to_turn_is_straightened_by_what_lies_between() -> None:
+    n, at = 41, -1.0 + 0.05 * np.arange(41)
+    turned = np.maximum(np.linspace(-0.3, 0.3, n), 0.0)  # not before the middle
+    poses = [planar(0.0, 0.0, yaw) for yaw in turned]
+    scan = sweep(facing_the_wall(poses, at), angle_increment=0.05, time_increment=0.002)
+    on_the_wall(beams(scan, [poses[0], poses[20], poses[40]], "free"))
+    crooked = ends(beams(scan, [poses[0], poses[40]], "free"))
     assert np.abs(crooked[:, 0] - WALL).max() > 0.05
 
 
 def test_directions_without_a_return_are_told_too() -> None:
     T = planar(1.0, 2.0, pi / 2)
-    told = beams(sweep([inf, 2.0, inf], angle_min=-0.1), T, T, "free")
+    told = beams(sweep([inf, 2.0, inf], angle_min=-0.1), [T, T], "free")
     np.testing.assert_allclose(told.angles, pi / 2 + np.array((-0.1, 0.0, 0.1)))
     assert told.ranges.tolist() == [inf, 2.0, inf]
 

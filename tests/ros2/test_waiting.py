@@ -12,7 +12,9 @@ from click.testing import CliRunner
 
 from tests.support.ros2_doors import SENSOR, WHOLE, FakeDoor, at, scan
 from vedette.cli import commands
+from vedette.cli.agent import told_by_options
 from vedette.errors import InputError, InputWarning
+from vedette.net.config import load_config
 from vedette.ros2.body import Ros2Body
 from vedette.ros2.door import Joint, Told
 from vedette.ros2.offered import Offered
@@ -169,9 +171,18 @@ def test_a_simulated_robot_is_waited_for_in_vain(tmp_path: Path) -> None:
     file = tmp_path / "robot.yaml"
     body = "body: {map: nowhere.yaml, start: [0, 0, 0]}"
     file.write_text(f"team: t\nrobot: 1\nlinks: {{insecure: true}}\n{body}\n")
-    with pytest.warns(InputWarning, match="--wait changes nothing: this robot's body is simulated"):
+    with pytest.warns(InputWarning, match="--wait changes nothing: this robot does not run ROS 2"):
         ended = CliRunner().invoke(commands, ["agent", str(file), "--wait", "5"])
     assert isinstance(ended.exception, InputError)
+
+
+def test_a_namespace_takes_the_place_of_the_files_and_one_that_cannot_be_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "robot.yaml"
+    file.write_text("team: t\nrobot: 1\nlinks: {insecure: true}\nbody: {ros2: {namespace: other, wait: 7}}\n")
+    told = told_by_options(load_config(file), {"namespace": "/robot1", "wait": None}).body.ros2
+    assert told == Ros2Settings(namespace="/robot1", wait=7.0)
+    with pytest.raises(InputError, match="--namespace is 'robot 1'; give a name of ROS"):
+        told_by_options(load_config(file), {"namespace": "robot 1"})
 
 
 def test_how_long_to_wait_is_refused_where_it_makes_no_sense(tmp_path: Path) -> None:

@@ -8,9 +8,10 @@ from vedette.cli import main as vedette
 
 
 def own(arguments: list[str]) -> list[str]:
-    """Return the arguments before ``--ros-args``, which names and remaps nodes that are none of ours."""
+    """Return the arguments before ``--ros-args``, and of what comes after it the namespace."""
     end = arguments.index("--ros-args") if "--ros-args" in arguments else len(arguments)
-    return arguments[:end]
+    told = [each.removeprefix("__ns:=") for each in arguments[end:] if each.startswith("__ns:=")]
+    return [*arguments[:end], *(["--namespace", told[-1]] if told else [])]
 
 
 def main() -> None:

@@ -7,18 +7,20 @@ import signal
 import threading
 import time
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
 
 import click
+from msgspec import ValidationError, convert, to_builtins
 from msgspec.structs import replace
 
 from vedette.cli.options import FILE, Positive
-from vedette.errors import InputError, InputWarning
+from vedette.errors import InputError, InputWarning, brief
 from vedette.interrupt import ENDINGS
 from vedette.net.config import AgentConfig, load_config
 from vedette.net.start import agent_process
+from vedette.ros2.settings import Ros2Settings
 
 WATCH_PERIOD = 1.0  # [s]
 
@@ -37,15 +39,17 @@ WATCH_PERIOD = 1.0  # [s]
     type=Positive("s", most=86400.0),
     help="For a robot that runs ROS 2 to tell what is needed, before the agent ends; else as its file says.",
 )
+@click.option("--namespace", metavar="NAME", help="Of a robot that runs ROS 2; else as its file says.")
 @click.option("--starter", type=int, hidden=True, help="Stop when this process, the parent, ends.")
-def agent(config_path: Path, speed: float, wait: float | None, starter: int | None) -> None:
+def agent(
+    config_path: Path, speed: float, wait: float | None, namespace: str | None, starter: int | None
+) -> None:
     """Run the robot that CONFIG.yaml describes, with the neighbours it names, until Ctrl-C or SIGTERM.
 
     docs/how-to/network.md explains the file. Exit status: 0 stopped, 2 bad input.
     """
     config = load_config(config_path)
-    if wait is not None:
-        config = _waiting(config, wait)
+    config = told_by_options(config, {"wait": wait, "namespace": namespace})
     try:
         process = agent_process(
             config, config_path.resolve().parent, speed, lambda line: _tell(f"vedette: {line}", err=True)
@@ -75,12 +79,20 @@ def _tell(line: str, err: bool = False) -> None:
         click.echo(line, err=err)
 
 
-def _waiting(config: AgentConfig, wait: float) -> AgentConfig:
-    """Return what a robot's file says, but for how long its agent waits for it [s]."""
+def told_by_options(config: AgentConfig, options: Mapping[str, object]) -> AgentConfig:
+    """Return what a robot's file says, but for what options say of how its ROS is reached; None: nothing."""
+    told = {name: value for name, value in options.items() if value is not None}
     if config.body.ros2 is None:
-        warnings.warn("--wait changes nothing: this robot's body is simulated", InputWarning, stacklevel=2)
+        for name in told:
+            text = f"--{name} changes nothing: this robot does not run ROS 2"
+            warnings.warn(text, InputWarning, stacklevel=2)
         return config
-    return replace(config, body=replace(config.body, ros2=replace(config.body.ros2, wait=wait)))
+    try:
+        ros2 = convert({**to_builtins(config.body.ros2), **told}, Ros2Settings)
+    except ValidationError:
+        given = brief(told.get("namespace"))
+        raise InputError(f"--namespace is {given}; give a name of ROS, say robot1") from None
+    return replace(config, body=replace(config.body, ros2=ros2))
 
 
 def _outlive(starter: int, stop: Callable[[], None]) -> None:

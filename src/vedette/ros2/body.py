@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from math import atan2, hypot, inf, nan
+from math import atan2, ceil, hypot, inf, nan
 
 import numpy as np
 
@@ -34,6 +34,8 @@ from vedette.team import PlatformSpec
 
 WAITING = 100  # scans that wait for their transforms at most; then the oldest is left out
 BETWEEN_SCANS = 0.18  # of those that are taken in, at least [s]
+KNOT = 0.025  # a scan's way is looked up as often as this [s] ...
+MOST_KNOTS = 8  # ... but in no more legs
 NO_WAY = 0.01  # less between two poses is not counted as way [m]
 
 
@@ -216,22 +218,19 @@ class Ros2Body:
     def _placed(self, sweep: LaserSweep) -> tuple[Pose, Scan] | Gap:
         """Return a scan in the team's frame, as taken where the robot was in its middle."""
         map_frame, T_team_map = self.frame(self.settings.map_frame), self.settings.T_team_map
-        middle = 0.5 * (sweep.stamp + sweep.ends)
+        middle, base = 0.5 * (sweep.stamp + sweep.ends), self.frame(self.settings.base_frame)
+        legs = min(max(ceil((sweep.ends - sweep.stamp) / KNOT), 1), MOST_KNOTS)
+        stamps = np.linspace(sweep.stamp, sweep.ends, legs + 1).tolist()
         found: list[Matrix] = []
-        for frame, stamp in (
-            (sweep.frame, sweep.stamp),
-            (sweep.frame, sweep.ends),
-            (self.frame(self.settings.base_frame), middle),
-        ):
+        for frame, stamp in (*((sweep.frame, stamp) for stamp in stamps), (base, middle)):
             T = self.transforms.lookup(map_frame, frame, stamp)
             if isinstance(T, Gap):
                 return T
             found.append(T)
-        seen = beams(sweep, T_team_map @ found[0], T_team_map @ found[1], self.settings.no_return)
+        seen = beams(sweep, [T_team_map @ T for T in found[:-1]], self.settings.no_return)
         if self.settings.evidence == "map":  # it only tells where the robot has looked
             seen = replace(seen, ranges=np.full(len(seen.ranges), nan))
-        pose = self._pose_at(found[2])
-        newest = self.transforms.newest(self.frame(self.settings.base_frame))
+        pose, newest = self._pose_at(found[-1]), self.transforms.newest(base)
         age = 0.0 if newest is None else max(newest - middle, 0.0)
         return pose, Scan(seen.angles, seen.ranges, (seen.x - pose.x, seen.y - pose.y), age)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import degrees, inf, isfinite, nan
 
@@ -85,7 +86,7 @@ class Beams:
     ranges: NDArray[np.float64]  # (B,) [m], as `measured` returns them
 
 
-def beams(sweep: LaserSweep, T_first: Matrix, T_last: Matrix, no_return: str) -> Beams:
+def beams(sweep: LaserSweep, knots: Sequence[Matrix], no_return: str) -> Beams:
     """Return a scan's beams in the plane of another frame.
 
     Each beam goes out from where the lidar was when it was sent. What it met is then told from where the
@@ -93,19 +94,30 @@ def beams(sweep: LaserSweep, T_first: Matrix, T_last: Matrix, no_return: str) ->
 
     Args:
         sweep: the scan.
-        T_first: ``T_target_lidar`` at its first beam.
-        T_last: the same at its last beam.
+        knots: ``T_target_lidar`` at its first beam, at its last, and as often as is known in even steps
+            between them: a robot that begins to turn does so within a scan.
         no_return: what a beam says that nothing came back from: "ignore" or "free".
     """
     ranges, n = measured(sweep, no_return), len(sweep.ranges)
     at = sweep.angle_min + sweep.angle_increment * np.arange(n)
     along = np.column_stack((np.cos(at), np.sin(at), np.zeros(n)))
-    still = np.array_equal(T_first, T_last)
-    T = T_first[None] if still else between(T_first, T_last, np.linspace(0.0, 1.0, n))
-    out = np.einsum("bij,bj->bi", np.broadcast_to(T[:, :3, :3], (n, 3, 3)), along)[:, :2]
-    x, y = (0.5 * (T_first[:2, 3] + T_last[:2, 3])).tolist()
+    still = all(np.array_equal(T, knots[0]) for T in knots)
+    T = np.broadcast_to(knots[0], (n, 4, 4)) if still else _between(knots, np.linspace(0.0, 1.0, n))
+    out = np.einsum("bij,bj->bi", T[:, :3, :3], along)[:, :2]
+    x, y = _between(knots, np.array((0.5,)))[0, :2, 3].tolist()
     angles = np.arctan2(out[:, 1], out[:, 0])
     finite = np.isfinite(ranges)
     ends = T[:, :2, 3] - (x, y) + np.where(finite, ranges, 0.0)[:, None] * out
     angles = np.where(finite, np.arctan2(ends[:, 1], ends[:, 0]), angles)
     return Beams(x, y, angles, np.where(finite, np.hypot(ends[:, 0], ends[:, 1]), ranges))
+
+
+def _between(knots: Sequence[Matrix], shares: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return ``(B, 4, 4)``: transforms at shares 0 to 1 of the way along even knots, two at least."""
+    legs = len(knots) - 1
+    leg_of = np.minimum((shares * legs).astype(int), legs - 1)
+    T = np.empty((len(shares), 4, 4))
+    for leg in np.unique(leg_of).tolist():
+        on_it = leg_of == leg
+        T[on_it] = between(knots[leg], knots[leg + 1], shares[on_it] * legs - leg)
+    return T
