@@ -43,7 +43,7 @@ class Lidar:
         self._began = self._began or _earlier(stamp, self.step)
         for part in range(PARTS):
             seen = look((part + 0.5) / PARTS)
-            self._parts.append(np.asarray(seen["ranges"], np.float64).ravel())
+            self._parts.append(np.array(seen["ranges"], np.float64).ravel())  # a copy: ir-sim writes over it
         count = PARTS * max(round(1.0 / (self.spec["rate"] * self.step)), 1)
         if len(self._parts) < count:
             return None
