@@ -42,7 +42,7 @@ def test_a_summary_is_by_its_schema(summary: dict[str, Any]) -> None:
     [
         (("schema_version",), 2),
         (("outcome",), "failed"),
-        (("coverage",), None),
+        (("coverage",), "all"),
         (("rounds",), 1.5),
         (("bound_ratio",), "0.7"),
         (("path_m", "robot-1"), "far"),

@@ -19,7 +19,7 @@ def patience(size: int, depth: int = 0) -> float:
 
 
 @dataclass
-class Patience:
+class TeamPatience:
     """One robot's, by what its own preparation takes and when it last decided with others."""
 
     pace: Pace

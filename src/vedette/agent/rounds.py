@@ -20,7 +20,7 @@ from vedette.agent.messages import Begin, Call, Flushed, Freeze, Negotiate
 from vedette.agent.mission import Mission
 from vedette.agent.opinion import Opinion
 from vedette.agent.pace import Pace
-from vedette.agent.patience import Patience
+from vedette.agent.patience import TeamPatience
 from vedette.agent.round import Round, say, send_news
 from vedette.number import many
 
@@ -47,7 +47,7 @@ class Rounds:
     scheme: str  # "token" or "jacobi"
     decided: Callable[[Decision], None]
     pace: Pace = field(default_factory=Pace)
-    patience: Patience = field(init=False)
+    patience: TeamPatience = field(init=False)
     admitted: int = 1 << 16  # robots that there can be in the team
     tree: TreeChanged = field(default_factory=lambda: TreeChanged(0, None, (), 1))
     decisions: int = 0
@@ -70,7 +70,7 @@ class Rounds:
     _solos: int = 0  # rounds that this robot began for itself alone
 
     def __post_init__(self) -> None:
-        self.patience = Patience(self.pace)
+        self.patience = TeamPatience(self.pace)
 
     @property
     def busy(self) -> bool:
