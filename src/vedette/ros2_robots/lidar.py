@@ -17,7 +17,7 @@ Look = Callable[[float], Mapping[str, Any]]
 
 
 @dataclass(eq=False)
-class Lidar:
+class LidarModel:
     """Makes scans of one robot's lidar, ``rate`` a second; times are the simulation's [s]."""
 
     spec: Mapping[str, Any]

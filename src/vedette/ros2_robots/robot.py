@@ -20,7 +20,7 @@ from sensor_msgs.msg import LaserScan
 from tf2_msgs.msg import TFMessage
 
 from vedette.ros2_robots.building import Building
-from vedette.ros2_robots.lidar import Lidar, Look
+from vedette.ros2_robots.lidar import LidarModel, Look
 from vedette.ros2_robots.mapper import Mapper
 from vedette.ros2_robots.navigator import Navigator, Pose
 
@@ -74,7 +74,7 @@ class RobotNode:
         if self.spec["updates"]:
             self._update_type = importlib.import_module("map_msgs.msg").OccupancyGridUpdate
             self._updates = node.create_publisher(self._update_type, "map_updates", 10)
-        self._lidar = Lidar(self.spec, f"{self.spec['prefix']}laser", STEP)
+        self._lidar = LidarModel(self.spec, f"{self.spec['prefix']}laser", STEP)
         self._late: deque[tuple[float, TransformStamped]] = deque()  # until when they are held back [s]
         x, y, yaw = self.spec["mount"]
         roll = pi if self.spec["upside_down"] else 0.0
