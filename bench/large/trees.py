@@ -12,6 +12,7 @@ from vedette.errors import InputError
 from vedette.study.provenance import git
 
 ROOT = Path(__file__).parents[2]
+DIGITS = 7  # of a commit that name its folder; git itself takes more as a repository grows
 BEFORE = ROOT / "build" / "before"  # worktrees, by their commits
 
 
@@ -35,7 +36,7 @@ def built(ref: str) -> Version:
     Raises:
         InputError: there is no such commit, or it cannot be built.
     """
-    commit = git(ROOT, "rev-parse", "--verify", "--quiet", "--short", f"{ref}^{{commit}}")
+    commit = git(ROOT, "rev-parse", "--verify", "--quiet", f"{ref}^{{commit}}")[:DIGITS]
     if not commit:
         raise InputError(f"--before must be a commit of this repository; got {ref!r}")
     folder = BEFORE / commit
