@@ -15,10 +15,18 @@ CellT = TypeVar("CellT", np.bool_, np.uint8, np.float32)
 def laid(grid: NDArray[CellT], frame: GridFrame, onto: GridFrame) -> NDArray[CellT]:
     """Return ``(R, C)`` over the frame ``onto``: what a grid has under each middle; 0 where nothing."""
     whole = np.zeros(onto.shape, grid.dtype)  # costs no more than what is written to it
+    there, under = part_laid(grid, frame, onto)
+    whole[there] = under
+    return whole
+
+
+def part_laid(
+    grid: NDArray[CellT], frame: GridFrame, onto: GridFrame
+) -> tuple[tuple[slice, slice], NDArray[CellT]]:
+    """Return the rows and columns of ``onto`` that have something under their middles, and what that is."""
     to_rows, rows = _matching(onto.origin_y, onto, onto.rows, frame.origin_y, frame, frame.rows)
     to_cols, cols = _matching(onto.origin_x, onto, onto.cols, frame.origin_x, frame, frame.cols)
-    whole[to_rows, to_cols] = grid[rows][:, cols]
-    return whole
+    return (to_rows, to_cols), grid[rows][:, cols]
 
 
 def _matching(

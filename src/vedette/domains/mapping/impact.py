@@ -32,8 +32,18 @@ def quantise(share: NDArray[np.float32]) -> Misses:
 
 def final_miss(impact: Impact, size: int) -> NDArray[np.float32]:
     """Miss probability of every planning cell after the last layer, shape (size,)."""
-    total = np.bincount(impact.keys // LAYERS, impact.misses, minlength=size)
-    return np.where(total >= CERTAIN, 0.0, np.exp(-total / STEPS_PER_NAT)).astype(np.float32)
+    missed = np.ones(size, np.float32)
+    cells, those = cells_missed(impact)
+    missed[cells] = those
+    return missed
+
+
+def cells_missed(impact: Impact) -> tuple[NDArray[np.uint32], NDArray[np.float32]]:
+    """Return the planning cells that are looked at, increasing, and how likely each is missed in the end."""
+    cell = impact.keys // np.uint32(LAYERS)
+    first = np.flatnonzero(np.diff(cell, prepend=np.uint32(2**32 - 1)))
+    total = np.add.reduceat(impact.misses, first, dtype=np.float64) if len(first) else np.empty(0)
+    return cell[first], np.where(total >= CERTAIN, 0.0, np.exp(-total / STEPS_PER_NAT)).astype(np.float32)
 
 
 def moved(impact: Impact, planning: GridFrame, onto: GridFrame) -> Impact:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.domains.mapping.belief import LN2, planning_factor
-from vedette.domains.mapping.impact import final_miss, moved
+from vedette.domains.mapping.impact import cells_missed, moved
 from vedette.domains.mapping.stops import unknown_near
 from vedette.maps import UNKNOWN
 from vedette.maps.lattice import Lattice
@@ -131,7 +131,8 @@ class ExploreObserver:
         miss = np.ones(frame.size, np.float32)
         for view in self._views:
             if view.sample.alive and view.impact is not None and len(view.impact.keys):
-                miss *= final_miss(moved(view.impact, self._planning, frame), frame.size)
+                cells, missed = cells_missed(moved(view.impact, self._planning, frame))
+                miss[cells] *= missed
         return (1.0 - miss).reshape(frame.shape)
 
     def delivered_map(self) -> NDArray[np.uint8]:
@@ -172,7 +173,7 @@ class ExploreObserver:
             beyond=sum(view.beyond for view in views),
             map_errors=wrong,
             map_error_share=wrong / known if known else 0.0,
-            overlap=overlap([view.seen_on(self._world.frame) for view in views]),
+            overlap=overlap(view.seen_on(self._world.frame) for view in views),
             collisions=sum(each.collisions for each in team),
             min_clearance_m=min(each.min_clearance_m for each in team),
             apart_s=self.apart_s,

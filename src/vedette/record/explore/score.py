@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -60,14 +60,20 @@ def map_errors(world: World, classes: NDArray[np.uint8]) -> tuple[int, int]:
     return int(wrong.sum()), int(np.count_nonzero(classes != UNKNOWN))
 
 
-def overlap(own_known: Sequence[NDArray[np.bool_]]) -> float:
+def overlap(own_known: Iterable[NDArray[np.bool_]]) -> float:
     """Return the share of the known cells that at least two robots saw themselves; 0 where none is known.
 
     ``own_known`` holds for each robot ``bool[rows, cols]``: the cells that its own sensor observed.
     """
-    seen = np.sum(own_known, axis=0, dtype=np.int64)
-    known = np.count_nonzero(seen)
-    return float(np.count_nonzero(seen >= 2) / known) if known else 0.0
+    once: NDArray[np.bool_] | None = None
+    for seen in own_known:  # one at a time: grids may be large, and many
+        if once is None:
+            once, twice = seen.copy(), np.zeros_like(seen)
+        else:
+            twice |= once & seen
+            once |= seen
+    known = 0 if once is None else np.count_nonzero(once)
+    return float(np.count_nonzero(twice) / known) if known else 0.0
 
 
 @dataclass

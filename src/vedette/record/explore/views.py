@@ -13,7 +13,7 @@ from vedette.domains.mapping.leftovers import Leftover
 from vedette.kernels.tiles import TiledGrid
 from vedette.maps import UNKNOWN, GridFrame
 from vedette.maps.bounds import Extent
-from vedette.maps.laid import laid
+from vedette.maps.laid import laid, part_laid
 from vedette.record.explore.log import RobotSample
 from vedette.record.explore.summary import LeftOut
 from vedette.record.figures import RobotFigures
@@ -79,7 +79,8 @@ def union_map(views: Sequence[RobotView], frame: GridFrame) -> NDArray[np.uint8]
     living = [view for view in views if view.sample.alive] or views
     union = living[0].classes_on(frame)
     for view in living[1:]:
-        np.maximum(union, view.classes_on(frame), out=union)  # UNKNOWN < FREE < OCCUPIED
+        there, classes = part_laid(view.classes, view.frame, frame)
+        union[there] = np.maximum(union[there], classes)  # UNKNOWN < FREE < OCCUPIED
     return union
 
 
