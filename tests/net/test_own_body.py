@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 import subprocess
 import sys
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 from msgspec import yaml
@@ -15,12 +17,16 @@ from msgspec import yaml
 from tests.support.net_team import real_time, wait_until
 from tests.support.places import ROOT
 from tests.support.schemas import valid
+from vedette.agent.body import BodyFigures
+from vedette.agent.effects import Drive, Motion
+from vedette.agent.events import Event, Pose, Scan, Stuck
 from vedette.cli.agent import agent as agent_command
 from vedette.cli.status import status as status_command
 from vedette.errors import InputError
 from vedette.net.config import load_config
 from vedette.net.endpoints import free_port
 from vedette.net.own import OwnSettings
+from vedette.net.own_body import CheckedBody
 from vedette.team import PlatformSpec
 
 EXAMPLE = ROOT / "examples" / "own_body.py"
@@ -152,6 +158,60 @@ def test_what_is_no_body_is_told_in_a_line(
         OwnSettings(make, settings).body(SPEC, tmp_path)
     assert said in str(told.value)
     assert "\n" not in str(told.value)
+
+
+class Scripted:
+    """A body that senses what it is given, or raises it."""
+
+    figures, pose = BodyFigures(), (0.0, 0.0, 0.0)
+
+    def __init__(self, spec: PlatformSpec, sensed: Any) -> None:
+        self.hull, self.sensed = spec, sensed
+
+    def sense(self, now: float) -> list[Event]:
+        if isinstance(self.sensed, Exception):
+            raise self.sensed
+        return self.sensed  # type: ignore[no-any-return]
+
+    def carry_out(self, motion: Motion, now: float) -> None:
+        raise OSError("the motors\nare off")
+
+    def stop(self, now: float) -> None:
+        pass
+
+
+def scan(angles: int, ranges: list[float]) -> Scan:
+    return Scan(np.zeros(angles), np.array(ranges))
+
+
+@pytest.mark.parametrize(
+    ("sensed", "said"),
+    [
+        (OSError("no such\nport"), "OSError: no such port"),
+        (None, "TypeError: 'NoneType' object is not iterable"),
+        ([Pose(math.nan, 0.0, 0.0)], "ValueError: a Pose is at nan, 0.0, 0.0; give finite m and rad"),
+        ([Pose(1e300, 0.0, 0.0)], "ValueError: a Pose is at 1e+300, 0.0, 0.0; give finite m and rad"),
+        ([scan(3, [1.0, 2.0])], "ValueError: a Scan has angles (3,) and ranges (2,); give (B,) of both"),
+        ([scan(2, [1.0, -2.0])], "ValueError: a Scan has an angle or offset that is not finite, or a range"),
+        (["a scan"], "ValueError: str is nothing that a body senses; see docs/how-to/own-body.md"),
+    ],
+)
+def test_what_a_body_does_wrong_on_the_way_is_told_in_a_line(sensed: Any, said: str) -> None:
+    body = CheckedBody("bodies:Scripted", Scripted(SPEC, sensed), SPEC)
+    with pytest.raises(InputError) as told:
+        body.sense(0.0)
+    assert str(told.value).startswith(f"body.own: sense of bodies:Scripted: {said}")
+    with pytest.raises(
+        InputError, match="body.own: carry_out of bodies:Scripted: OSError: the motors are off"
+    ):
+        body.carry_out(Drive(None), 0.0)
+
+
+def test_what_a_body_senses_comes_through_as_it_is() -> None:
+    events = [Pose(1.0, 2.0, 3.0), scan(3, [1.0, math.inf, math.nan]), Stuck()]
+    body = CheckedBody("bodies:Scripted", Scripted(SPEC, events), SPEC)
+    assert body.sense(0.0) is events
+    assert (body.pose, body.hull, body.figures) == ((0.0, 0.0, 0.0), SPEC, BodyFigures())
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ from msgspec import Struct
 
 from vedette.agent.body import Body
 from vedette.errors import InputError, nearest_name
+from vedette.net.own_body import CheckedBody
 from vedette.team import PlatformSpec
 
 PARTS = ("hull", "pose", "figures", "sense", "carry_out", "stop")  # of a body
@@ -43,7 +44,7 @@ class OwnSettings(Struct, forbid_unknown_fields=True, frozen=True):
                 f"body.own: what {self.make} makes is no body: it lacks {', '.join(lacking)}; "
                 "see docs/how-to/own-body.md"
             )
-        return body
+        return CheckedBody(self.make, body, spec)
 
     def _make(self, folder: Path) -> Any:
         module_name, _, name = self.make.partition(":")
