@@ -5,6 +5,8 @@ from __future__ import annotations
 import csv
 import json
 import os
+import subprocess
+import sys
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from io import StringIO
@@ -18,6 +20,7 @@ from rich.console import Console
 from tests.support.schemas import valid
 from vedette.cli.study import study
 from vedette.errors import InputError
+from vedette.sim.explore.run import explore
 from vedette.sim.explore.simulation import ExploreSetup
 from vedette.sim.worlds import maze
 from vedette.study import backends
@@ -372,7 +375,7 @@ def real(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[Run], Conducted
     spec = written(folder)
     all_runs = runs_of(load_spec(spec), spec)
     found = conduct(all_runs, Store.open(folder / "out", "abc"), Workers(1), quiet())
-    write_outputs(found, spec, "nearest", folder / "out", MADE)
+    write_outputs(found, spec, "nearest", folder / "out", MADE, pictures=True)
     return all_runs, found, folder / "out"
 
 
@@ -428,6 +431,39 @@ def test_the_report_needs_nothing_but_itself(real: tuple[list[Run], Conducted, P
         assert outside not in text, outside
     for told in (MADE.command, MADE.machine, "kind: maze", "Losses", "no team below", "burgard"):
         assert told in text
+
+
+def test_pictures_are_drawn_if_asked_for_and_none_of_fewer_runs_is_left(
+    real: tuple[list[Run], Conducted, Path], tmp_path: Path
+) -> None:
+    for pictures, count in ((True, 3), (False, 0)):
+        write_outputs(real[1], written(tmp_path), "nearest", tmp_path, MADE, pictures=pictures)
+        assert len(list(tmp_path.glob("*.png"))) == count
+        assert (tmp_path / "report.html").read_text().count("data:image/png") == count
+
+
+def test_without_pictures_no_library_that_draws_is_imported() -> None:
+    code = "import sys, vedette.study.outputs, vedette.study.workers; assert 'matplotlib' not in sys.modules"
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_a_mission_goes_the_same_whether_its_maps_are_recorded_or_not(tmp_path: Path) -> None:
+    run = runs(tmp_path)[0]
+    full, lean = explore(prepared(run)), explore(prepared(run), curves_only=True)
+    assert lean.summary == full.summary
+    np.testing.assert_array_equal(lean.log.times, full.log.times)
+    np.testing.assert_array_equal(lean.log.coverage, full.log.coverage)
+    assert (full.log.stored() > 1, lean.log.stored()) == (True, 0)
+
+
+@pytest.mark.slow
+def test_two_workers_carry_out_all_runs(tmp_path: Path) -> None:
+    def work(run: Run) -> RunResult:
+        return replace(made_up(run), timing={"process": os.getpid()})
+
+    done = dict(Workers(2, work=work).results(runs(tmp_path, TINY.replace("[1, 2]", str(list(range(20)))))))
+    assert len(done) == 40
+    assert len({result.timing["process"] for result in done.values()} - {os.getpid()}) <= 2
 
 
 def test_the_report_counts_what_is_missing_and_names_what_broke(tmp_path: Path) -> None:

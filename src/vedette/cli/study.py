@@ -42,8 +42,11 @@ BROKE = 1
     "--backend", type=OneOf(BACKENDS), default="loky", show_default=True,
     help="Where the runs are carried out: on this machine, or on a Dask cluster.",
 )  # fmt: skip
+@click.option("--pictures", is_flag=True, help="Draw curves and means, into the report too.")
 @click.option("--minutes", type=Positive("min"), help="Begin no run after so long.  [default: do all]")
-def study(spec_name: str, out: Path | None, jobs: int | None, backend: str, minutes: float | None) -> None:
+def study(
+    spec_name: str, out: Path | None, jobs: int | None, backend: str, pictures: bool, minutes: float | None
+) -> None:
     """Compare planners on many worlds: SPEC is a YAML file, or the name of a study that comes with Vedette:
     ten-minutes, hundred-minutes, poses-and-views.
 
@@ -57,13 +60,15 @@ def study(spec_name: str, out: Path | None, jobs: int | None, backend: str, minu
     path = find_spec(spec_name)
     folder = Path("runs") / f"study-{path.stem}" if out is None else out
     end = math.inf if minutes is None else time.monotonic() + 60.0 * minutes
-    conducted = _conducted(path, folder, jobs or os.cpu_count() or 1, chosen, end)
+    conducted = _conducted(path, folder, jobs or os.cpu_count() or 1, chosen, end, pictures)
     if conducted.interrupted:
         raise SystemExit(Outcome.INTERRUPTED.status)
     raise SystemExit(BROKE if conducted.broken or conducted.missing else 0)
 
 
-def _conducted(path: Path, folder: Path, jobs: int, backend: Backend, end: float) -> Conducted:
+def _conducted(
+    path: Path, folder: Path, jobs: int, backend: Backend, end: float, pictures: bool
+) -> Conducted:
     """Conduct a study, beginning no run once the monotonic clock is at ``end``, and tell what came out."""
     # These need packages that need not be installed: `require` has seen to it that they are.
     from vedette.study.conduct import conduct
@@ -85,11 +90,10 @@ def _conducted(path: Path, folder: Path, jobs: int, backend: Backend, end: float
         if conducted.results:
             reference = spec.reference or spec.planners[0]
             with aborted("not all of the report and its tables is written; what is done is kept"):
-                write_outputs(conducted, path, reference, folder, made)
+                write_outputs(conducted, path, reference, folder, made, pictures=pictures)
+            beside = "tables and pictures" if pictures else "tables"
             lines = [_counts(conducted), *ratios(figure_rows(conducted.results), reference)]
-            click.echo(
-                "\n".join([*lines, f"report: {folder / 'report.html'}; tables and pictures beside it"])
-            )
+            click.echo("\n".join([*lines, f"report: {folder / 'report.html'}; {beside} beside it"]))
     return conducted
 
 

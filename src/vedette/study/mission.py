@@ -47,7 +47,7 @@ def carry_out(run: Run) -> RunResult:
     """
     try:
         simulation = prepared(run)
-        report = explore(simulation)
+        report = explore(simulation, curves_only=True)
     except Exception as error:  # whatever it is, the other runs of the study go on
         return broken(error)
     if report.summary.outcome is Outcome.INTERRUPTED:

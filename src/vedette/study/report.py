@@ -30,7 +30,7 @@ class Findings:
     reference: str
     spec: str  # the text of its file
     provenance: Provenance
-    folder: Path  # with the pictures
+    pictures: Path | None  # the folder with them; None: there are none
 
 
 def report(findings: Findings) -> str:
@@ -41,7 +41,7 @@ def report(findings: Findings) -> str:
         [
             *_made(findings),
             *_losses(findings),
-            *_pictures(findings.folder),
+            *([] if findings.pictures is None else _pictures(findings.pictures)),
             *_means("Times", rows, TIMES, bounds=True),
             *_differences(findings),
             *_means("What it costs", rows, COSTS),

@@ -88,7 +88,7 @@ class ExploreLog:
 
     Grids are compressed as they come, so a 4000 x 4000 map costs some 0.2 MB a snapshot. When the budget is
     spent, every second stored snapshot goes and from then on half as many are stored; the last one added is
-    always there.
+    always there. A log of ``curves_only`` keeps no grid, and its snapshots have none.
     """
 
     def __init__(
@@ -96,8 +96,11 @@ class ExploreLog:
         scene: ExploreScene,
         sinks: Sequence[Sink[ExploreSnapshot]] = (),
         budget: int = 64 << 20,
+        *,
+        curves_only: bool = False,
     ) -> None:
         """Start an empty log of a team; every snapshot is forwarded to the ``sinks``."""
+        self.curves_only = curves_only
         self.scene = scene
         self._sinks = tuple(sinks)
         self._budget = budget
@@ -115,10 +118,8 @@ class ExploreLog:
         Raises ``ValueError`` for another team, other grids, or a time before the last.
         """
         self._check(snapshot)
-        packed = _pack(snapshot)
-        if len(self._curves) % self._stride == 0:
-            self._store(packed)
-        self._last = packed
+        if not self.curves_only:
+            self._pack(snapshot)
         self._curves.append(
             (
                 snapshot.t,
@@ -193,7 +194,7 @@ class ExploreLog:
     def last(self) -> ExploreSnapshot:
         """The last snapshot; ``ValueError`` if there is none."""
         if self._last is None:
-            raise ValueError("the log is empty: add a snapshot first")
+            raise ValueError("the log is empty, or of curves only: add a snapshot to one that keeps them")
         return self._unpack(self._last)
 
     def stored(self) -> int:
@@ -210,6 +211,11 @@ class ExploreLog:
         levels = known[-1] * np.arange(1, n) / n
         first = np.searchsorted(known, levels - 1e-12)
         return [*(self._unpack(kept[i]) for i in first), last]
+
+    def _pack(self, snapshot: ExploreSnapshot) -> None:
+        self._last = _pack(snapshot)
+        if len(self._curves) % self._stride == 0:
+            self._store(self._last)
 
     def _check(self, snapshot: ExploreSnapshot) -> None:
         names, scene = tuple(robot.name for robot in snapshot.robots), self.scene

@@ -56,10 +56,13 @@ class ExploreObserver:
         setting: Setting,
         sinks: Sequence[Sink[ExploreSnapshot]] = (),
         lattice: Lattice | None = None,
+        *,
+        curves_only: bool = False,
     ) -> None:
         """Prepare to observe a team that starts at ``starts``, (n, 3) x, y, heading [m, m, rad].
 
         The ``sinks`` follow the mission while it goes on. ``lattice``: the team's; None: the world's map.
+        ``curves_only``: figures and curves are all that is wanted, so no snapshot has an impact, or is kept.
         """
         lattice = lattice or Lattice(world.frame)
         ground = lattice.frame
@@ -69,7 +72,8 @@ class ExploreObserver:
         self._reference = Reference(world.within(lattice.area), specs, starts)
         self._progress = CoverageProgress()
         self.period = LOOK_PERIOD if world.frame.size <= LARGE else LOOK_PERIOD_IF_LARGE  # of looking [s]
-        self.log = ExploreLog(ExploreScene.of(world, [spec.name for spec in specs]), sinks)
+        scene = ExploreScene.of(world, [spec.name for spec in specs])
+        self.log = ExploreLog(scene, sinks, curves_only=curves_only)
         self.apart_s = 0.0  # time during which the living robots were not all on one tree
         self._apart = False  # since the last look
         self._views: tuple[RobotView, ...] = ()  # of the last look
@@ -117,7 +121,7 @@ class ExploreObserver:
             entropy=None if self._open else unknown * LN2,
             known_m2=self._known_m2(classes),
             classes=classes,
-            impact=self._team_impact(),
+            impact=None if self.log.curves_only else self._team_impact(),
             links=None if links is None else tuple(links),
             frontiers=frontiers_left(self._views),
         )

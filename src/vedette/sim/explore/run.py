@@ -37,17 +37,25 @@ def prepare(world: World, specs: Sequence[PlatformSpec], setup: ExploreSetup) ->
 class ExploreRun(Watched[ExploreReport]):
     """One exploration, measured as often as its map's size allows."""
 
-    def __init__(self, simulation: ExploreSimulation, sinks: Sequence[Sink[ExploreSnapshot]] = ()) -> None:
-        """Prepare a mission that has not begun; ``sinks`` follow it."""
+    def __init__(
+        self,
+        simulation: ExploreSimulation,
+        sinks: Sequence[Sink[ExploreSnapshot]] = (),
+        *,
+        curves_only: bool = False,
+    ) -> None:
+        """Prepare a mission that has not begun; ``sinks`` follow it; ``curves_only``: no map is kept."""
         super().__init__(simulation)
         self.simulation = simulation
-        self._observer = observer_of(simulation, sinks)
+        self._curves_only = curves_only
+        self._observer = observer_of(simulation, sinks, curves_only=curves_only)
         self._next_look = 0.0  # [s]
 
     def _look(self) -> None:
         now = self.simulation.now
         if now >= self._next_look - 1e-9:
-            self._observer.look(now, views(self.simulation), self.simulation.network.links())
+            seen = views(self.simulation, ways=not self._curves_only)
+            self._observer.look(now, seen, self.simulation.network.links())
             self._next_look += self._observer.period
 
     def _report(self, outcome: Outcome) -> ExploreReport:
@@ -56,27 +64,34 @@ class ExploreRun(Watched[ExploreReport]):
         return self._observer.report(outcome, self.simulation.clock.timing(now))
 
 
-def explore(simulation: ExploreSimulation, sinks: Sequence[Sink[ExploreSnapshot]] = ()) -> ExploreReport:
-    """Run a mission to its end; ``sinks`` follow it, and Ctrl-C ends it in good order."""
-    return ExploreRun(simulation, sinks).run()
+def explore(
+    simulation: ExploreSimulation, sinks: Sequence[Sink[ExploreSnapshot]] = (), *, curves_only: bool = False
+) -> ExploreReport:
+    """Run a mission to its end; ``sinks`` follow it, and Ctrl-C ends it in good order.
+
+    ``curves_only``: the report's log holds curves and no maps, which takes less time.
+    """
+    return ExploreRun(simulation, sinks, curves_only=curves_only).run()
 
 
 def observer_of(
-    simulation: ExploreSimulation, sinks: Sequence[Sink[ExploreSnapshot]] = ()
+    simulation: ExploreSimulation, sinks: Sequence[Sink[ExploreSnapshot]] = (), *, curves_only: bool = False
 ) -> ExploreObserver:
     """Return an observer of a simulated mission that has not begun."""
     setup = simulation.setup
     team = simulation.world, simulation.specs, simulation.starts
-    return ExploreObserver(*team, setup.options, setting(setup), sinks, simulation.lattice)
+    return ExploreObserver(
+        *team, setup.options, setting(setup), sinks, simulation.lattice, curves_only=curves_only
+    )
 
 
-def views(simulation: ExploreSimulation) -> list[RobotView]:
-    """Return what can be told of every simulated robot now."""
-    return [_view(simulation, i) for i in range(len(simulation.specs))]
+def views(simulation: ExploreSimulation, *, ways: bool = True) -> list[RobotView]:
+    """Return what can be told of every simulated robot now; without ``ways``, not where it goes."""
+    return [_view(simulation, i, ways) for i in range(len(simulation.specs))]
 
 
-def _view(simulation: ExploreSimulation, i: int) -> RobotView:
-    mission, bodies, sample = simulation.missions[i], simulation.robots.bodies, _sample(simulation, i)
+def _view(simulation: ExploreSimulation, i: int, ways: bool) -> RobotView:
+    mission, bodies, sample = simulation.missions[i], simulation.robots.bodies, _sample(simulation, i, ways)
     return RobotView(
         sample,
         mission.frame.window(*mission.known),
@@ -94,10 +109,10 @@ def _view(simulation: ExploreSimulation, i: int) -> RobotView:
     )
 
 
-def _sample(simulation: ExploreSimulation, i: int) -> RobotSample:
+def _sample(simulation: ExploreSimulation, i: int, ways: bool) -> RobotSample:
     x, y, heading = simulation.pose(i)
     alive = bool(simulation.robots.alive[i])
-    wanted = simulation.drivers[i].wanted if alive else None
+    wanted = simulation.drivers[i].wanted if alive and ways else None
     path = NOWHERE if wanted is None else remaining(wanted.path, x, y, np.inf)
     goal = (float(path[-1, 0]), float(path[-1, 1])) if len(path) else None
     name = simulation.specs[i].name
