@@ -201,9 +201,7 @@ def test_what_a_body_does_wrong_on_the_way_is_told_in_a_line(sensed: Any, said: 
     with pytest.raises(InputError) as told:
         body.sense(0.0)
     assert str(told.value).startswith(f"body.own: sense of bodies:Scripted: {said}")
-    with pytest.raises(
-        InputError, match="body.own: carry_out of bodies:Scripted: OSError: the motors are off"
-    ):
+    with pytest.raises(InputError, match=r"carry_out of bodies:Scripted: OSError: the motors are off"):
         body.carry_out(Drive(None), 0.0)
 
 

@@ -33,13 +33,14 @@ class OwnSettings(Struct, forbid_unknown_fields=True, frozen=True):
         make = self._make(folder)
         try:
             body: Body = make(spec, **self.settings)
+            lacking = [part for part in PARTS if not hasattr(body, part)]
         except InputError:
             raise
         except Exception as error:
             raise InputError(
                 f"body.own: {self.make} cannot be made: {_said(error)}; mend body.own.settings"
             ) from error
-        if lacking := [part for part in PARTS if not hasattr(body, part)]:
+        if lacking:
             raise InputError(
                 f"body.own: what {self.make} makes is no body: it lacks {', '.join(lacking)}; "
                 "see docs/how-to/own-body.md"
