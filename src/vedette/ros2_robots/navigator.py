@@ -12,6 +12,7 @@ import numpy as np
 from nav2_msgs.action import NavigateToPose
 from numpy.typing import NDArray
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 from rclpy.task import Future
 
@@ -65,6 +66,7 @@ class Navigator:
             goal_callback=self._consider,
             handle_accepted_callback=self._accept,
             cancel_callback=lambda handle: CancelResponse.ACCEPT,
+            callback_group=ReentrantCallbackGroup(),  # a goal that is never answered holds up nothing else
         )
 
     async def _consider(self, request: Any) -> GoalResponse:
