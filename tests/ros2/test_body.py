@@ -76,6 +76,23 @@ def test_a_clock_that_begins_anew_does_not_silence_the_lidar() -> None:
     assert len(body.sense(0.1)) == 3
 
 
+def test_a_lidar_or_a_localiser_that_falls_silent_is_a_worry_until_it_speaks_again() -> None:
+    door = FakeDoor()
+    body = body_of(door)
+    door.told = [*at(1.0, 0.0), scan(1.0)]
+    body.sense(0.0)
+    assert body.worry == ""
+    door.told = at(8.0, 0.0)
+    body.sense(7.0)
+    assert body.worry == "nothing on scan for 7 s: is the lidar on?"
+    door.told = [scan(9.0)]
+    body.sense(8.0)
+    assert body.worry == "no transform for the scans of the last 8 s: is localisation running?"
+    door.told = at(9.0, 0.0)
+    body.sense(8.1)
+    assert body.worry == ""
+
+
 def test_the_localisers_deviation_is_the_poses() -> None:
     door = FakeDoor([*at(1.0, 0.0), Deviation(0.05, 0.02)])
     (pose,) = body_of(door).sense(0.0)

@@ -36,6 +36,7 @@ WAITING = 100  # scans that wait for their transforms at most; then the oldest i
 BETWEEN_SCANS = 0.18  # of those that are taken in, at least [s]
 KNOT = 0.025  # a scan's way is looked up as often as this [s] ...
 MOST_KNOTS = 8  # ... but in no more legs
+SILENT = 5.0  # without a scan that can be placed for so long somebody should know [s]
 NO_WAY = 0.01  # less between two poses is not counted as way [m]
 
 
@@ -61,6 +62,8 @@ class Ros2Body:
     _counted: Pose | None = None  # up to where its way is counted
     _travelled: float = 0.0
     _seen: float = -inf  # stamp of the latest scan that was taken in [s]
+    _now: float = 0.0  # as of the last look [s]
+    _scanned: float = 0.0  # when a scan was placed last [s]
     _deviation: Deviation = field(default_factory=Deviation)
     _waiting: deque[LaserSweep] = field(default_factory=lambda: deque(maxlen=WAITING))
 
@@ -81,6 +84,18 @@ class Ros2Body:
         return self.transforms.newest(self.frame(self.settings.base_frame))
 
     @property
+    def worry(self) -> str:
+        """What somebody beside the robot should see to, in a line; nothing: ''."""
+        if self.at_work is not None:
+            return self.at_work
+        silent = self._now - self._scanned
+        if silent < SILENT:
+            return self.goals.said
+        if self._waiting:
+            return f"no transform for the scans of the last {silent:.0f} s: is localisation running?"
+        return f"nothing on {self.settings.scan} for {silent:.0f} s: is the lidar on?"
+
+    @property
     def figures(self) -> BodyFigures:
         """Its way; its own software sees to collisions."""
         return BodyFigures(self._travelled)
@@ -94,6 +109,7 @@ class Ros2Body:
         if pose is None:
             return []
         scans = [event for sweep in self._due() for event in sweep]
+        self._now, self._scanned = now, now if scans else self._scanned
         self._note(pose)
         outcomes, self.goals.outcomes = self.goals.outcomes, []
         return [*scans, pose, *self._own_map(now), *(outcomes if self.at_work is None else ())]

@@ -143,15 +143,8 @@ class Showing:
             for mate in self.agent.mates.all()
         ]
         yield "markers", "visualization_msgs/msg/MarkerArray", self._messages.markers(marks)
-        diagnosis = self._messages.diagnosis(stamp, self.name, self._worry, self._facts)
+        diagnosis = self._messages.diagnosis(stamp, self.name, self.body.worry, self._facts)
         yield "/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", diagnosis
-
-    @property
-    def _worry(self) -> str:
-        """What somebody should see to; nothing: ''."""
-        if self.body.at_work is not None:
-            return self.body.at_work
-        return self.body.goals.said
 
     @property
     def _facts(self) -> dict[str, str]:

@@ -71,6 +71,7 @@ class RobotNode:
         self._map = node.create_publisher(OccupancyGrid, "map", latched) if self.spec["slam"] else None
         self._mapper, self._updates = Mapper(self.building), None
         self._told: NDArray[np.int8] | None = None  # the map that was told last
+        self._lay: Any = None  # where that lay
         if self.spec["updates"]:
             self._update_type = importlib.import_module("map_msgs.msg").OccupancyGridUpdate
             self._updates = node.create_publisher(self._update_type, "map_updates", 10)
@@ -120,16 +121,17 @@ class RobotNode:
             self._tell_map(self._map, self._own_map(now, stamp))
 
     def _tell_map(self, topic: Any, told: OccupancyGrid) -> None:
-        """Publish the robot's map, or after the first time only the rows that have changed."""
+        """Publish the robot's map, or while it lies where it lay only the rows that have changed."""
         cells = np.asarray(told.data, np.int8).reshape(told.info.height, told.info.width)
-        if self._updates is None or self._told is None:
+        lies = told.info.origin == self._lay
+        if self._updates is None or self._told is None or not lies:
             topic.publish(told)
         elif (rows := np.flatnonzero((cells != self._told).any(axis=1))).size:
             update = self._update_type(header=told.header, y=int(rows[0]), width=told.info.width)
             changed = cells[rows[0] : rows[-1] + 1]
             update.height, update.data = len(changed), changed.ravel().tolist()
             self._updates.publish(update)
-        self._told = cells
+        self._told, self._lay = cells, told.info.origin
 
     def _own_map(self, now: float, stamp: Time) -> OccupancyGrid:
         told, building = OccupancyGrid(), self.building
