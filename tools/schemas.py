@@ -18,6 +18,8 @@ from bench.criteria import BenchReport
 from bench.crowds import CrowdResult
 from bench.decomposition import Shares
 from bench.large.cases import LargeResult
+from bench.compare import CompareReport
+from bench.latency import LatencyReport
 from bench.scale.report import ScaleReport
 from bench.stonesoup.__main__ import StoneSoupReport
 from vedette.net.status import TeamStatus
@@ -37,6 +39,8 @@ KINDS: Mapping[str, type] = {
     "status": TeamStatus,
     "study-run": RunFile,
     "bench": BenchReport,
+    "bench-compare": CompareReport,
+    "bench-latency": LatencyReport,
     "bench-scale": ScaleReport,
     "bench-stonesoup": StoneSoupReport,
     "bench-mission": Result,
