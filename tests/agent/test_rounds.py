@@ -53,6 +53,18 @@ def test_an_asynchronous_round_ends_for_all_where_nobody_gains_alone(n: int, see
         assert max(Coverage().value(belief, rest * other) for other in own) <= value + 1e-9
 
 
+@pytest.mark.parametrize(("n", "scheme"), [(15, "token"), (16, "fork")])
+def test_in_a_large_team_the_token_forks(n: int, scheme: str) -> None:
+    tree = Tree.balanced(n)
+    team, candidates, belief = toy_team(tree, 3, forks=True)
+    team.run_round()
+    expected = negotiate(Coverage(), belief, candidates, tree, scheme)
+    assert team.decisions() == [1] * n
+    assert team.choices() == expected.choice
+    kinds = {nested_kind(post) for post in team.log}
+    assert ("Fork" in kinds, "Token" in kinds) == (scheme == "fork", scheme == "token")
+
+
 def test_a_later_round_starts_from_the_strategies_in_hand_and_keeps_an_equilibrium() -> None:
     team, _, _ = toy_team(Tree.random(5, seed=3), seed=3)
     team.run_round()

@@ -28,6 +28,7 @@ Float = NDArray[np.float64]
 FRAME = GridFrame(0.1, 40, 40)
 DELAY = 0.02  # of a link [s]
 JOB_TIME = 0.03  # [s]
+KINDS = ("Gather", "Token", "Up", "Down", "Stop", "Fork", "Joined", "Settled", "Offer", "Tidings")
 
 
 class FloatCodec:
@@ -157,12 +158,14 @@ class ToyMission:
         return Route(np.array([(pose.x, pose.y), goal]), np.ones(FRAME.shape, np.bool_), FRAME)
 
 
-def toy_agent(robot: int, candidates: list[Float], belief: Float, scheme: str = "token") -> Agent:
+def toy_agent(
+    robot: int, candidates: list[Float], belief: Float, scheme: str = "token", *, forks: bool = False
+) -> Agent:
     """An agent on a toy mission."""
     fusion = ReplicatedEvidence(robot, 1, FRAME.shape, 4)
     spec = PlatformSpec(name=f"robot-{robot + 1}")
     mission = ToyMission(fusion, candidates, belief)
-    return Agent(robot, 1, spec, GroundBehaviour(mission, Driver(robot, spec)), scheme)
+    return Agent(robot, 1, spec, GroundBehaviour(mission, Driver(robot, spec)), scheme, forks=forks)
 
 
 def toy(agent: Agent) -> ToyMission:
@@ -297,7 +300,7 @@ class Team:
 
 
 def toy_team(
-    tree: Tree, seed: int = 0, scheme: str = "token", lose: Lose = keep
+    tree: Tree, seed: int = 0, scheme: str = "token", lose: Lose = keep, *, forks: bool = False
 ) -> tuple[Team, list[list[Float]], Float]:
     """A team with random candidates; also the candidates and the belief."""
     rng = np.random.default_rng(seed)
@@ -306,7 +309,7 @@ def toy_team(
     misses[rng.uniform(size=misses.shape) < 0.4] = 1.0
     candidates = [list(own) for own in misses]
     belief = rng.uniform(0.5, 1.0, size=12)
-    agents = [toy_agent(i, candidates[i], belief, scheme) for i in range(tree.n)]
+    agents = [toy_agent(i, candidates[i], belief, scheme, forks=forks) for i in range(tree.n)]
     return Team(agents, tree, lose), candidates, belief
 
 
@@ -315,4 +318,4 @@ def nested_kind(post: Post) -> str:
     if not isinstance(post.message, messages.Negotiate):
         return type(post.message).__name__
     tag = msgspec.msgpack.decode(post.message.data)[0]
-    return ("Gather", "Token", "Up", "Down", "Stop")[tag]
+    return KINDS[tag]

@@ -33,6 +33,8 @@ from vedette.negotiation import Outgoing as Reply
 from vedette.problem import Reach
 
 MAX_SWEEPS = 12
+FORK_FROM = 16  # robots in a round from which on the token forks: sweeps are then as deep as the tree
+MAX_FORKS = 50  # sweeps of forks: more, and far shorter
 MOST_NOTES = 512  # in one message
 MOST_EARLY = 8  # negotiation messages of one neighbour that wait for this robot's preparation
 
@@ -58,11 +60,12 @@ class Round:
     """
 
     mission: Mission[Any, Any, Any]
-    scheme: str  # "token" or "jacobi"
+    scheme: str  # of `SCHEMES`
     tree: TreeChanged  # without who joined after it began, or was cut from it
     sequence: int
     depth: int  # links to the root
     heard: float  # when it last went on [s]
+    forks: bool = False  # the token may fork
     waiting: set[int] = field(init=False)  # children that have not flushed yet
     notes: set[Note] = field(default_factory=set)  # told by children
     reaches: dict[int, Reach | None] = field(default_factory=dict)  # beyond each neighbour, as it told
@@ -168,6 +171,8 @@ class Round:
         for child in self.children:
             effects += send_news(self.mission, child, now)
             effects.append(say(child, structs.replace(message, reach=told[child])))
+        if self.scheme == "token" and self.forks and message.robots >= FORK_FROM:
+            self.scheme = "fork"  # all in the round hear the same number, so all do
         self.approximate = self.mission.fusion.digest != message.digest
         self.mission.hear_notes(message.notes)
         self.belief = self.mission.freeze(message.t0 / 1000.0)
@@ -191,8 +196,9 @@ class Round:
         links, parent, own = self.tree.neighbours, self.tree.parent, self.participant
         bounded = {k: reach for k, reach in self.reaches.items() if reach is not None}
         claims = Claims(self.robots, partial(self.mission.admit, self.belief))
+        sweeps = MAX_SWEEPS if self.scheme != "fork" else MAX_FORKS
         self.negotiator = node_of(
-            self.scheme, links, parent, own, max_sweeps=MAX_SWEEPS, reaches=bounded, claims=claims
+            self.scheme, links, parent, own, max_sweeps=sweeps, reaches=bounded, claims=claims
         )
         return self._replies(self.negotiator.start())
 

@@ -44,10 +44,11 @@ class Rounds:
     """One robot's part in the team's rounds."""
 
     mission: Mission[Any, Any, Any]
-    scheme: str  # "token" or "jacobi"
+    scheme: str  # of `SCHEMES`
     decided: Callable[[Decision], None]
     pace: Pace = field(default_factory=Pace)
     patience: TeamPatience = field(init=False)
+    forks: bool = False  # the token may fork in a large team
     admitted: int = 1 << 16  # robots that there can be in the team
     tree: TreeChanged = field(default_factory=lambda: TreeChanged(0, None, (), 1))
     decisions: int = 0
@@ -241,7 +242,7 @@ class Rounds:
         self._wanted = False
         absent = self._attendance.absent(now) - {self.tree.parent}
         tree = replace(self.tree, neighbours=tuple(k for k in self.tree.neighbours if k not in absent))
-        self.round = Round(self.mission, self.scheme, tree, message.sequence, message.depth, now)
+        self.round = Round(self.mission, self.scheme, tree, message.sequence, message.depth, now, self.forks)
         return [*unfinished, *self.round.begin(message, now)]
 
     def flushed(self, sender: int, message: Flushed, now: float) -> list[Effect]:

@@ -85,6 +85,7 @@ class Agent:
     behaviour: Behaviour
     scheme: str = "token"
     pace: Pace = field(default_factory=Pace)  # of rounds
+    forks: bool = False  # the token may fork in a large team
     pose: Pose | None = None
     posed: float = 0.0  # when that came [s]
     awake: bool = False  # it takes part in rounds
@@ -98,7 +99,7 @@ class Agent:
     news: bool = False  # a new decision waits to be carried out
 
     def __post_init__(self) -> None:
-        self.rounds = Rounds(self.mission, self.scheme, self._decided, self.pace)
+        self.rounds = Rounds(self.mission, self.scheme, self._decided, self.pace, forks=self.forks)
 
     @property
     def mission(self) -> Mission[Any, Any, Any]:

@@ -80,4 +80,5 @@ def assemble(
     mission = explorer(lattice, spec, how, fusion, most=most)
     behaviour = GroundBehaviour(mission, Driver(robot, spec), options.return_home, waits_for)
     relay = Relay(nearby(most.range, most.speed) if how.negotiates else inf)  # others plan by mates' places
-    return Agent(robot, boot, spec, behaviour, options.negotiates_by, relay=relay)
+    forks = how.negotiates and how.scheme is None  # where the order of turns is no part of the planner
+    return Agent(robot, boot, spec, behaviour, options.negotiates_by, forks=forks, relay=relay)

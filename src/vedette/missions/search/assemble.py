@@ -76,7 +76,7 @@ class SearchTeam:
         mission = Searching(self.case.platform(robot), self.plan, self._fusion(robot, boot), tells_plans)
         behaviour = FlightBehaviour(mission, vehicle.speed, vehicle.turn_rate)
         pace = Pace.each(scenario.replan * scenario.step)
-        return Agent(robot, boot, vehicle, behaviour, self.options.negotiates_by, pace)
+        return Agent(robot, boot, vehicle, behaviour, self.options.negotiates_by, pace, forks=True)
 
     def _fusion(self, robot: int, boot: int) -> StepEvidence[Sparse]:
         elements = SparseIntegers(self.case.pdf.frame.size)

@@ -91,7 +91,8 @@ class TrackTeam:
         """Return a fresh agent for a vehicle, by its number from 0; InputError if the fusion is unknown."""
         scenario, vehicle = self.scenario, self.scenario.vehicles[robot]
         behaviour = FlightBehaviour(self._mission(robot, boot), vehicle.speed, vehicle.turn_rate)
-        return Agent(robot, boot, vehicle, behaviour, self.options.negotiates_by, Pace.each(scenario.step))
+        pace = Pace.each(scenario.step)
+        return Agent(robot, boot, vehicle, behaviour, self.options.negotiates_by, pace, forks=True)
 
     def _mission(self, robot: int, boot: int) -> Tracking:
         scenario, prior, vehicle = self.scenario, self.prior, self.scenario.vehicles[robot]
