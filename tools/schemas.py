@@ -14,11 +14,11 @@ import msgspec
 from msgspec import inspect
 
 from bench.cases import Result
+from bench.compare import CompareReport
 from bench.criteria import BenchReport
 from bench.crowds import CrowdResult
 from bench.decomposition import Shares
 from bench.large.cases import LargeResult
-from bench.compare import CompareReport
 from bench.latency import LatencyReport
 from bench.scale.report import ScaleReport
 from bench.stonesoup.__main__ import StoneSoupReport
