@@ -22,6 +22,13 @@ class Verdict(StrEnum):
     FAILS = "does not hold"
 
 
+def judge(core: bool, whole: bool) -> Verdict:
+    """Return the verdict on a claim whose core was found to hold or not, and that as a whole or not."""
+    if not core:
+        return Verdict.FAILS
+    return Verdict.HOLDS if whole else Verdict.IN_PART
+
+
 @dataclass(frozen=True)
 class Table:
     """Rows of one kind; the report shows them all unless there are too many."""
@@ -53,11 +60,18 @@ class Section:
     evidence: str = ""  # of a claim, the measured figures in one line
     tables: tuple[Table, ...] = ()
     pictures: tuple[str, ...] = ()  # files in the folder of figures
+    but: str = ""  # of a claim that holds in part: where it does, and where not
 
     @property
     def name(self) -> str:
         """What comes before the colon of the title, such as ``C3``."""
         return self.title.split(": ", 1)[0]
+
+    @property
+    def judgement(self) -> str:
+        """The verdict in words: ``holds in part: on a chain, not at a star's hub``."""
+        told = "" if self.verdict is None else self.verdict.value
+        return f"{told}: {self.but}" if self.verdict is Verdict.IN_PART and self.but else told
 
     @property
     def statement(self) -> str:

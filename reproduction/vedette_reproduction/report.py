@@ -80,7 +80,7 @@ def _glance(claims: Sequence[Section]) -> str:
 def _verdict(section: Section) -> str:
     if section.verdict is None:
         return ""
-    return f'<span class="verdict {_COLOURS[section.verdict]}">{escape(section.verdict.value)}</span>'
+    return f'<span class="verdict {_COLOURS[section.verdict]}">{escape(section.judgement)}</span>'
 
 
 def _section(section: Section, figures: Path) -> str:

@@ -150,7 +150,7 @@ def verdicts(sections: Sequence[Section]) -> Table:
         (
             section.name,
             section.statement,
-            section.verdict.value,
+            section.judgement,
             section.evidence,
         )
         for section in sections

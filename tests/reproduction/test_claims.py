@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import ast
 import dataclasses
 import itertools
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -12,16 +14,16 @@ import pytest
 from tests.support.reproductions import named, silent
 from vedette import Tree
 from vedette.problem import Coverage, LogDet, exhaustive
-from vedette_reproduction import teams
+from vedette_reproduction import claims, teams
 from vedette_reproduction.claims.asynchrony import c9, leave_one_out_is_exact
 from vedette_reproduction.claims.convergence import c3, two_robots
-from vedette_reproduction.claims.cost import c4_to_c7
+from vedette_reproduction.claims.cost import c4, c4_to_c7, c5, c6
 from vedette_reproduction.claims.definition import c1, c2, expected_entropy, miss_of, outcomes
 from vedette_reproduction.claims.fusion import Look, c10, central_update
 from vedette_reproduction.claims.iterations import COUPLING, c8
 from vedette_reproduction.claims.search import c13
-from vedette_reproduction.content import Table, Verdict
-from vedette_reproduction.costs import SCHEMES
+from vedette_reproduction.content import Section, Table, Verdict
+from vedette_reproduction.costs import FIXED, GROWING, SCHEMES, TREES, Cost
 from vedette_reproduction.links import sweep, team_on
 from vedette_reproduction.missions import Missions
 from vedette_reproduction.post import SparseCodec, record
@@ -137,8 +139,9 @@ def test_messages_are_twice_the_links_a_sweep(scheme: str) -> None:
 def test_cost_claims_have_their_verdicts_and_their_counts(run: ReproductionRun) -> None:
     sections = c4_to_c7(run)
     assert [section.verdict for section in sections] == [
-        Verdict.HOLDS, Verdict.HOLDS, Verdict.IN_PART, Verdict.HOLDS,
+        Verdict.IN_PART, Verdict.IN_PART, Verdict.IN_PART, Verdict.HOLDS,
     ]  # fmt: skip
+    assert sections[0].judgement == "holds in part: on a chain, not at a star's hub"
     messages = named(sections[1], "c5_messages")
     papers = [row for row in messages.rows if row[0] == SCHEMES["jacobi"]]
     assert [row[4] for row in papers] == pytest.approx([row[6] for row in papers])
@@ -147,6 +150,38 @@ def test_cost_claims_have_their_verdicts_and_their_counts(run: ReproductionRun) 
     sizes = named(sections[2], "c6_bytes")
     fixed = [row[5] for row in sizes.rows if row[1] == "fixed" and row[0] == SCHEMES["jacobi"]]
     assert max(map(float, fixed)) - min(map(float, fixed)) < 8  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("judged", "field", "few", "many"),
+    [(c4, "most_combinations", 2.0, 99.0), (c5, "most_messages", 2.0, 99.0), (c6, "longest", 500, 900)],
+)
+def test_a_cost_claim_is_judged_by_what_was_measured_on_a_chain_and_elsewhere(
+    judged: Callable[[list[Cost]], Section], field: str, few: float, many: float
+) -> None:
+    """What grows: nothing, at a star's hub or over a growing area only, or everywhere."""
+
+    def verdict(everywhere: bool, elsewhere: bool) -> Verdict | None:
+        costs = []
+        for area, tree, n in itertools.product((FIXED, GROWING), TREES, (2, 8)):
+            usual = area == FIXED and tree == "chain"
+            grown = n == 8 and (everywhere if usual else everywhere or elsewhere)
+            blank = Cost(SCHEMES["jacobi"], area, tree, n, 3, 1.0, 2.0, 2.0, 1.5, 2.0, 12, 500, 400.0, 0.0)
+            costs.append(dataclasses.replace(blank, **{field: many if grown else few}))
+        return judged(costs).verdict
+
+    assert verdict(everywhere=False, elsewhere=False) is Verdict.HOLDS
+    assert verdict(everywhere=False, elsewhere=True) is Verdict.IN_PART
+    assert verdict(everywhere=True, elsewhere=True) is Verdict.FAILS
+
+
+def test_no_verdict_is_a_constant() -> None:
+    """Every one is computed: none stands in a source file as it is."""
+    for file in Path(claims.__path__[0]).glob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "Section":
+                verdict = node.args[4]
+                assert isinstance(verdict, ast.IfExp | ast.Call), f"{file.name}: {ast.unparse(verdict)}"
 
 
 def test_only_touched_cells_travel_and_come_back_as_they_were() -> None:
@@ -160,8 +195,9 @@ def test_asynchronous_delivery_changes_nothing_and_a_ring_counts_again_and_again
     run: ReproductionRun,
 ) -> None:
     section = c9(run)
-    order = named(section, "c9_order").rows[0]
+    order, stale = named(section, "c9_order").rows[0], named(section, "c9_stale").rows[0]
     assert order[1] == order[2] == order[3]
+    assert section.verdict is (Verdict.IN_PART if stale[2] else Verdict.HOLDS)
     ring = numbers(named(section, "c9_ring"), "held by another")
     assert ring == sorted(ring, reverse=True)
     assert ring[-1] < 1e-12

@@ -11,6 +11,7 @@ from PIL import Image
 from tests.support.reproductions import SMALL, named, silent
 from vedette.domains.mapping.planners import DEFAULT
 from vedette.problem import exhaustive
+from vedette_reproduction.claims import mapping
 from vedette_reproduction.claims.mapping import c11, c12
 from vedette_reproduction.content import Verdict
 from vedette_reproduction.contest import OBJECTIVE, make_scenes, selfish_choice
@@ -101,8 +102,18 @@ def test_figure_6_shows_growing_coverage_and_both_planners(run: ReproductionRun)
     assert is_picture(run.figures / section.pictures[0])
 
 
+@pytest.mark.parametrize(("left", "verdict"), [(0, Verdict.HOLDS), (1, Verdict.IN_PART)])
+def test_missions_that_leave_something_to_do_have_not_ended_as_the_claim_says(
+    run: ReproductionRun, left: int, verdict: Verdict, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(mapping, "left_to_do", lambda mission: (9, left))
+    assert c12(run).verdict is verdict
+
+
 def test_missions_end_and_leave_little(run: ReproductionRun) -> None:
     section = c12(run)
-    assert section.verdict is Verdict.HOLDS
+    left = sum(int(row[6] or 0) for row in section.tables[0].rows)
+    assert section.verdict is (Verdict.IN_PART if left else Verdict.HOLDS)
+    assert f"{left} promising frontiers" in section.but
     assert all(float(row[4] or 0) > 0.99 for row in section.tables[0].rows)
     assert c11(run).verdict is Verdict.HOLDS

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from vedette.negotiation import Tree
 from vedette.problem import CountedCoverage, Coverage, counted
-from vedette_reproduction.content import Section, Table, Verdict, table
+from vedette_reproduction.content import Section, Table, judge, table
 from vedette_reproduction.links import Member, members_of, team_on, tell
 from vedette_reproduction.post import record
 from vedette_reproduction.run import ReproductionRun
@@ -45,10 +45,12 @@ def c9(run: ReproductionRun) -> Section:
             "Acyclic it must be: on a ring of four, news comes back as if it were somebody else's, is "
             "multiplied in again, and the probability that the team misses a cell decays to 0 by itself.",
         ),
-        Verdict.HOLDS if same == exact == trials else Verdict.FAILS,
+        judge(same == exact == trials, fell == 0.0),
         f"{same} of {trials} shuffled rounds end alike, leave-one-out exact in {exact}; stale replies: "
-        f"{100 * fell:.1f} % of changes lower J; a ring counts twice",
+        f"{100 * fell:.1f} % of changes lower J; on a ring a miss of {ring.rows[-1][2]} becomes "
+        f"{float(ring.rows[-1][1] or 0):.2g}",
         (order, stale, ring),
+        but="messages may come in any order, but replies at any time may lower J",
     )
 
 

@@ -10,7 +10,7 @@ from vedette.negotiation import Negotiation, Tree, negotiate
 from vedette.problem import Coverage
 from vedette.record.canvas import DPI, picture, save
 from vedette_reproduction import teams
-from vedette_reproduction.content import Section, Table, Verdict, column, table
+from vedette_reproduction.content import Section, Table, column, judge, table
 from vedette_reproduction.plots import colour, label_axes, over_team_size
 from vedette_reproduction.quadratic import (
     MOST_STEPS,
@@ -62,12 +62,16 @@ def c3(run: ReproductionRun) -> Section:
             f"rounds cycle ({last[0]}). The token, where one platform replies at a time, always ends, at an "
             "equilibrium (docs/theory.md, (V10)).",
         ),
-        Verdict.IN_PART if quadratic.rows[0][1] == quadratic.rows[0][2] and duel.cycle else Verdict.FAILS,
+        judge(
+            quadratic.rows[0][1] == quadratic.rows[0][2],
+            not duel.cycle and not any(float(row[2] or 0) for row in shares.rows),
+        ),
         f"dominant quadratics: {quadratic.rows[0][2]} of {quadratic.rows[0][1]} converge; discrete "
-        f"strategies: a 2-cycle of two robots, {100 * float(last[2] or 0):.0f} % of rounds cycle at n = "
-        f"{last[1]}",
+        f"strategies: a {duel.cycle}-cycle of two robots, {100 * float(last[2] or 0):.0f} % of rounds "
+        f"cycle at n = {last[1]}",
         (iterates, shares, quadratic),
         (PICTURE,),
+        but="for continuous controls, not for frontiers to choose from",
     )
 
 

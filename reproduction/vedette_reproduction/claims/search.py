@@ -63,7 +63,7 @@ def c13(run: ReproductionRun) -> Section:
             f"at most {worst:.4f}, which cells of 20 m and log-misses rounded to sixteenths of a nat leave.",
         ),
         Verdict.HOLDS if lawful and worst < 0.02 else Verdict.FAILS,
-        f"laws hold; value against {run.scale.targets:,} drawn targets: "
+        f"laws {'hold' if lawful else 'are broken'}; value against {run.scale.targets:,} drawn targets: "
         + ", ".join(f"{float(row[1] or 0):.3f} / {float(row[2] or 0):.3f}" for row in rows),
         (
             table(
