@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 
 from tests.support.random_teams import Float, Node, deliver, misses
 from vedette import Coverage, InputError, Tree, exhaustive, negotiate
-from vedette.negotiation import Chooser, node_of
-from vedette.negotiation.messages import Fork, Joined, Offer, RoundOutcome, Settled, Tidings
+from vedette.missions.pairs import scheme_of
+from vedette.negotiation import AsyncNode, Chooser, Claims, ForkNode, node_of
+from vedette.negotiation.messages import Fork, Gather, Joined, Offer, RoundOutcome, Settled, Tidings
 
 SEEDS = st.integers(0, 100_000)
 BOTH = pytest.mark.parametrize("scheme", ["fork", "async"])
@@ -199,3 +200,42 @@ def test_what_is_out_of_turn_is_refused() -> None:
     with pytest.raises(InputError, match="Offer from 0 is out of turn"):
         asleep.receive(0, Offer(None, 0, 0, True, False, 0.0, 0.0, 1, 0.0, 0, False))
     assert asleep.receive(0, Settled(RoundOutcome(1.0, None, 1, True), True, True)) == []
+
+
+def no_more_than_one_can(impact: Float, platforms: int) -> None:
+    """A platform sees one cell for sure at most."""
+    if np.count_nonzero(impact == 0.0) > platforms:
+        raise ValueError("claims too much")
+
+
+def test_what_claims_too_much_is_refused_by_both_and_nothing_of_it_is_held() -> None:
+    weights, honest, liar = np.ones(3), np.array([1.0, 0.0, 1.0]), np.zeros(3)
+    claims = Claims({1: 1}, no_more_than_one_can)
+    fork = ForkNode([1], None, Chooser(Coverage(), weights, [np.array([0.0, 1.0, 1.0])]), claims=claims)
+    fork.start()
+    with pytest.raises(InputError, match="speaks for 2 platforms, at most 1 behind it"):
+        fork.receive(1, Gather(honest, 2, 1.0, 1.0))
+    (down,) = fork.receive(1, Gather(honest, 1, 3.0, 1.0))
+    assert isinstance(down.message, Fork)
+    with pytest.raises(ValueError, match="claims too much"):
+        fork.receive(1, Joined(liar, 3.0, 0.0, 1, 3.0, 1, False))
+    assert fork.waiting_for == {1}
+    np.testing.assert_array_equal(fork.team_held(), [0.0, 0.0, 1.0])  # the honest impact, and the own one
+    team = AsyncNode([1], None, Chooser(Coverage(), weights, [np.array([0.0, 1.0, 1.0])]), claims=claims)
+    team.start()
+    with pytest.raises(ValueError, match="claims too much"):
+        team.receive(1, Offer(liar, 1, 0, False, True, 3.0, 0.0, 1, 3.0, 0, False))
+    assert team.waiting_for == {1}
+    assert team.receive(1, Offer(honest, 1, 0, False, True, 1.0, 0.0, 1, 1.0, 0, False))
+    np.testing.assert_array_equal(team.team_held(), [0.0, 0.0, 1.0])
+
+
+def test_planners_that_do_not_negotiate_are_not_taken_back_by_a_scheme_that_prices_changes() -> None:
+    assert [scheme_of("nearest", scheme) for scheme in ("fork", "async", "jacobi")] == [
+        "token",
+        "token",
+        "jacobi",
+    ]
+    assert scheme_of("tours", "fork") == "fork"
+    with pytest.raises(InputError, match="greedy negotiates by token"):
+        scheme_of("greedy", "fork")
