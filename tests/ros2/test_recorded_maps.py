@@ -146,6 +146,15 @@ def test_the_command_leaves_map_picture_and_figures_and_no_measurement_that_nobo
     np.testing.assert_array_equal(laid(classes, frame, building.frame), building.classes())
 
 
+def test_the_folder_in_which_one_stands_has_its_name(
+    vedette: Command, building: World, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(write_folder(tmp_path / "slam", growing(building)))
+    ran = vedette("replay", ".", "--out", "../out")
+    assert (ran.status, ran.out[:5]) == (0, "slam:")
+    assert (tmp_path / "out" / "slam.yaml").exists()
+
+
 def test_scans_and_maps_are_replayed_beside_each_other(
     vedette: Command, building: World, tmp_path: Path
 ) -> None:

@@ -33,6 +33,7 @@ from vedette.sim.worlds import office
 from vedette.team import PlatformSpec
 
 MOST_ROBOTS = 64
+OBSERVATION = "observation"
 SIMULATED = "generated office, the same lidar"
 _MISSION = 120.0  # of the simulated robots whose scans are set beside the recorded ones [s]
 
@@ -89,7 +90,7 @@ def replay(
     _check_names(logs)
     replays = [Replay(log, setup) for log in logs]
     maps = [f"{log.name}.{ending}" for log in logs for ending in ("yaml", "pgm", "png")]
-    leaves = ["summary.json", *(["observation.png"] if any(log.scans for log in logs) else []), *maps]
+    leaves = ["summary.json", *([f"{OBSERVATION}.png"] if any(log.scans for log in logs) else []), *maps]
     with OutputFolder.make(out, force, "replay", files) as folder, telling_what_is_missing(folder, leaves):
         done = _run(replays, Console(stderr=True))
         summary = ReplaySummary(buildings=tuple(map(ReplayedBuilding.of, done)))
@@ -107,6 +108,10 @@ def _check_names(logs: list[RecordedLog]) -> None:
     for name in names:
         if names.count(name) > 1:
             raise InputError(f"two logs are called {name}; their maps would be one file: replay them apart")
+        if name == OBSERVATION:
+            raise InputError(
+                f"a log called {name} would have the picture of what all logs' scans see: rename it"
+            )
 
 
 def _run(replays: list[Replay], console: Console) -> list[Replayed]:
@@ -161,7 +166,7 @@ def _measure(replays: list[Replay], done: list[Replayed], folder: OutputFolder) 
     scanned = [each for each in done if not each.maps]
     first = next(each for each in replays if each.log.scans)
     simulated = {SIMULATED: _simulated(first.specs[0])}
-    observation_png(scanned, simulated, folder / "observation.png")
+    observation_png(scanned, simulated, folder / f"{OBSERVATION}.png")
 
 
 def _closing(summary: ReplaySummary, folder: Path, measured: bool) -> str:
@@ -174,5 +179,5 @@ def _closing(summary: ReplaySummary, folder: Path, measured: bool) -> str:
             f"{each.log}: {seen} over {each.way_m:.0f} m, {each.known_m2:.0f} m2 known, "
             f"{each.free_m2:.0f} m2 free, {team}{agree}"
         )
-    shown = f"; what scans see: {folder / 'observation.png'}" if measured else ""
+    shown = f"; what scans see: {folder / OBSERVATION}.png" if measured else ""
     return "\n".join([*lines, f"maps and pictures: {folder}{shown}"])

@@ -73,7 +73,7 @@ def read_carmen(path: Path) -> RecordedLog:
         )
         for time, each in zip(times([each.stamp for each in readings], poses).tolist(), readings, strict=True)
     )
-    return RecordedLog(path.name.split(".")[0], scans, longest)
+    return RecordedLog(path.name.strip(".").split(".")[0], scans, longest)
 
 
 def _lines(path: Path) -> Iterator[bytes]:

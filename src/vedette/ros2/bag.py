@@ -52,7 +52,7 @@ def read_bag(path: Path, settings: Ros2Settings, evidence: str | None = None) ->
         raise InputError(f"{path}: {_why(heard)}")
     lidar = heard.door.lidar
     reach = 0.0 if lidar is None else lidar.range
-    return RecordedLog(path.stem, tuple(heard.scans), reach, tuple(heard.maps))
+    return RecordedLog(path.resolve().stem, tuple(heard.scans), reach, tuple(heard.maps))
 
 
 @dataclass(eq=False)

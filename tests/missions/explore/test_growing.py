@@ -21,10 +21,12 @@ from vedette.errors import InputError
 from vedette.fusion import ReplicatedEvidence
 from vedette.maps import FREE, UNKNOWN, GridFrame
 from vedette.maps.area import Area
+from vedette.maps.image import MAX_SIDE
 from vedette.maps.laid import laid
 from vedette.maps.lattice import Lattice
 from vedette.maps.world import World
 from vedette.missions.explore.exploring import Exploring
+from vedette.missions.explore.options import ExploreOptions
 from vedette.missions.explore.own_map import OwnMap
 from vedette.outcome import Outcome
 from vedette.sim.explore.run import explore, prepare
@@ -293,6 +295,16 @@ def test_cells_of_a_robots_own_map_beyond_the_lattice_are_counted_anew_with_each
         told = Sensed(OwnMap(classes, RESOLUTION, x, 0.0, 0.0), 0.0)
         mission.observe(told, Pose(0.0, 0.0, 0.0), [], 0.0)
         assert mission.own.beyond == beyond
+
+
+def test_an_open_lattice_about_a_map_has_room_for_all_that_a_map_may_be() -> None:
+    frame = GridFrame(0.05, MAX_SIDE, MAX_SIDE - 1, 448262.5, -19.0)
+    lattice = ExploreOptions(unbounded=True).lattice_on(frame)
+    corners = frame.centres(np.array([0, frame.cols - 1, frame.size - frame.cols, frame.size - 1]))
+    assert lattice.frame.holds(corners).all()
+    row, col = lattice.frame.cell(*corners[0].tolist())
+    part = lattice.frame.window(slice(row, row + frame.rows), slice(col, col + frame.cols))
+    np.testing.assert_allclose(part.extent, frame.extent, atol=1e-6)  # cells lie on cells
 
 
 def test_on_a_map_or_an_area_nothing_lies_beyond() -> None:

@@ -131,6 +131,7 @@ def test_the_command_leaves_maps_pictures_and_figures(
     ("words", "told"),
     [
         (("a.log", "b/a.log"), "two logs are called a; their maps would be one file: replay them apart"),
+        (("observation.log",), "a log called observation would have the picture of what all logs' scans see"),
         (("a.log", "--robots", "40"), "too few for 40 robots"),
         (("nowhere.log",), "cannot read log nowhere.log: No such file"),
         (("a.log", "--resolution", "3"), "resolution of a world must be 0.02 to 0.2 m; got 3"),
@@ -141,7 +142,7 @@ def test_bad_input_is_told_in_a_line_and_leaves_nothing(
     vedette: Command, building: World, tmp_path: Path, words: tuple[str, ...], told: str
 ) -> None:
     (tmp_path / "b").mkdir()
-    for place in ("a.log", "b/a.log"):
+    for place in ("a.log", "b/a.log", "observation.log"):
         (tmp_path / place).write_text("\n".join(carmen_log(building, 4.0).splitlines()[:20]))
     refused(vedette("replay", *words, "--out", "out"), told)
     assert not (tmp_path / "out").exists()

@@ -37,7 +37,8 @@ class ExploreOptions(Struct, forbid_unknown_fields=True, frozen=True):
     def lattice_on(self, frame: GridFrame) -> Lattice:
         """Return the lattice of a team on a map; InputError if the area is none, or too large."""
         if self.unbounded:
-            return self.lattice(frame.resolution, (frame.origin_x, frame.origin_y))
+            x = frame.origin_x + frame.cols // 2 * frame.resolution
+            return self.lattice(frame.resolution, (x, frame.origin_y + frame.rows // 2 * frame.resolution))
         return Lattice(frame, self._area)
 
     @property
