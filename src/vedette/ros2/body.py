@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from math import atan2, ceil, hypot, inf, nan
+from math import atan2, hypot, nan
 
 import numpy as np
 
@@ -29,13 +28,10 @@ from vedette.ros2.goals import Ask, Errands, Place
 from vedette.ros2.grids import Grids
 from vedette.ros2.scans import LaserSweep, beams
 from vedette.ros2.settings import Ros2Settings
-from vedette.ros2.transforms import RESTARTED, Gap, Matrix, Transforms, place, planar
+from vedette.ros2.sweeps import PlacedSweep, Sweeps
+from vedette.ros2.transforms import Gap, Matrix, Transforms, place, planar
 from vedette.team import PlatformSpec
 
-WAITING = 100  # scans that wait for their transforms at most; then the oldest is left out
-BETWEEN_SCANS = 0.18  # of those that are taken in, at least [s]
-KNOT = 0.025  # a scan's way is looked up as often as this [s] ...
-MOST_KNOTS = 8  # ... but in no more legs
 SILENT = 5.0  # without a scan that can be placed for so long somebody should know [s]
 NO_WAY = 0.01  # less between two poses is not counted as way [m]
 
@@ -53,19 +49,29 @@ class Ros2Body:
     transforms: Transforms = field(default_factory=Transforms)
     goals: Errands = field(default_factory=Errands)
     grids: Grids = field(default_factory=Grids)
-    left_out: int = 0  # scans whose transforms never came
-    latest: LaserSweep | None = None
     at_work: str | None = None  # why it does not do what its agent wants; None: it does
     _wish: Drive | None = None  # what its agent wants
     _began: Place | None = None  # where it was first
     _pose: Pose | None = None  # team frame
     _counted: Pose | None = None  # up to where its way is counted
     _travelled: float = 0.0
-    _seen: float = -inf  # stamp of the latest scan that was taken in [s]
     _now: float = 0.0  # as of the last look [s]
     _scanned: float = 0.0  # when a scan was placed last [s]
     _deviation: Deviation = field(default_factory=Deviation)
-    _waiting: deque[LaserSweep] = field(default_factory=lambda: deque(maxlen=WAITING))
+    _sweeps: Sweeps = field(init=False)
+
+    def __post_init__(self) -> None:
+        self._sweeps = Sweeps(self.transforms)
+
+    @property
+    def latest(self) -> LaserSweep | None:
+        """The latest scan, wherever it was taken."""
+        return self._sweeps.latest
+
+    @property
+    def left_out(self) -> int:
+        """Scans whose transforms never came."""
+        return self._sweeps.left_out
 
     @property
     def time(self) -> Callable[[], float | None] | None:
@@ -91,7 +97,7 @@ class Ros2Body:
         silent = self._now - self._scanned
         if silent < SILENT:
             return self.goals.said
-        if self._waiting:
+        if self._sweeps.wait:
             return f"no transform for the scans of the last {silent:.0f} s: is localisation running?"
         return f"nothing on {self.settings.scan} for {silent:.0f} s: is the lidar on?"
 
@@ -159,7 +165,7 @@ class Ros2Body:
             case Joint(parent, child, stamp, T, fixed):
                 self.transforms.add(parent, child, stamp, T, fixed=fixed)
             case LaserSweep():
-                self._receive(told)
+                self._sweeps.receive(told)
             case Grid() | Patch():
                 self.grids.take(told)
             case Deviation():
@@ -202,53 +208,28 @@ class Ros2Body:
         if way >= NO_WAY or self._counted is None:
             self._counted, self._travelled = pose, self._travelled + way
 
-    def _due(self) -> list[tuple[Pose, Scan]]:
-        """Return the scans whose transforms have come by now, each with where the robot was then."""
-        due = []
-        while self._waiting:
-            placed = self._placed(self._waiting[0])
-            if placed in (Gap.NOT_YET, Gap.UNCONNECTED):
-                break
-            self._waiting.popleft()
-            if isinstance(placed, Gap):
-                self.left_out += 1
-            else:
-                due.append(placed)
-        return due
-
-    def _receive(self, sweep: LaserSweep) -> None:
-        """Let a scan wait for its transforms; what comes faster than is needed is left alone."""
-        self.latest = sweep
-        if sweep.stamp < self._seen - RESTARTED:  # the robot's clock has begun anew
-            self._waiting.clear()
-        elif sweep.stamp < self._seen + BETWEEN_SCANS:
-            return
-        self._seen = sweep.stamp
-        self._waiting.append(sweep)
+    @property
+    def _frames(self) -> tuple[str, str]:
+        """Of the robot's map and of its base, as TF knows them."""
+        return self.frame(self.settings.map_frame), self.frame(self.settings.base_frame)
 
     @property
     def places_scans(self) -> bool:
         """Tell whether TF covers any of the scans that wait."""
-        return any(not isinstance(self._placed(sweep), Gap) for sweep in self._waiting)
+        return self._sweeps.can_be_placed(*self._frames)
 
-    def _placed(self, sweep: LaserSweep) -> tuple[Pose, Scan] | Gap:
+    def _due(self) -> list[tuple[Pose, Scan]]:
+        """Return the scans whose transforms have come by now, each with where the robot was then."""
+        return [self._scan(placed) for placed in self._sweeps.due(*self._frames)]
+
+    def _scan(self, placed: PlacedSweep) -> tuple[Pose, Scan]:
         """Return a scan in the team's frame, as taken where the robot was in its middle."""
-        map_frame, T_team_map = self.frame(self.settings.map_frame), self.settings.T_team_map
-        middle, base = 0.5 * (sweep.stamp + sweep.ends), self.frame(self.settings.base_frame)
-        legs = min(max(ceil((sweep.ends - sweep.stamp) / KNOT), 1), MOST_KNOTS)
-        stamps = np.linspace(sweep.stamp, sweep.ends, legs + 1).tolist()
-        found: list[Matrix] = []
-        for frame, stamp in (*((sweep.frame, stamp) for stamp in stamps), (base, middle)):
-            T = self.transforms.lookup(map_frame, frame, stamp)
-            if isinstance(T, Gap):
-                return T
-            found.append(T)
-        seen = beams(sweep, [T_team_map @ T for T in found[:-1]], self.settings.no_return)
+        knots = [self.settings.T_team_map @ T for T in placed.knots]
+        seen = beams(placed.sweep, knots, self.settings.no_return)
         if self.settings.evidence == "map":  # it only tells where the robot has looked
             seen = replace(seen, ranges=np.full(len(seen.ranges), nan))
-        pose, newest = self._pose_at(found[-1]), self.transforms.newest(base)
-        age = 0.0 if newest is None else max(newest - middle, 0.0)
-        return pose, Scan(seen.angles, seen.ranges, (seen.x - pose.x, seen.y - pose.y), age)
+        pose = self._pose_at(placed.T_map_base)
+        return pose, Scan(seen.angles, seen.ranges, (seen.x - pose.x, seen.y - pose.y), placed.age)
 
     def _own_map(self, now: float) -> list[Event]:
         """Return the robot's own map, if that is its evidence and there is news of it."""
