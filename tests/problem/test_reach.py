@@ -153,7 +153,7 @@ def test_a_neighbour_is_told_of_everybody_but_those_beyond_it() -> None:
     [
         ([()], "token", "reach has 1 for 2 platforms"),
         ([(), ((1.0, 0.0, 0.0, 1.0),)], "token", r"reach\[1\] has .* a box is lowest x"),
-        ([(), ()], "jacobi", "reach belongs to scheme 'token'"),
+        ([(), ()], "jacobi", "reach goes with token, fork and async"),
     ],
 )
 def test_a_reach_that_makes_no_sense_is_refused(reach: list[Reach], scheme: str, message: str) -> None:
