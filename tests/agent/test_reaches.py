@@ -51,6 +51,7 @@ def test_what_is_heard_holds_the_reach_of_everybody_beyond_the_link_in_whole_met
 
 
 def test_one_robot_that_may_go_anywhere_unbounds_exactly_the_sides_it_is_on() -> None:
+    found = set()
     for seed in range(10):
         tree = Tree.random(7, seed=seed)
         own: list[Reach | None] = [((0.0, 0.0, 1.0, 1.0),)] * 7
@@ -58,3 +59,5 @@ def test_one_robot_that_may_go_anywhere_unbounds_exactly_the_sides_it_is_on() ->
         for i, heard in enumerate(heard_by_all(tree, own)):
             for k, reach in heard.items():
                 assert (reach is None) == (seed % 7 in beyond(tree, i, k))
+                found.add(reach is None)
+    assert found == {False, True}

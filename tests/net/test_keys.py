@@ -66,9 +66,10 @@ def test_openssl_agrees_that_the_certificates_are_the_authoritys_and_serve_both_
 
 
 def test_secrets_are_readable_by_the_owner_alone(team: Path) -> None:
-    for path in [team, *team.rglob("*")]:
-        if path.is_dir() or "key" in path.name:
-            assert stat.S_IMODE(path.stat().st_mode) & 0o077 == 0, path
+    secret = [path for path in (team, *team.rglob("*")) if path.is_dir() or "key" in path.name]
+    assert {path.is_dir() for path in secret} == {False, True}
+    for path in secret:
+        assert stat.S_IMODE(path.stat().st_mode) & 0o077 == 0, path
 
 
 def test_a_robots_folder_holds_what_it_needs_and_not_the_authoritys_key(team: Path) -> None:

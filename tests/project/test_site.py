@@ -68,6 +68,7 @@ def test_formulas_and_diagrams_are_drawn(site: Path) -> None:
 def test_no_page_loads_anything_from_elsewhere(site: Path) -> None:
     elsewhere = r'[^>]*="(?:https?:)?//'
     loaded = re.compile(rf'<(?:script|img|iframe){elsewhere}|<link(?=[^>]* rel="stylesheet"){elsewhere}')
+    assert {path.suffix for path in site.rglob("*")} >= {".html", ".css"}
     for page in site.rglob("*.html"):
         assert not loaded.search(page.read_text(encoding="utf-8")), page.name
     for style in site.rglob("*.css"):

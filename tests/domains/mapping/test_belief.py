@@ -127,6 +127,7 @@ def test_total_worth_is_the_entropy_of_the_unknown_plus_the_hidden_area_of_every
 def test_hidden_area_lies_only_where_unknown_cells_touch_a_frontier() -> None:
     with_it, without = frozen(hidden=3.0), frozen(hidden=0.0)
     bonus = dense(with_it.weights) - dense(without.weights)
+    assert bonus.any()
     for cell in np.flatnonzero(bonus):
         row, col = divmod(int(cell), with_it.planning.cols)
         factor = with_it.factor

@@ -99,6 +99,7 @@ def test_no_tour_adds_more_than_the_slack() -> None:
 def test_a_robot_turns_away_from_its_stop_if_and_only_if_another_gains_clearly_more() -> None:
     belief, platform = frozen(), ready(max_stops=1)
     singles = [platform.tour(np.array([stop])) for stop in range(len(stops_of(platform)))]
+    found = set()
     for seed in range(10):
         others = random_team(np.random.default_rng(seed), platform)
         gains = OBJECTIVE.values(belief, others, [platform.impact(belief, tour) for tour in singles])
@@ -107,6 +108,8 @@ def test_a_robot_turns_away_from_its_stop_if_and_only_if_another_gains_clearly_m
             if abs(gains.max() / gain - 1.0 - STICKINESS) > 1e-3:  # not on the edge
                 kept = platform.reply(belief, others, tour) is tour
                 assert kept == (gains.max() <= gain * (1.0 + STICKINESS))
+                found.add(kept)
+    assert found == {False, True}
 
 
 def test_a_tour_ends_before_the_first_stop_that_cannot_be_reached() -> None:
