@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import yaml
 
-from tests.support.commands import Command, refused
+from tests.support.commands import Command, check_files, refused
 from tests.support.track_scenes import content
 from vedette.domains.mapping.planners import PLANNERS
 from vedette.errors import InputError, InputWarning
@@ -180,6 +180,14 @@ def test_what_is_in_vain_since_vehicles_tell_each_other_nothing_is_told(
     )
     sent = json.loads(Path("b/summary.json").read_text())["messages"].values()
     assert not any(kinds["negotiation"] or kinds["fusion"] for kinds in sent)
+
+
+@pytest.mark.parametrize("command", ["track", "search"])
+def test_the_scenario_that_is_built_in_is_flown_and_compared_and_leaves_its_files(
+    vedette: Command, command: str
+) -> None:
+    assert vedette(command, "--max-time", 4, "--out", "out").err == ""
+    check_files(Path("out"), command)
 
 
 def test_a_limit_beyond_the_end_of_a_scenario_is_told(vedette: Command) -> None:
