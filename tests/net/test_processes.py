@@ -119,6 +119,18 @@ def test_a_team_of_processes_completes_and_leaves_every_file(rooms: Path, tmp_pa
     assert summary["apart_s"] == 0.0
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("scheme", ["fork", "async"])
+def test_processes_agree_by_any_scheme(scheme: str, rooms: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    with team_explore(rooms, "--robots", 3, "--speed", 4, "--scheme", scheme, "--out", out) as team:
+        _, err = team.communicate(timeout=300.0)
+    assert team.returncode == 0, err
+    summary = json.loads((out / "summary.json").read_text())
+    assert (summary["completed"], summary["scheme"]) == (True, scheme)
+    assert summary["coverage"] > 0.995
+
+
 @pytest.mark.parametrize(
     "number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)], ids=lambda n: n.name
 )
