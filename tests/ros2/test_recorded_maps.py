@@ -242,6 +242,11 @@ def test_what_a_map_lacks_is_told_with_its_remedy(
             ("replay", "walk.log", "--evidence", "map"),
             "--evidence map is of ROS 2 recordings, and walk",
         ),
+        (
+            ("replay", "walk.log", "--map-frame", "world"),
+            "--map-frame world is of ROS 2 recordings, and walk",
+        ),
+        (("world", "log", "walk.log", "--scan", "front"), "--scan front is of ROS 2 recordings, and walk"),
         (("replay", "blank"), "blank: nothing of its maps is known"),
         (("world", "log", "blank"), "blank: its map leaves nothing free"),
         (("world", "office", "--evidence", "map"), "--evidence is of recordings; leave it out"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -58,8 +58,6 @@ def recording(path: Path, no_return: str, evidence: str | None, **names: str) ->
         InputError: it cannot be read, or a name is none of ROS.
     """
     if not is_bag(path):
-        if evidence == "map":
-            raise InputError(f"--evidence map is of ROS 2 recordings, and {path} is none; leave it out")
         _check_kind(path)
         return read_carmen(path)
     try:
@@ -68,6 +66,23 @@ def recording(path: Path, no_return: str, evidence: str | None, **names: str) ->
         option = str(error).rpartition("$.")[2].rstrip("`").replace("_", "-")
         raise InputError(f"--{option} must be a name as ROS has them, of letters, digits and _") from error
     return read_bag(path, settings, evidence)
+
+
+def check_in_vain(paths: Sequence[Path], evidence: str | None, **names: str) -> None:
+    """Refuse what only a ROS 2 recording makes anything of, if there is none.
+
+    Raises:
+        InputError: so it is.
+    """
+    if any(map(is_bag, paths)):
+        return
+    usual = Ros2Settings()
+    given = {name: value for name, value in names.items() if value != getattr(usual, name)}
+    given |= {} if evidence is None else {"evidence": evidence}
+    if given:
+        name, value = next(iter(given.items()))
+        option = f"--{name.replace('_', '-')} {value}"
+        raise InputError(f"{option} is of ROS 2 recordings, and {paths[0]} is none; leave it out")
 
 
 def _check_kind(path: Path) -> None:

@@ -15,7 +15,7 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn
 
 from vedette.cli.ends import telling_what_is_missing
 from vedette.cli.options import FILE, OneOf, Share
-from vedette.cli.recordings import recording, recording_options
+from vedette.cli.recordings import check_in_vain, recording, recording_options
 from vedette.domains.mapping.sightings import empty_counts
 from vedette.errors import InputError
 from vedette.interrupt import ending_on_ctrl_c
@@ -86,6 +86,7 @@ def replay(
     Exit status: 0 all went through, 2 bad input, 130 interrupted.
     """
     setup = ReplaySetup(robots, resolution, reach, no_return, fusion=fusion, link_loss=link_loss, seed=seed)
+    check_in_vain(files, evidence, **names)
     logs = [recording(path, no_return, evidence, **names) for path in files]
     _check_names(logs)
     replays = [Replay(log, setup) for log in logs]

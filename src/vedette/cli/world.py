@@ -9,7 +9,7 @@ import numpy as np
 from click.core import ParameterSource
 
 from vedette.cli.options import FILE, OneOf
-from vedette.cli.recordings import OF_RECORDINGS, recording, recording_options
+from vedette.cli.recordings import OF_RECORDINGS, check_in_vain, recording, recording_options
 from vedette.errors import InputError
 from vedette.maps.world import World
 from vedette.record.folder import OutputFolder
@@ -59,6 +59,7 @@ def world(
     if of_log:
         if file is None:
             raise InputError("vedette world log needs a FILE: a CARMEN log, a rosbag2 folder or an MCAP file")
+        check_in_vain([file], evidence, **names)
         made = logged(recording(file, no_return, evidence, **names), resolution, reach, no_return)
     else:
         made = _generated(kind, file, seed, width, height, resolution)
