@@ -21,6 +21,7 @@ from scipy.sparse.csgraph import minimum_spanning_tree
 from bench import RESULTS, command
 from bench.table import figure, markdown
 from vedette.agent import messages
+from vedette.agent.effects import Send, TrafficKind
 from vedette.agent.mates import Mates
 from vedette.agent.messages import Beacon, Beacons
 from vedette.agent.relay import Relay, nearby
@@ -31,8 +32,9 @@ from vedette.record.files import write_text
 
 GROUND = 100.0  # m2 a robot
 SIGHT, SPEED = 8.0, 0.5  # of every robot [m], [m/s]
-PERIOD, SPAN = 0.25, 5.0  # of beacons, and how long they are counted once it is known who is where [s]
-SETTLING = 2.0  # [s]
+PERIOD = 0.25  # of beacons [s]
+SETTLING = 1.25  # until it is known who is where [s]
+SPAN = 1.0  # that beacons are counted for: all go on once in it at least [s]
 PATH = (40, 10, 80, 30, 120, 60, 160, 100)  # as beaconed: a few metres of way [cm]
 TILES = 20  # of 3.2 m at 0.1 m, that each robot has seen: twice its ground
 FRESH = 1  # of them that changes between two tellings
@@ -76,13 +78,13 @@ class Beaconing:
             links = tuple(self.tree.neighbours(robot))
             self.relays[robot].look(self.mates[robot].all(), links, now)
             own = messages.encode(Beacon(robot, 1, sequence, x, y, 0, 0, 20, 50, PATH))
-            wave += [(robot, send) for send in self.relays[robot].beacon(own, links)]
+            wave += [(robot, Send(link, TrafficKind.BEACONS, own)) for link in links]
         while wave:
             for sender, send in wave:
                 self.messages += 1
                 self.size += len(send.payload)
                 self._hear(send.to, sender, send.payload, now)
-            wave = [(robot, send) for robot, relay in enumerate(self.relays) for send in relay.at_once()]
+            wave = [(robot, send) for robot, relay in enumerate(self.relays) for send in relay.pass_on()]
 
     def _hear(self, robot: int, sender: int, payload: bytes, now: float) -> None:
         message = messages.decode(payload)
@@ -98,7 +100,11 @@ class Beaconing:
 def city(robots: tuple[int, ...], out: Path) -> None:
     """Measure beacons, replicated evidence and the time of a sweep as a team and its ground grow."""
     folder = command.results_folder(out)
-    text = city_table([city_row(n) for n in robots])
+    rows = []
+    for n in robots:
+        rows.append(city_row(n))
+        click.echo(f"{n} robots: {rows[-1]}", err=True)
+    text = city_table(rows)
     write_text(folder / "city.md", text)
     click.echo(text)
 

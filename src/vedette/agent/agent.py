@@ -13,7 +13,7 @@ from math import ceil
 import numpy as np
 
 from vedette.agent import messages
-from vedette.agent.effects import Effect
+from vedette.agent.effects import Effect, Send, TrafficKind
 from vedette.agent.events import Arrived, Event, JobDone, Message, Pose, Scan, Sensed, Stuck, TreeChanged
 from vedette.agent.messages import Beacon, Beacons
 from vedette.agent.state import Agent
@@ -27,7 +27,7 @@ def step(agent: Agent, events: Iterable[Event], now: float) -> list[Effect]:
     effects: list[Effect] = []
     for event in events:
         effects += _take(agent, event, now)
-    effects += agent.relay.at_once()
+    effects += agent.relay.pass_on()
     if agent.pose is not None:
         effects += _go_on(agent, agent.pose, now)
     return effects
@@ -125,7 +125,7 @@ def _go_on(agent: Agent, pose: Pose, now: float) -> list[Effect]:
         effects.append(agent.rounds.preparation(start, agent.mates.all(), now))
     if agent.is_due("beacon", BEACON_PERIOD, now):
         agent.relay.look(agent.mates.all(), agent.rounds.tree.neighbours, now)
-        effects += agent.relay.beacon(_beacon(agent, pose), agent.rounds.tree.neighbours)
+        effects += _beacon(agent, pose)
     effects += agent.behaviour.look_out(agent, pose, now)
     if agent.is_due("share", SHARE_PERIOD, now) and not agent.rounds.busy:
         agent.mission.publish(now)
@@ -134,7 +134,7 @@ def _go_on(agent: Agent, pose: Pose, now: float) -> list[Effect]:
     return effects
 
 
-def _beacon(agent: Agent, pose: Pose) -> bytes:
+def _beacon(agent: Agent, pose: Pose) -> list[Effect]:
     path = agent.behaviour.ahead(pose)
     offsets = np.rint((path - (pose.x, pose.y)) * 100.0).astype(int)
     agent.beacons += 1
@@ -150,4 +150,5 @@ def _beacon(agent: Agent, pose: Pose) -> bytes:
         max(ceil(agent.hull.speed * 100), 1),
         tuple(offsets.ravel().tolist()),
     )
-    return messages.encode(beacon)
+    own = messages.encode(beacon)
+    return [Send(neighbour, TrafficKind.BEACONS, own) for neighbour in agent.rounds.tree.neighbours]

@@ -2,7 +2,7 @@
 
 Right of way, and telling mates from walls, need the places of robots nearby as fresh as they come. What lies
 behind a link may be far from a robot: then one beacon in a while is enough there, so that it does not count
-as silent, and it waits for this robot's own.
+as silent. None waits for others: each hop would make it older. What comes together goes on together.
 """
 
 from __future__ import annotations
@@ -41,8 +41,7 @@ class Relay:
     _looked: float = -inf  # when that was found out [s]
     _links: tuple[int, ...] = ()  # as of then
     _next: dict[tuple[int, int], float] = field(default_factory=dict)  # by link and robot far away [s]
-    _at_once: defaultdict[int, list[bytes]] = field(default_factory=lambda: defaultdict(list))  # by link
-    _later: defaultdict[int, list[bytes]] = field(default_factory=lambda: defaultdict(list))
+    _going: defaultdict[int, list[bytes]] = field(default_factory=lambda: defaultdict(list))  # by link
 
     def hear(self, robot: int, told: bytes, sender: int, links: Iterable[int], now: float) -> None:
         """Take in a mate's beacon, as it came, that is news; it goes on over all other links."""
@@ -50,21 +49,23 @@ class Relay:
         for link in links:
             if link == sender:
                 continue
-            if robot not in self._afar.get(link, ()):
-                self._at_once[link].append(told)
-            elif now >= self._next.get((link, robot), -inf) - EARLY:
+            if robot in self._afar.get(link, ()):
+                if now < self._next.get((link, robot), -inf) - EARLY:
+                    continue
                 self._next[link, robot] = now + AFAR
-                self._later[link].append(told)
+            self._going[link].append(told)
 
-    def at_once(self) -> list[Send]:
-        """Return what cannot wait."""
-        return self._sends(self._at_once) if self._at_once else []
-
-    def beacon(self, own: bytes, links: Sequence[int]) -> list[Send]:
-        """Return this robot's own beacon for all, with what has waited for it."""
-        batches = {link: [own, *self._later.get(link, ())] for link in links}
-        self._later.clear()
-        return self._sends(batches)
+    def pass_on(self) -> list[Send]:
+        """Return what has come since the last call, as it goes on."""
+        if not self._going:
+            return []
+        sends = [
+            Send(link, TrafficKind.BEACONS, payload)
+            for link, told in self._going.items()
+            for payload in _payloads(told)
+        ]
+        self._going.clear()
+        return sends
 
     def look(self, mates: Sequence[Mate], links: tuple[int, ...], now: float) -> None:
         """Find out who is far from all robots behind a link, if it is time for it."""
@@ -85,15 +86,6 @@ class Relay:
             if behind.any():
                 far = away[:, behind].min(axis=1) > self.near
                 self._afar[link] = frozenset(robots[far & ~behind].tolist())
-
-    def _sends(self, batches: dict[int, list[bytes]]) -> list[Send]:
-        sends = [
-            Send(link, TrafficKind.BEACONS, payload)
-            for link, told in batches.items()
-            for payload in _payloads(told)
-        ]
-        batches.clear()
-        return sends
 
 
 def _payloads(told: list[bytes]) -> Iterator[bytes]:
