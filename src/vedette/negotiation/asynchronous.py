@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Generic
 
 import msgspec
@@ -13,43 +12,10 @@ from vedette.errors import InputError
 from vedette.negotiation.branch import Branch, value_alone
 from vedette.negotiation.messages import Message, Offer, RoundOutcome, Settled, Tidings
 from vedette.negotiation.node import Claims, Outgoing, Participant
+from vedette.negotiation.offers import Child, Pending
 from vedette.problem.bound import tightest
 from vedette.problem.objective import ImpactT
 from vedette.problem.reach import Reach
-
-
-@dataclass(eq=False)
-class Child(Generic[ImpactT]):
-    """A child, as it counts and as it talks."""
-
-    branch: Branch[ImpactT] | None = None  # None: it has not been heard of
-    offer: Offer[ImpactT] | None = None  # that has been neither passed on nor refused
-    answered: int = 0  # serial of its last offer that was taken or refused
-    taken: bool = True
-    told: int = 0  # serial of the last news to it
-    heard: int = 0  # of those that it has answered
-    due: bool = False  # there are news for it
-    urgent: bool = False  # with an answer to its offer
-    quiet: bool = False  # its whole part is content with the last news
-    slack: float = math.inf
-    changes: int = 0
-    capped: bool = False
-
-    def answer(self, serial: int, *, taken: bool) -> None:
-        """Note what is to be told of its offer."""
-        self.answered, self.taken = serial, taken
-        self.due, self.urgent, self.quiet = True, True, False
-
-
-@dataclass(eq=False)
-class Pending(Generic[ImpactT]):
-    """Changes that are offered together."""
-
-    own: bool  # own strategy is one
-    fact: bool = False  # they are so already
-    offers: dict[int, Offer[ImpactT]] = field(default_factory=dict)  # of children
-    branches: dict[int, Branch[ImpactT]] = field(default_factory=dict)  # what all children would be
-    gone: frozenset[int] = frozenset()  # children without which that is
 
 
 class AsyncNode(Generic[ImpactT]):
@@ -61,7 +27,7 @@ class AsyncNode(Generic[ImpactT]):
     together. On each link one offer and one piece of news are under way at most: nobody lags more than one
     message a hop behind, and nobody waits for others than those concerned. Without ``guard`` changes count at
     once and are told as facts, which others may have answered before they hear of them.
-    Source: docs/theory.md (V106).
+    Source: docs/theory.md (V105).
     """
 
     def __init__(
