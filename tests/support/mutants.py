@@ -90,7 +90,7 @@ class Mutant(NetworkedAgent):
             send = replace(send, payload=self._changed(send.payload, 1))
         elif isinstance(message, messages.Negotiate):
             tag = msgspec.msgpack.decode(message.data)[0]
-            if NEGOTIATION[tag].__name__ == self._case.message and self._may(send.to):
+            if tag in NEGOTIATION and NEGOTIATION[tag].__name__ == self._case.message and self._may(send.to):
                 changed = msgspec.structs.replace(message, data=self._changed(message.data, 1))
                 send = replace(send, payload=messages.encode(changed))
         return super()._say(send, now)
