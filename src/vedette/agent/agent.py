@@ -8,14 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from functools import partial
-from math import ceil
 
-import numpy as np
 
-from vedette.agent import messages
-from vedette.agent.effects import Effect, Send, TrafficKind
+from vedette.agent import beacons, messages
+from vedette.agent.effects import Effect, Send, Shun, TrafficKind
 from vedette.agent.events import Arrived, Event, JobDone, Message, Pose, Scan, Sensed, Stuck, TreeChanged
-from vedette.agent.messages import Beacon, Beacons
+from vedette.agent.messages import Beacon, Beacons, Vouched
 from vedette.agent.state import Agent
 
 BEACON_PERIOD = 0.25  # [s]
@@ -76,13 +74,14 @@ def _hear(agent: Agent, sender: int, payload: bytes, now: float) -> list[Effect]
         return []
     from_parent = sender == agent.rounds.tree.parent
     match message:
-        case Beacon():
-            _hear_beacon(agent, sender, message, payload, now)
+        case Beacon() | Vouched():
+            return beacons.hear(agent, sender, payload, now)
         case Beacons(told):
-            for each in told:
-                _guarded(agent, partial(_hear_told, agent, sender, each, now))
+            heard = [_guarded(agent, partial(beacons.hear, agent, sender, each, now)) for each in told]
+            return [effect for effects in heard for effect in effects]
         case messages.Evidence(data):
             agent.mission.fusion.receive(sender, data, now)
+            return _without_forger(agent, sender)
         case messages.Call(epoch) if epoch == agent.rounds.tree.epoch and not from_parent:
             return agent.rounds.call(now)
         case messages.Begin() if from_parent:
@@ -93,23 +92,19 @@ def _hear(agent: Agent, sender: int, payload: bytes, now: float) -> list[Effect]
             return agent.rounds.freeze(message, now)
         case messages.Negotiate():
             return agent.rounds.negotiate(sender, message, now)
+        case messages.Audit() if agent.rounds.auditor is not None:
+            return agent.rounds.auditor.ask(sender, message, agent.rounds.tree.neighbours, now)
+        case messages.Account() if agent.rounds.auditor is not None:
+            return agent.rounds.auditor.hear(sender, message, agent.rounds.tree.neighbours)
     return []
 
 
-def _hear_told(agent: Agent, sender: int, told: bytes, now: float) -> list[Effect]:
-    """Hear one of many beacons.
-
-    Raises:
-        ValueError: malformed, or something else.
-    """
-    _hear_beacon(agent, sender, messages.decode_beacon(told), told, now)
-    return []
-
-
-def _hear_beacon(agent: Agent, sender: int, beacon: Beacon, told: bytes, now: float) -> None:
-    """Note where a mate is, and pass on that it is there."""
-    if beacon.robot != agent.robot and agent.mates.hear(beacon, now, sender):
-        agent.relay.hear(beacon.robot, told, sender, agent.rounds.tree.neighbours, now)
+def _without_forger(agent: Agent, sender: int) -> list[Effect]:
+    """Do without the link to a neighbour that has changed what it passes on."""
+    if agent.signed is None or sender not in agent.signed.forgers:
+        return []
+    agent.signed.forgers.discard(sender)
+    return [Shun(sender)]
 
 
 def _go_on(agent: Agent, pose: Pose, now: float) -> list[Effect]:
@@ -125,30 +120,11 @@ def _go_on(agent: Agent, pose: Pose, now: float) -> list[Effect]:
         effects.append(agent.rounds.preparation(start, agent.mates.all(), now))
     if agent.is_due("beacon", BEACON_PERIOD, now):
         agent.relay.look(agent.mates.all(), agent.rounds.tree.neighbours, now)
-        effects += _beacon(agent, pose)
+        own = beacons.tell(agent, pose)
+        effects += [Send(neighbour, TrafficKind.BEACONS, own) for neighbour in agent.rounds.tree.neighbours]
     effects += agent.behaviour.look_out(agent, pose, now)
     if agent.is_due("share", SHARE_PERIOD, now) and not agent.rounds.busy:
         agent.mission.publish(now)
         for neighbour in agent.rounds.tree.neighbours:
             effects += agent.rounds.news(neighbour, now)
     return effects
-
-
-def _beacon(agent: Agent, pose: Pose) -> list[Effect]:
-    path = agent.behaviour.ahead(pose)
-    offsets = np.rint((path - (pose.x, pose.y)) * 100.0).astype(int)
-    agent.beacons += 1
-    beacon = Beacon(
-        agent.robot,
-        agent.boot,
-        agent.beacons,
-        round(pose.x * 100),
-        round(pose.y * 100),
-        round(pose.heading * 1000),
-        round(pose.slowed * 10),
-        ceil(agent.hull.radius * 100),
-        max(ceil(agent.hull.speed * 100), 1),
-        tuple(offsets.ravel().tolist()),
-    )
-    own = messages.encode(beacon)
-    return [Send(neighbour, TrafficKind.BEACONS, own) for neighbour in agent.rounds.tree.neighbours]

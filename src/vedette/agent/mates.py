@@ -47,11 +47,12 @@ class Mates:
     _newest: dict[int, tuple[int, int]] = field(default_factory=dict)  # boot and sequence
     _mates: dict[int, Mate] = field(default_factory=dict)
 
-    def hear(self, beacon: Beacon, now: float, sender: int) -> bool:
+    def hear(self, beacon: Beacon, now: float, sender: int, *, signed: bool = False) -> bool:
         """Keep a beacon; tell whether it is news.
 
         Of what comes from itself, or when it has been silent, a mate's beacon is news whatever its number:
-        who passes beacons on could have said higher ones.
+        who passes beacons on could have said higher ones. Not if it is signed: nobody could, but old ones
+        might be said again.
 
         Raises:
             ValueError: of a robot that the team cannot have.
@@ -60,12 +61,16 @@ class Mates:
         if beacon.robot >= self.admitted or (known is None and len(self._mates) == MOST_MATES):
             raise ValueError(f"beacon of robot {beacon.robot}: the team has no such robot")
         stamp, newest = (beacon.boot, beacon.sequence), self._newest.get(beacon.robot, (-1, -1))
-        believed = beacon.robot == sender or known is None or known.silent(now)
+        believed = beacon.robot == sender or ((known is None or known.silent(now)) and not signed)
         if newest == stamp or (newest > stamp and not believed):
             return False
         self._newest[beacon.robot] = stamp
         self._mates[beacon.robot] = _mate(beacon, now)
         return True
+
+    def anybody_moves(self) -> bool:
+        """Tell whether any mate was on its way when last heard."""
+        return any(len(mate.path) > 1 for mate in self._mates.values())
 
     def all(self) -> list[Mate]:
         """Return all team-mates ever heard, by id."""

@@ -18,6 +18,8 @@ Area = tuple[Metre, Metre, Metre, Metre]  # lowest x, lowest y, highest x, highe
 Areas = Annotated[tuple[Area, ...], Meta(max_length=8)]
 MOST_TOLD = 64  # beacons in a message
 MOST_ROBOTS = MOST_DEPTH = 1 << 16
+Robot = Annotated[int, Meta(ge=0, lt=2**16)]
+Halvings = Annotated[int, Meta(ge=0, le=7)]
 Robots = Annotated[int, Meta(ge=1, le=MOST_ROBOTS)]
 Offset = Annotated[int, Meta(ge=-2000, le=2000)]  # from the robot [cm]; its path's next metres are few
 
@@ -25,7 +27,7 @@ Offset = Annotated[int, Meta(ge=-2000, le=2000)]  # from the robot [cm]; its pat
 class Beacon(msgspec.Struct, frozen=True, array_like=True, tag=0):
     """Where a robot is and where it goes, in centimetres and milliradians; passed on to everybody."""
 
-    robot: Annotated[int, Meta(ge=0, lt=2**16)]
+    robot: Robot
     boot: Count
     sequence: Count
     x: Place
@@ -93,15 +95,43 @@ class Negotiate(msgspec.Struct, frozen=True, array_like=True, tag=6):
     data: bytes
 
 
-Wire: TypeAlias = Beacon | Beacons | Evidence | Call | Begin | Flushed | Freeze | Negotiate
+class Audit(msgspec.Struct, frozen=True, array_like=True, tag=8):
+    """Something is wrong: everybody signs what it has claimed in a round."""
+
+    epoch: Count
+    sequence: Count
+
+
+class Account(msgspec.Struct, frozen=True, array_like=True, tag=9):
+    """What one robot has claimed in a round; passed on to everybody."""
+
+    robot: Robot
+    boot: Count
+    epoch: Count
+    sequence: Count
+    impact: bytes
+    links: Annotated[tuple[tuple[Robot, Halvings], ...], Meta(max_length=MOST_ROBOTS)]  # that it added up
+    signature: bytes = b""  # under the same without it
+
+
+class Vouched(msgspec.Struct, frozen=True, array_like=True, tag=10):
+    """A beacon that may be passed on, for its robot has signed it."""
+
+    beacon: bytes
+    signature: bytes
+
+
+Wire: TypeAlias = (
+    Beacon | Beacons | Evidence | Call | Begin | Flushed | Freeze | Negotiate | Audit | Account | Vouched
+)
 
 _DECODER: msgspec.msgpack.Decoder[Wire] = msgspec.msgpack.Decoder(Wire)
-_BEACON_DECODER: msgspec.msgpack.Decoder[Beacon] = msgspec.msgpack.Decoder(Beacon)
+_BEACON_DECODER: msgspec.msgpack.Decoder[Beacon | Vouched] = msgspec.msgpack.Decoder(Beacon | Vouched)
 encode = msgspec.msgpack.Encoder().encode
 
 
-def decode_beacon(payload: bytes) -> Beacon:
-    """Return one of `Beacons`.
+def decode_beacon(payload: bytes) -> Beacon | Vouched:
+    """Return one of `Beacons`, or what a `Vouched` holds.
 
     Raises:
         ValueError: malformed.

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from typing import Any, Protocol, TypeVar
+from typing import Any, Protocol, TypeVar, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
 
 from vedette.agent.effects import Route
 from vedette.agent.events import Pose
@@ -115,6 +118,31 @@ class Mission(Protocol[BeliefT, StrategyT, ImpactT]):
 
         Two such rounds in a row end the mission.
         """
+
+
+@runtime_checkable
+class Promising(Protocol[BeliefT_contra, ImpactT]):
+    """A mission whose impacts promise that places will be seen: it can be found out whether they are."""
+
+    def promised(
+        self, belief: BeliefT_contra, impact: ImpactT
+    ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """Return the cells that are more likely seen than not, increasing, and after how long each [s]."""
+
+    def unseen(self, belief: BeliefT_contra, cells: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Tell which cells are as unknown as ever."""
+
+    def discounted(self, impact: ImpactT, halvings: int) -> ImpactT:
+        """Return an impact that is so many times half as likely."""
+
+
+@runtime_checkable
+class Complaining(Protocol):
+    """A mission that finds out who cannot be believed."""
+
+    @property
+    def complaints(self) -> dict[int, str]:
+        """What is wrong with whom, by robot."""
 
 
 class GroundMission(Mission[BeliefT, StrategyT, ImpactT], Protocol[BeliefT, StrategyT, ImpactT]):

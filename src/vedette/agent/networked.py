@@ -102,9 +102,8 @@ class NetworkedAgent:
     @property
     def complaints(self) -> dict[int, str]:
         """What is wrong with whom, by robot; this robot's own number among them."""
-        absent = dict.fromkeys(self.agent.rounds.absent, "rounds go on without it: it does not answer")
-        known = self._acquaintance
-        return known.warnings | absent | self.overlay.complaints | known.complaints | self._excluded
+        known, agent = self._acquaintance, self.agent
+        return known.warnings | self.overlay.complaints | known.complaints | agent.complaints | self._excluded
 
     # -- what happens --------------------------------------------------------------------------------
 

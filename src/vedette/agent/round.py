@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any
@@ -66,6 +66,9 @@ class Round:
     depth: int  # links to the root
     heard: float  # when it last went on [s]
     forks: bool = False  # the token may fork
+    weigh: Callable[[int, Any], Any] = lambda neighbour, impact: (
+        impact
+    )  # what a neighbour's impact counts for
     waiting: set[int] = field(init=False)  # children that have not flushed yet
     notes: set[Note] = field(default_factory=set)  # told by children
     reaches: dict[int, Reach | None] = field(default_factory=dict)  # beyond each neighbour, as it told
@@ -76,6 +79,9 @@ class Round:
     blocked: bool = False  # this robot plans with its mates in the way
     participant: RoundParticipant[Any, Any, Any] | None = None
     negotiator: Negotiator[Any] | None = None
+    claimed: dict[int, Any] = field(
+        default_factory=dict
+    )  # the last impact from each neighbour, as it was told
     early: list[tuple[int, Negotiate]] = field(default_factory=list)  # came before this robot was ready
 
     def __post_init__(self) -> None:
@@ -120,6 +126,11 @@ class Round:
         """The impact of the team's choice; None: this robot does not hold all of it."""
         whole = all(reach is None for reach in self._told(self.heard).values())
         return self.negotiator.team_held() if self.negotiator is not None and whole else None
+
+    @property
+    def claims(self) -> dict[int, Any]:
+        """What each neighbour's side of the tree has claimed at last."""
+        return {k: impact for k, impact in self.claimed.items() if k in self.tree.neighbours}
 
     # -- evidence comes together ------------------------------------------------------------------------
 
@@ -208,9 +219,22 @@ class Round:
             if sum(early == sender for early, _ in self.early) < MOST_EARLY:
                 self.early.append((sender, message))
             return []
-        replies = self.negotiator.receive(sender, messages.decode(message.data, self.mission.codec))
+        said = messages.decode(message.data, self.mission.codec)
+        replies = self.negotiator.receive(sender, self._weighed(sender, said))
+        if (impact := getattr(said, "mu", None)) is not None:
+            self.claimed[sender] = impact
         self.heard = now
         return self._replies(replies)
+
+    def _weighed(self, sender: int, said: messages.Message[Any]) -> messages.Message[Any]:
+        """Return what a neighbour says, its impact as much as it counts for."""
+        impact = getattr(said, "mu", None)
+        if impact is None or (counts := self.weigh(sender, impact)) is impact:
+            return said
+        weighed = structs.replace(said, mu=counts)
+        if isinstance(weighed, messages.Gather):
+            weighed = structs.replace(weighed, value=self.mission.objective.value(self.belief, counts))
+        return weighed
 
     def take_early(self) -> list[tuple[int, Negotiate]]:
         """Return the negotiation messages, with their senders, that came before this robot was prepared."""

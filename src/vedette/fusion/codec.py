@@ -12,16 +12,19 @@ from numpy.typing import NDArray
 
 from vedette import wire
 from vedette.fusion.link import MOST_SECTIONS, Greeting, Key, Payload
+from vedette.fusion.merkle import ROOT_BYTES
 from vedette.fusion.packing import MapPacking, PackedBody
 from vedette.fusion.planes import from_planes, planes
-from vedette.fusion.snapshots import Delta, ValueT
+from vedette.fusion.seals import MOST_CERTIFICATE, SIGNATURE_BYTES, Seal
+from vedette.fusion.snapshots import Delta, ValueT, Voucher
 from vedette.kernels.tiles import Tiling
 
 MOST_TILES = 2048  # in a payload; one section may exceed it, up to the whole map
 NUMBER_BITS = 63
 MOST_COUNT = 1 << 53
 
-_FORMAT = 1
+_FORMAT, _SEALED = 1, 2
+MOST_PARTICULARS = 1 << 14  # [bytes]
 _GREETING, _WANTS, _BODY = 16, 32, 64
 
 
@@ -32,6 +35,11 @@ class EvidenceCodec(Generic[ValueT]):
     tiling: Tiling
     counts_size: int
     packing: MapPacking[ValueT]
+    sealed: bool = False  # sections are signed
+
+    @property
+    def _format(self) -> int:
+        return _SEALED if self.sealed else _FORMAT
 
     def encode(self, payload: Payload[Delta[ValueT]]) -> bytes:
         """Return the payload's bytes."""
@@ -39,7 +47,7 @@ class EvidenceCodec(Generic[ValueT]):
         flags = _BODY if payload.sections else 0
         if payload.greeting is not None:
             flags |= _GREETING | (_WANTS if payload.greeting.wants else 0)
-        head.append(_FORMAT | flags)
+        head.append(self._format | flags)
         _put(head, [payload.nonce])
         if payload.greeting is not None:
             _put(head, [payload.greeting.echo + 1])
@@ -53,6 +61,8 @@ class EvidenceCodec(Generic[ValueT]):
             size = 2 * len(delta.tiles) + (delta.counts is not None)
             _put(head, [robot, nonce ^ payload.nonce, delta.base, delta.version - delta.base, size])
             _put(head, np.diff(delta.tiles, prepend=0).tolist())
+            if delta.voucher is not None:
+                _put_voucher(head, delta.voucher)
             body += self.packing.pack(delta)
             if delta.counts is not None:
                 body += planes(delta.counts, 8)
@@ -63,7 +73,7 @@ class EvidenceCodec(Generic[ValueT]):
         """Return the payload; ValueError if anything in it is malformed or out of range."""
         head = _Head(data)
         flags = head.byte()
-        if flags & 0x8F != _FORMAT:
+        if flags & 0x8F != self._format:
             raise ValueError(f"fusion payload: unknown format byte {flags}")
         own = head.number()
         greeting = Greeting(head.number() - 1, bool(flags & _WANTS)) if flags & _GREETING else None
@@ -96,7 +106,8 @@ class EvidenceCodec(Generic[ValueT]):
             ids = np.cumsum([head.number(self.tiling.count) for _ in range(tiles)], dtype=np.int64)
             if tiles and (ids[-1] >= self.tiling.count or (np.diff(ids) <= 0).any()):
                 raise ValueError("fusion payload: tile ids must increase and lie in the map")
-            outlines.append(_Outline(key, base, base + ahead, ids, bool(counts)))
+            voucher = head.voucher(tiles) if self.sealed else None
+            outlines.append(_Outline(key, base, base + ahead, ids, bool(counts), voucher))
         return outlines
 
     def _delta(self, outline: _Outline, body: PackedBody) -> Delta[ValueT]:
@@ -108,7 +119,7 @@ class EvidenceCodec(Generic[ValueT]):
             counts = from_planes(body.take(8 * self.counts_size), self.counts_size, 8)
             if (counts > MOST_COUNT).any() or (counts < -MOST_COUNT).any():
                 raise ValueError("fusion payload: a count is out of range")
-        return Delta(outline.base, outline.version, outline.tiles, mask, values, counts)
+        return Delta(outline.base, outline.version, outline.tiles, mask, values, counts, outline.voucher)
 
 
 class _Outline(NamedTuple):
@@ -117,6 +128,7 @@ class _Outline(NamedTuple):
     version: int
     tiles: NDArray[np.int64]
     counts: bool
+    voucher: Voucher | None
 
 
 class _Head:
@@ -149,6 +161,22 @@ class _Head:
     def key(self, own: int) -> Key:
         return self.number(), self.number() ^ own
 
+    def take(self, size: int) -> bytes:
+        if self._at + size > len(self._data):
+            raise ValueError("fusion payload: truncated")
+        self._at += size
+        return self._data[self._at - size : self._at]
+
+    def voucher(self, tiles: int) -> Voucher:
+        """Read what ``_put_voucher`` wrote."""
+        time = self.number()
+        ages = np.array([self.number(time + 1) for _ in range(2 * tiles)], np.int64).reshape(-1, 2)
+        told = self.number(MOST_PARTICULARS + 2)
+        particulars = self.take(told - 1) if told else None
+        certificate = self.take(self.number(MOST_CERTIFICATE + 1))
+        seal = Seal(time, self.take(ROOT_BYTES), self.take(SIGNATURE_BYTES))
+        return Voucher(time - ages, particulars, seal, certificate)
+
     def rest(self) -> bytes:
         return self._data[self._at :]
 
@@ -159,3 +187,12 @@ def _put(head: bytearray, numbers: Iterable[int]) -> None:
             head.append(number & 127 | 128)
             number >>= 7
         head.append(number)
+
+
+def _put_voucher(head: bytearray, voucher: Voucher) -> None:
+    time = voucher.seal.time
+    _put(head, [time, *(time - voucher.times).ravel().tolist()])
+    _put(head, [0 if voucher.particulars is None else len(voucher.particulars) + 1])
+    head += voucher.particulars or b""
+    _put(head, [len(voucher.certificate)])
+    head += voucher.certificate + voucher.seal.root + voucher.seal.signature

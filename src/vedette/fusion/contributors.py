@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
+from functools import partial
 from typing import Any, Generic, Protocol, TypeVar
 
 from vedette.fusion.link import Boots, EvidenceLink, Key, NewsT, Payload, check_boot
@@ -33,6 +34,24 @@ class Copy(Protocol[News_co]):
 
 
 CopyT = TypeVar("CopyT", bound=Copy[Any])
+CopyT_contra = TypeVar("CopyT_contra", bound=Copy[Any], contravariant=True)
+
+
+class Sealing(Protocol[CopyT_contra, NewsT]):
+    """Lets nobody speak for another: contributors seal what they tell, and all check what they hear."""
+
+    @property
+    def doubted(self) -> Collection[Key]:
+        """Contributors whose whole evidence has to come anew."""
+
+    def seal(self, key: Key, own: CopyT_contra) -> None:
+        """As the writer: seal the present version, if it is not."""
+
+    def with_certificate(self, robot: int, base: int, news: NewsT) -> NewsT:
+        """Return news, with the certificate of who has made them for whoever holds nothing of that yet."""
+
+    def admits(self, neighbour: int, key: Key, held: CopyT_contra, news: NewsT) -> bool:
+        """Tell whether news that came over a link are the contributor's own; old news may be anything."""
 
 
 class Contributors(Generic[CopyT, NewsT]):
@@ -42,16 +61,25 @@ class Contributors(Generic[CopyT, NewsT]):
     repetition, reordering, cycles, partition, re-joining and restarts neither lose evidence that any holder
     lives to tell, nor count any twice; a dead robot's evidence survives.
 
-    Whoever passes evidence on could change it: a contributor that is told of more in its name than it has
-    published goes on above that, and tells the whole anew.
+    Whoever passes evidence on could change it. So it is sealed, where there are keys (``Sealing``); where
+    there are none, a contributor that is told of more in its name than it has published goes on above that,
+    and tells the whole anew.
     """
 
-    def __init__(self, robot: int, boot: int, blank: Callable[[], CopyT], resend_after: float) -> None:
+    def __init__(
+        self,
+        robot: int,
+        boot: int,
+        blank: Callable[[], CopyT],
+        resend_after: float,
+        sealing: Sealing[CopyT, NewsT] | None = None,
+    ) -> None:
         """Start with nothing known; ``blank`` makes the copy of a contributor of whom nothing is known."""
         check_boot(boot)
+        self._sealing = sealing
         self.own = blank()
         self.copies: dict[Key, CopyT] = {(robot, boot): self.own}
-        self._key: Key = (robot, boot)
+        self.key: Key = (robot, boot)  # this robot's own
         self._blank = blank
         self._links: dict[int, EvidenceLink[NewsT]] = {}
         self._boots = Boots()
@@ -65,12 +93,21 @@ class Contributors(Generic[CopyT, NewsT]):
     def set_neighbours(self, neighbours: Sequence[int]) -> None:
         """Exchange with exactly these robots from now on; the graph may have cycles."""
         after = self._resend_after
-        self._links = {n: self._links.get(n) or EvidenceLink(*self._key, after) for n in neighbours}
+        self._links = {n: self._links.get(n) or EvidenceLink(*self.key, after) for n in neighbours}
 
     def tell(self, neighbour: int, now: float) -> Payload[NewsT] | None:
         """Return what the neighbour lacks, and what it waits to see acknowledged; None if nothing."""
-        streams = ((key, copy.version, copy.since) for key, copy in self.copies.items())
-        return self._links[neighbour].tell(self.known(), streams, now)
+        if self._sealing is not None:
+            self._sealing.seal(self.key, self.own)
+        streams = ((key, copy.version, partial(self._since, key, copy)) for key, copy in self.copies.items())
+        held = self.known()
+        for key in () if self._sealing is None else self._sealing.doubted:
+            held.pop(key, None)
+        return self._links[neighbour].tell(held, streams, now)
+
+    def _since(self, key: Key, copy: CopyT, base: int) -> NewsT:
+        news: NewsT = copy.since(base)
+        return news if self._sealing is None else self._sealing.with_certificate(key[0], base, news)
 
     def hear(self, neighbour: int, payload: Payload[NewsT], now: float) -> list[tuple[Key, NewsT]]:
         """Note what a neighbour says of its side of the link; return the news to merge into the copies.
@@ -87,18 +124,20 @@ class Contributors(Generic[CopyT, NewsT]):
             starts = sum(robot == other for other, _ in self.copies)
             if robot != neighbour and starts >= MOST_STARTS:
                 raise ValueError(f"fusion payload: more than {MOST_STARTS} starts of robot {robot}")
-        told = payload.told_of(self._key)
-        if told > self.own.version and now >= self._overtook + self._resend_after:
+        told = payload.told_of(self.key)
+        if self._sealing is None and told > self.own.version and now >= self._overtook + self._resend_after:
             self.own.overtake(told)
             self._overtook = now
         link = self._links.get(neighbour)
         # evidence is evidence, but what an earlier start of the neighbour held is lost
         if link is not None and not self._boots.is_stale(neighbour, payload.nonce):
             link.hear(payload, now)
-        news = [(key, more) for key, more in payload.sections if key != self._key]
-        for key, _ in news:
-            if key not in self.copies:
-                self.copies[key] = self._blank()
+        news = [(key, more) for key, more in payload.sections if key != self.key]
+        copies = {key: self.copies.get(key) or self._blank() for key, _ in news}
+        sealing = self._sealing
+        if sealing is not None:
+            news = [(key, more) for key, more in news if sealing.admits(neighbour, key, copies[key], more)]
+        self.copies |= {key: copies[key] for key, _ in news}
         return news
 
     def _check_versions(self, payload: Payload[NewsT]) -> None:

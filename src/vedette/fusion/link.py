@@ -134,7 +134,10 @@ class EvidenceLink(Generic[NewsT]):
         return sections
 
     def _holds(self, key: Key, version: int, now: float) -> None:
-        """Note that the neighbour holds this version."""
+        """Note that the neighbour holds this version; 0: nothing that it could use, so that all goes anew."""
+        if version == 0:
+            self._have.pop(key, None)
+            self._sent.pop(key, None)
         if version > self._have.get(key, 0) and (key in self._have or len(self._have) < MOST_STREAMS):
             self._have[key] = version
             self._waiting_since[key] = now

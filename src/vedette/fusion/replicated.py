@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,9 +82,14 @@ class ReplicatedEvidence(TeamMap):
                 self.counts += change.more_counts
                 changed.append(change.tiles)
         tiles = np.unique(np.concatenate(changed))
-        words = np.zeros((len(tiles), CELLS), np.int32)
-        for copy in self._contributors.copies.values():
-            held = np.flatnonzero(copy.values.holds(tiles))
-            if len(held):
-                words[held] += WORDS.take(copy.values.read(tiles[held]))
-        return self.show(tiles, classes_of(words))
+        return self.show(tiles, classes_of(summed(self._contributors.copies.values(), tiles)))
+
+
+def summed(copies: Iterable[Snapshot[np.uint8]], tiles: NDArray[np.int64]) -> NDArray[np.int32]:
+    """Return ``(T, 1024)`` packed sums of what some contributors say of tiles."""
+    words = np.zeros((len(tiles), CELLS), np.int32)
+    for copy in copies:
+        held = np.flatnonzero(copy.values.holds(tiles))
+        if len(held):
+            words[held] += WORDS.take(copy.values.read(tiles[held]))
+    return words

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.fusion.seals import Seal
 from vedette.fusion.shared import SharedTiles
 from vedette.fusion.tiles import CLASSES, codes_of
 from vedette.kernels.tiles import CELLS, TiledGrid, Tiling
@@ -16,6 +17,17 @@ ValueT = TypeVar("ValueT", np.uint8, np.int32)  # of a cell
 
 NONE: NDArray[np.int64] = np.empty(0, dtype=np.int64)  # no tiles
 _LAST_STAMP = np.iinfo(np.uint16).max
+
+
+class Voucher(NamedTuple):
+    """What goes with signed evidence."""
+
+    times: NDArray[
+        np.int64
+    ]  # (T, 2) of each tile: since when it is held to, and when it last changed [0.1 s]
+    particulars: bytes | None  # what the writer tells beside cells and counts, when it is given
+    seal: Seal
+    certificate: bytes  # the writer's; empty for who has it
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +40,7 @@ class Delta(Generic[ValueT]):
     mask: NDArray[np.bool_]  # (T, 1024) cells that are given
     values: NDArray[ValueT]  # (mask.sum(),) their values, in the order of the mask
     counts: NDArray[np.int64] | None = None  # (K,), when they are given
+    voucher: Voucher | None = None  # where evidence is signed
 
     @property
     def size(self) -> int:
@@ -72,14 +85,19 @@ class Snapshot(Generic[ValueT]):
         self, tiles: NDArray[np.int64], blocks: NDArray[ValueT], counts: NDArray[np.int64] | None = None
     ) -> Change | None:
         """As the writer: set ``(len(tiles), 1024)`` values; a new version if anything differs, else None."""
+        delta = self._changed(tiles, blocks, counts)
+        return None if delta is None else self.apply(delta)
+
+    def _changed(
+        self, tiles: NDArray[np.int64], blocks: NDArray[ValueT], counts: NDArray[np.int64] | None
+    ) -> Delta[ValueT] | None:
         mask = blocks != self.values.read(tiles)
         rows = np.flatnonzero(mask.any(axis=1))
         fresh = counts if counts is not None and not np.array_equal(counts, self.counts) else None
         if len(rows) == 0 and fresh is None:
             return None
         mask = mask[rows]
-        delta = Delta(self.version, self.version + 1, tiles[rows], mask, blocks[rows][mask], fresh)
-        return self.apply(delta)
+        return Delta(self.version, self.version + 1, tiles[rows], mask, blocks[rows][mask], fresh)
 
     def since(self, base: int) -> Delta[ValueT]:
         """Return the difference from version ``base`` to this one."""
@@ -94,10 +112,7 @@ class Snapshot(Generic[ValueT]):
         """Advance to ``delta.version``; None if it is old news or does not connect to this version."""
         if not delta.base <= self.version < delta.version:
             return None
-        if delta.base == 0 < self.version:
-            delta = self._blanking(delta)
-        values = self.values.read(delta.tiles)
-        values[delta.mask] = delta.values
+        delta, values = self._after(delta)
         stamps = self._stamps.read(delta.tiles)
         stamps[delta.mask] = self._stamp(delta.version, _LAST_STAMP)
         self.values.write(delta.tiles, values)
@@ -117,6 +132,14 @@ class Snapshot(Generic[ValueT]):
         """Return a version as cells remember it, at most ``most``."""
         return min(max(version - max(self._whole_before - 1, 0), 0), most)
 
+    def _after(self, delta: Delta[ValueT]) -> tuple[Delta[ValueT], NDArray[ValueT]]:
+        """Return a difference that connects, all it blanks included, and ``(T, 1024)`` its tiles after it."""
+        if delta.base == 0 < self.version:
+            delta = self._blanking(delta)
+        values = self.values.read(delta.tiles)
+        values[delta.mask] = delta.values
+        return delta, values
+
     def _blanking(self, delta: Delta[ValueT]) -> Delta[ValueT]:
         """Return the whole, with all cells given that are blank in it but are not so here."""
         tiles = np.union1d(self.known_tiles, delta.tiles)
@@ -127,7 +150,7 @@ class Snapshot(Generic[ValueT]):
         given[rows] = delta.mask
         values[given] = delta.values
         mask |= given
-        return Delta(0, delta.version, tiles, mask, values[mask], delta.counts)
+        return Delta(0, delta.version, tiles, mask, values[mask], delta.counts, delta.voucher)
 
     def _replace_counts(self, delta: Delta[ValueT]) -> NDArray[np.int64]:
         if delta.counts is None:

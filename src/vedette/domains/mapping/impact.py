@@ -17,6 +17,7 @@ from vedette.team import Most
 # Shares are rounded to eighths: neighbouring cells then mostly agree, and messages deflate well.
 _LEVELS = np.array([round(-np.log1p(-k / 8) * STEPS_PER_NAT) for k in range(8)] + [64], np.uint8)
 MIN_SHARE = 1 / 16  # a smaller share rounds to nothing
+_EVEN_ODDS = 11  # log-misses from which a cell is more likely seen than missed
 
 
 Impact: TypeAlias = SparseMisses
@@ -57,6 +58,29 @@ def moved(impact: Impact, planning: GridFrame, onto: GridFrame) -> Impact:
     inside = (row >= 0) & (row < onto.rows) & (col >= 0) & (col < onto.cols)
     keys = ((row * onto.cols + col) * LAYERS + layers)[inside].astype(np.uint32)
     return Impact(keys, impact.misses[inside])
+
+
+def promised(impact: Impact, edges: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Return the planning cells that are more likely seen than missed, and by when [s].
+
+    That is by the end of the first layer by which it is so, ``edges`` (LAYERS,).
+    """
+    cells, layers = np.divmod(impact.keys.astype(np.int64), LAYERS)
+    sums = np.cumsum(impact.misses, dtype=np.int64)
+    first = np.ones(len(cells), np.bool_)  # of each cell's entries
+    first[1:] = cells[1:] != cells[:-1]
+    before = np.repeat((sums - impact.misses)[first], np.diff(np.append(np.flatnonzero(first), len(cells))))
+    likely = sums - before >= _EVEN_ODDS
+    distinct, at = np.unique(cells[likely], return_index=True)
+    return distinct, edges[layers[likely][at]]
+
+
+def discounted(impact: Impact, halvings: int) -> Impact:
+    """Return ``1 - (1 - m) / 2**halvings`` for each miss probability m, rounded to log-misses."""
+    seen = 1.0 - np.exp(-np.arange(CERTAIN + 1) / STEPS_PER_NAT)
+    seen[CERTAIN] = 1.0
+    less = np.round(-np.log1p(-seen / 2**halvings) * STEPS_PER_NAT).astype(np.uint8)[impact.misses]
+    return Impact(impact.keys[less > 0], less[less > 0])
 
 
 def check_claim(

@@ -112,6 +112,7 @@ class MappingPlatform:
     closer: list[GivenUp] = field(default_factory=list)  # seen from afar in vain: to be visited from nearer
     given_up: list[GivenUp] = field(default_factory=list)  # by this robot
     told: list[GivenUp] = field(default_factory=list)  # by anybody, as of the last round
+    hearsay: list[GivenUp] = field(default_factory=list)  # by one alone, whose word is not enough in the end
     avoided: list[tuple[float, float, float]] = field(default_factory=list)  # x, y, until [s]
     doubtful: NDArray[np.bool_] | None = None  # (R, C) of the window: occupied, but not for sure
     ground: Ground | None = None
@@ -163,12 +164,22 @@ class MappingPlatform:
         self.ahead = self.max_stops if belief.gathering else 1
         self.cut_short = self.daring = False
         model = self.model(belief)
-        for clearance in CLEARANCES:
-            self.ground = survey(belief, self.spec, self.x, self.y, self.obstacles, clearance)
-            if self._leads_on(belief, self.ground, model, last=clearance == CLEARANCES[-1]):
+        if self._finds_anything(belief, model):
+            return
+        if self.hearsay:
+            self.hearsay = []
+            if self._finds_anything(belief, model):
                 return
         self.daring = self._dares(belief, model)
         self.patience *= 2 if self.cut_short and not self.daring else 1
+
+    def _finds_anything(self, belief: MapBelief, model: SightingModel) -> bool:
+        """Look for stops on ground that is less and less wide; tell if one can be visited."""
+        for clearance in CLEARANCES:
+            self.ground = survey(belief, self.spec, self.x, self.y, self.obstacles, clearance)
+            if self._leads_on(belief, self.ground, model, last=clearance == CLEARANCES[-1]):
+                return True
+        return False
 
     def _leads_on(self, belief: MapBelief, ground: Ground, model: SightingModel, *, last: bool) -> bool:
         """Find stops on the ground; tell if one can be visited."""
@@ -255,6 +266,7 @@ class MappingPlatform:
             if unchanged(spot.x, spot.y, spot.unknown) and spot.stands(self.team)
         ]
         self.told = [spot for spot in self.told if unchanged(spot.x, spot.y, spot.unknown)]
+        self.hearsay = [spot for spot in self.hearsay if unchanged(spot.x, spot.y, spot.unknown)]
         self.closer = [spot for spot in self.closer if unchanged(spot.x, spot.y, spot.unknown)]
         for x, y, before, afar in self.visited:
             now_unknown = unknown_near(belief.classes, belief.frame, x, y)
@@ -283,7 +295,7 @@ class MappingPlatform:
         """Make the stops near given-up or avoided places unreachable, which keeps the arrays aligned."""
         self.avoided = [spot for spot in self.avoided if spot[2] > self.now]
         first_leg, legs = stops.first_leg.copy(), stops.legs.copy()
-        places = [(spot.x, spot.y) for spot in (*self.given_up, *self.told)]
+        places = [(spot.x, spot.y) for spot in (*self.given_up, *self.told, *self.hearsay)]
         for x, y in places + [spot[:2] for spot in self.avoided]:
             near = np.hypot(stops.targets[:, 0] - x, stops.targets[:, 1] - y) < within
             first_leg[near] = np.inf

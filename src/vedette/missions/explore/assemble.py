@@ -14,6 +14,9 @@ from vedette.domains.mapping.planners import planner
 from vedette.domains.mapping.sightings import BINS
 from vedette.errors import check_word
 from vedette.fusion import ChannelFilter, Fusion, ReplicatedEvidence
+from vedette.fusion.particulars import Limits
+from vedette.fusion.seals import Notary
+from vedette.fusion.signed import SignedEvidence
 from vedette.maps.lattice import Lattice
 from vedette.missions.explore.exploring import Exploring
 from vedette.missions.explore.options import ExploreOptions
@@ -57,6 +60,7 @@ def assemble(
     most: Most,
     waits_for: int = 1,
     explorer: type[Exploring] = Exploring,
+    notary: Notary | None = None,
 ) -> Agent:
     """Return a fresh agent of a team.
 
@@ -70,15 +74,28 @@ def assemble(
         most: what none of them exceeds.
         waits_for: so many robots, itself included, before it begins; for a while.
         explorer: its share of the mission.
+        notary: signs its evidence, if that is replicated, and checks everybody's; None: nobody does.
 
     Raises:
         InputError: the planner or the way of fusing is unknown, or cannot serve such a team.
     """
     check_word("fusion", options.fusion, FUSIONS)
-    fusion: Fusion = FUSIONS[options.fusion](robot, boot, lattice.frame.shape, 4 * BINS, mark=lattice.mark)
+    fusion = _fusion(lattice, options, robot, boot, most, notary)
     how = planner(options.planner, robots)
     mission = explorer(lattice, spec, how, fusion, most=most)
     behaviour = GroundBehaviour(mission, Driver(robot, spec), options.return_home, waits_for)
     relay = Relay(nearby(most.range, most.speed) if how.negotiates else inf)  # others plan by mates' places
     forks = how.negotiates and how.scheme is None  # where the order of turns is no part of the planner
     return Agent(robot, boot, spec, behaviour, options.negotiates_by, forks=forks, relay=relay)
+
+
+def _fusion(
+    lattice: Lattice, options: ExploreOptions, robot: int, boot: int, most: Most, notary: Notary | None
+) -> Fusion:
+    """Return how the robot shares what it sees: signed, where there are keys and sums do not forbid it."""
+    shape, mark = lattice.frame.shape, lattice.mark
+    if notary is None or options.fusion != "replicated":
+        return FUSIONS[options.fusion](robot, boot, shape, 4 * BINS, mark=mark)
+    frame = lattice.frame
+    limits = Limits(frame.resolution, most.range, most.speed, (frame.origin_x, frame.origin_y))
+    return SignedEvidence(robot, boot, shape, 4 * BINS, notary=notary, limits=limits, mark=mark)

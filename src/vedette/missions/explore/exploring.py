@@ -18,15 +18,16 @@ from vedette.domains.mapping.belief import (
     planning_factor,
     shortest_frontier,
 )
-from vedette.domains.mapping.impact import Impact, MapImpactCodec, check_claim
+from vedette.domains.mapping.impact import Impact, MapImpactCodec, check_claim, discounted, promised
 from vedette.domains.mapping.leftovers import Leftover, given_up, leftovers
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.planners import Planner
-from vedette.domains.mapping.platform import STAY, GivenUp, MappingPlatform, Tour
+from vedette.domains.mapping.platform import STAY, MappingPlatform, Tour
 from vedette.domains.mapping.sightings import BINS
 from vedette.domains.mapping.stops import NEARBY, VIEW_REACH, Disc, around
 from vedette.domains.mapping.views import MOST_STOPS
 from vedette.fusion import Fusion
+from vedette.fusion.signed import SignedEvidence, signed_by
 from vedette.maps import UNKNOWN, GridFrame
 from vedette.maps.bounds import Extent
 from vedette.maps.lattice import Lattice
@@ -34,6 +35,8 @@ from vedette.missions.explore.doubts import Doubts
 from vedette.missions.explore.evidence import OwnEvidence
 from vedette.missions.explore.failures import BLOCKING, Failures
 from vedette.missions.explore.looking import Looking
+from vedette.missions.explore.notes import given_up as given_up_at
+from vedette.missions.explore.notes import sifted
 from vedette.missions.explore.own_map import OwnMap
 from vedette.missions.explore.resort import LastResort, hemmed_in
 from vedette.missions.explore.ways import Ways
@@ -87,10 +90,23 @@ class Exploring:
         """Where the cells lie that there can be."""
         return self.lattice.frame
 
+    @property
+    def signed(self) -> SignedEvidence | None:
+        """The team's evidence, where it is signed."""
+        return signed_by(self.fusion)
+
+    @property
+    def complaints(self) -> dict[int, str]:
+        """Who cannot be believed, by what all have signed."""
+        return {} if self.signed is None else self.signed.complaints
+
     # -- evidence -----------------------------------------------------------------------------------
 
     def observe(self, seen: Scan | Sensed, pose: Pose, mates: Sequence[Mate], now: float) -> None:
         """Take in a scan, or a map that the robot has made itself."""
+        if self.signed is not None:
+            row, col = self.frame.cell(pose.x, pose.y)
+            self.signed.set_out(max(row, 0), max(col, 0))
         if isinstance(seen, Scan):
             self.own.add(seen, pose, mates, now)
             self._at = pose.x, pose.y
@@ -114,13 +130,19 @@ class Exploring:
             self._counts_due = now + COUNTS_PERIOD
             counts = self.own.counts.ravel().copy()
         changed = self.own.news()
-        if len(changed) or counts is not None:
+        if self.signed is not None:
+            self.signed.tell(self._own_notes())
+        if len(changed) or counts is not None or self.signed is not None:
             self.fusion.publish(self.own.log_odds, changed, counts)
 
     # -- planning -----------------------------------------------------------------------------------
 
     def notes(self) -> list[tuple[int, int, int]]:
-        """Return the frontiers that this robot's visits did not change: x, y [cm], unknown cells near it."""
+        """Return the frontiers that this robot's visits did not change, if it does not sign them."""
+        return [] if self.signed is not None else self._own_notes()
+
+    def _own_notes(self) -> list[tuple[int, int, int]]:
+        """Return x, y [cm] and the unknown cells near each."""
         return [
             (round(spot.x * 100), round(spot.y * 100), spot.unknown)
             for spot in self.platform.given_up
@@ -128,8 +150,14 @@ class Exploring:
         ]
 
     def hear_notes(self, notes: Sequence[tuple[int, int, int]]) -> None:
-        """Leave alone what team-mates' visits did not change, until the map there changes."""
-        self.platform.told = [GivenUp(x / 100, y / 100, unknown) for x, y, unknown in notes]
+        """Leave alone what team-mates' visits did not change, until the map there changes.
+
+        Where notes are signed, they are believed by whose they are.
+        """
+        if self.signed is not None:
+            self.platform.told, self.platform.hearsay = sifted(self.signed.notes().values())
+        else:
+            self.platform.told = [given_up_at(*note) for note in notes]
 
     def freeze(self, t0: float) -> MapBelief:
         """Snapshot the team map for a round; tours count time from when it is frozen."""
@@ -216,6 +244,24 @@ class Exploring:
             side, edges = belief.planning.resolution, belief.layers.edges
             check_claim(impact, robots, self.most, MOST_STOPS, side, edges)  # a tour has no stop twice
 
+    def promised(self, belief: MapBelief, impact: Impact) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """Return the planning cells that are more likely seen than not, and after how long each [s]."""
+        return promised(impact, belief.layers.edges)
+
+    def unseen(self, belief: MapBelief, cells: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Tell of which planning cells at least half is unknown."""
+        row, col = np.divmod(cells, belief.planning.cols)
+        row, col = row - belief.first[0], col - belief.first[1]
+        rows, cols = belief.unknown.shape
+        inside = (row >= 0) & (row < rows) & (col >= 0) & (col < cols)
+        unseen = np.ones(len(cells), np.bool_)
+        unseen[inside] = 2 * belief.unknown[row[inside], col[inside]] >= belief.factor**2
+        return unseen
+
+    def discounted(self, impact: Impact, halvings: int) -> Impact:
+        """Return an impact that is so many times half as likely."""
+        return discounted(impact, halvings)
+
     # -- driving ------------------------------------------------------------------------------------
 
     def goal(self) -> tuple[float, float] | None:
@@ -299,7 +345,8 @@ class Exploring:
     def nothing_left(self, value: float, now: float) -> bool:
         """Tell whether nothing reachable is worth seeing, now or in a while, and all was tried."""
         tried = self._at_work and not self.platform.cut_short and self._resort.goal is None
-        return value <= 0.0 and tried and not self._failures.postponed(now)
+        settled = self.signed is None or not self.signed.unsettled
+        return value <= 0.0 and tried and settled and not self._failures.postponed(now)
 
     def route(
         self, pose: Pose, goal: tuple[float, float], mates: Sequence[Mate], blocked: bool, now: float

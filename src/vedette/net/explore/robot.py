@@ -19,6 +19,7 @@ from vedette.missions.explore.options import ExploreOptions
 from vedette.net.config import RESOLUTION, AgentConfig, BodySettings
 from vedette.net.explore.content import ExploreTeller
 from vedette.net.names import robot_name
+from vedette.net.notary import notary_of
 from vedette.net.own import OwnSettings
 from vedette.net.real import real_robot, shows
 from vedette.net.robot import Robot
@@ -51,6 +52,9 @@ def explorer(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robo
         place = _own(config.body, config.body.own, robot_name(config.robot - 1), folder, options)
     else:
         place = _simulated(config, folder, options)
+    terms = {**terms_of(place.lattice, options), **place.terms}
+    notary = notary_of(config, folder, terms, speed)
+    terms["signatures"] = "none" if notary is None else "P-256"
     agent = assemble(
         place.lattice,
         place.hull,
@@ -60,8 +64,8 @@ def explorer(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robo
         robots=config.robots,
         most=Most.of([place.hull]) if best is None else Most(best.range, best.speed),
         waits_for=config.robots,
+        notary=notary,
     )
-    terms = {**terms_of(place.lattice, options), **place.terms}
     show = None if place.showing is None else place.showing(agent)
     return Robot(agent, place.body, place.shown, ExploreTeller(agent), terms, show, place.time)
 

@@ -1,0 +1,126 @@
+"""What is claimed has to be fulfilled: a claim repeated, and never made good, loses weight.
+
+Impacts are anonymous sums, so it is a link that is judged; in an audit (``vedette.agent.audit``) a robot.
+docs/trust.md (V75)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.agent.mission import Mission, Promising
+
+LEAST = 100  # cells that are overdue before anything is said of it; four square metres of planning cells
+SOON = 20.0  # what is promised for later is not looked at [s]
+TWICE = 2.0  # so many times the promised time is given
+FADES = 0.8  # what was fulfilled counts so much less in each round that comes
+NOTHING = 3  # halvings at which a link counts as nothing for a while
+TOLD = 2  # halvings from which people are told
+PAUSE = 60.0  # that while [s]
+
+
+@dataclass
+class Promises:
+    """What one link, or one robot, has promised in every round since some time, and whether that came true.
+
+    A promise that is not repeated is void: it was planned anew.
+    """
+
+    halvings: int = 0  # by so many halves a claim counts less
+    until: float = -np.inf  # it counts as nothing [s]
+    lost: float = -np.inf  # when its weight last changed [s]
+    _cells: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))  # increasing
+    _first: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))  # when first promised [s]
+    _due: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))  # for when, at the earliest [s]
+    _fulfilled: float = 0.0  # cells
+
+    @property
+    def weight(self) -> str:
+        """What a claim counts, as people read it."""
+        return "nothing" if self.halvings == NOTHING else f"1/{2**self.halvings}"
+
+    def note(
+        self,
+        cells: NDArray[np.int64],
+        due: NDArray[np.float64],
+        unseen: Callable[[NDArray[np.int64]], NDArray[np.bool_]],
+        now: float,
+    ) -> bool:
+        """Take in what is promised now, increasing cells, each for a time [s]; tell if that loses weight."""
+        self._fulfilled = FADES * self._fulfilled + float(np.count_nonzero(~unseen(self._cells)))
+        soon = (due <= now + SOON) & unseen(cells)
+        self._repeat(cells[soon], due[soon], now)
+        overdue = int(np.count_nonzero(now >= self._first + TWICE * (self._due - self._first)))
+        if overdue >= LEAST and overdue > self._fulfilled:
+            self._lose(now)
+            return True
+        if overdue == 0 and self.halvings and now >= self.lost + PAUSE:
+            self.halvings, self.lost = self.halvings - 1, now
+        return False
+
+    def _repeat(self, cells: NDArray[np.int64], due: NDArray[np.float64], now: float) -> None:
+        """Keep what is promised again as it was first, and add what is new."""
+        first = np.full(len(cells), now)
+        _, old, new = np.intersect1d(self._cells, cells, assume_unique=True, return_indices=True)
+        first[new] = self._first[old]
+        due = due.copy()
+        due[new] = np.minimum(due[new], self._due[old])
+        self._cells, self._first, self._due = cells, first, due
+
+    def _lose(self, now: float) -> None:
+        self.halvings, self.lost = min(self.halvings + 1, NOTHING), now
+        if self.halvings == NOTHING:
+            self.until = now + PAUSE
+        self._fulfilled = 0.0
+        self._cells, self._first, self._due = self._cells[:0], self._first[:0], self._due[:0]
+
+
+@dataclass
+class Suspicion:
+    """A robot's neighbours, by what comes over their links."""
+
+    _promises: dict[int, Promises] = field(default_factory=dict)
+
+    def weigh(self, mission: Mission[Any, Any, Any], neighbour: int, impact: Any) -> Any:
+        """Return what a neighbour's claim counts for."""
+        halvings = self.halvings(neighbour)
+        if halvings == 0 or not isinstance(mission, Promising):
+            return impact
+        return mission.discounted(impact, halvings)
+
+    def halvings(self, neighbour: int) -> int:
+        """Return how many times a neighbour's claims have lost half of their weight."""
+        known = self._promises.get(neighbour)
+        return 0 if known is None else known.halvings
+
+    def note(
+        self, mission: Mission[Any, Any, Any], belief: Any, claims: Mapping[int, Any], now: float
+    ) -> set[int]:
+        """Take in what was claimed in a round, by whom; return whose claims have lost weight."""
+        lost = set[int]()
+        if not isinstance(mission, Promising):
+            return lost
+        for name, impact in claims.items():
+            cells, after = mission.promised(belief, impact)
+            promises = self._promises.setdefault(name, Promises())
+            if promises.note(cells, now + after, lambda asked: mission.unseen(belief, asked), now):
+                lost.add(name)
+        return lost
+
+    def nothing(self, now: float) -> frozenset[int]:
+        """Return whose claims count as nothing for now."""
+        return frozenset(name for name, promises in self._promises.items() if now < promises.until)
+
+    @property
+    def complaints(self) -> dict[int, str]:
+        """What is wrong with whom, by neighbour."""
+        return {
+            name: f"less than half of what is claimed over its link comes true: it counts {known.weight}"
+            for name, known in self._promises.items()
+            if known.halvings >= TOLD
+        }

@@ -1,0 +1,42 @@
+"""What a robot signs, and who vouches that it was that robot: so that nobody speaks for another."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Protocol
+
+SIGNATURE_BYTES = 64
+MOST_CERTIFICATE = 4096  # [bytes]
+
+
+class Seal(NamedTuple):
+    """A contributor's word for one version of its evidence."""
+
+    time: int  # when it gave it, by its own clock [0.1 s]
+    root: bytes  # of all that it has seen
+    signature: bytes  # over mission, robot, boot, version, time and root
+
+
+class Notary(Protocol):
+    """Signs for one robot, and knows by certificates whose signatures are whose; for one mission."""
+
+    @property
+    def certificate(self) -> bytes:
+        """The robot's own, which travels with what it says."""
+
+    def now(self) -> int:
+        """Return what the robot's clock shows [0.1 s]: time of day, as fast as the mission goes."""
+
+    def sign(self, *what: int | bytes | str) -> bytes:
+        """Return the robot's signature under what it says."""
+
+    def admit(self, robot: int, certificate: bytes) -> None:
+        """Take a robot's certificate; ValueError if it is not one of this team for this robot."""
+
+    def knows(self, robot: int) -> bool:
+        """Tell whether a certificate of a robot has come."""
+
+    def check(self, robot: int, signature: bytes, *what: int | bytes | str) -> None:
+        """Raise ValueError unless a robot, whose certificate has come, has signed this."""
+
+
+EVIDENCE = "evidence"

@@ -1,0 +1,199 @@
+"""Replicated evidence that is signed by who has made it, and believed as far as it agrees with others'."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from msgspec import structs
+from numpy.typing import NDArray
+
+from vedette.fusion import particulars as wire
+from vedette.fusion.codec import EvidenceCodec
+from vedette.fusion.contributors import Contributors
+from vedette.fusion.digest import fingerprint
+from vedette.fusion.link import RESEND_AFTER, Key
+from vedette.fusion.packing import CodePacking
+from vedette.fusion.particulars import Limits, Note, Particulars
+from vedette.fusion.replicated import summed
+from vedette.fusion.sealed import SealedSnapshot
+from vedette.fusion.sealing import SnapshotSealing
+from vedette.fusion.seals import Notary
+from vedette.fusion.snapshots import NONE, Change, Delta, tiles_to_publish
+from vedette.fusion.tiles import TeamMap, classes_of, codes_of
+from vedette.fusion.trust import STANDS, Tally, Trust
+from vedette.kernels.tiles import TiledGrid, Tiling
+
+FIRM_AFTER, RESTATES = 10, 20  # [0.1 s]
+
+
+class SignedEvidence(TeamMap):
+    """Team evidence = sum over the contributors that are believed; all are held and passed on.
+
+    Who is believed is a function of what all have signed, and of nothing else, so that robots that hold the
+    same believe the same: it is in the digest. ``vedette.fusion.ReplicatedEvidence`` is the same without
+    keys, where everybody is believed.
+    """
+
+    def __init__(
+        self,
+        robot: int,
+        boot: int,
+        shape: tuple[int, int],
+        counts_size: int,
+        *,
+        notary: Notary,
+        limits: Limits,
+        mark: int = 0,
+        resend_after: float = RESEND_AFTER,
+    ) -> None:
+        """Start with nothing known; ``boot < 2**38`` must differ from those of the robot's earlier starts."""
+        tiling = Tiling(*shape)
+        super().__init__(tiling, counts_size, mark)
+        self.out: frozenset[int] = frozenset()  # robots that are not believed
+        self.unsettled = False  # time alone may change who is believed
+        self.notary = notary
+        self._limits, self._trust = limits, Trust(tiling, limits.resolution)
+        self._codec = EvidenceCodec(tiling, counts_size, CodePacking(), sealed=True)
+        self._sealing = SnapshotSealing(notary, self._admit)
+        self._contributors: Contributors[SealedSnapshot, Delta[np.uint8]] = Contributors(
+            robot, boot, lambda: SealedSnapshot(tiling, counts_size), resend_after, self._sealing
+        )
+        self._again: dict[int, int] = {}  # tiles to look at again, since evidence grows firm: when [0.1 s]
+        self._told: Particulars | None = None  # by this robot
+
+    @property
+    def digest(self) -> int:
+        """64 bits, equal (up to 2^-64) for two robots iff what they show, and whom they believe, is equal."""
+        out = repr(sorted(self.out)).encode() if self.out else b""
+        return super().digest ^ (fingerprint(out, self._tiling.count + 1) if out else 0)
+
+    @property
+    def complaints(self) -> dict[int, str]:
+        """What is wrong with whom, by robot."""
+        alone = "its evidence contradicts that of two others or more: the map and the plans leave it out"
+        return self._sealing.complaints | dict.fromkeys(self.out, alone)
+
+    @property
+    def forgers(self) -> set[int]:
+        """Neighbours that pass on what they have changed; whoever reads it may empty it."""
+        return self._sealing.forgers
+
+    def accuse(self, robot: int, of: str) -> None:
+        """Note that a neighbour has passed on what it has changed."""
+        self._sealing.complaints[robot] = of
+
+    def contradictions(self, now: int) -> dict[tuple[int, int], Tally]:
+        """Return how far pairs of robots contradict each other, of what stands at a time [0.1 s]."""
+        copies = self._contributors.copies
+        return self._trust.contradictions({key: copy.times for key, copy in copies.items()}, now)
+
+    def contributors(self) -> int:
+        """Return how many robots' evidence this robot holds; each start of a robot counts."""
+        return len(self._contributors.known())
+
+    def set_out(self, row: int, col: int) -> None:
+        """Note the cell at which this robot starts; the first one stands."""
+        if self._told is None:
+            self._told = Particulars(row, col, self.notary.now())
+
+    def tell(self, notes: Iterable[tuple[int, int, int]]) -> None:
+        """Put these notes, x, y [cm] and a number, in the place of this robot's earlier ones."""
+        if self._told is not None:
+            since = {(x, y, number): when for x, y, number, when in self._told.notes}
+            dated = [(*note, since.get(note, self.notary.now())) for note in notes]
+            self._told = structs.replace(self._told, notes=tuple(dated[: wire.MOST_NOTES]))
+
+    def publish(
+        self, own: TiledGrid[np.int8], changed: NDArray[np.int64] | None, counts: NDArray[np.int64] | None
+    ) -> NDArray[np.int64]:
+        """Share the tiles of ``own`` that hold ``changed`` flat cells (None: find those whose class changed).
+
+        And once again a little later: what contradicts others has to be firm. While it is not settled whom to
+        believe, the time is told even if there is nothing new. Returns the tiles in which the team map
+        changed.
+        """
+        published, now = self._contributors.own, self.notary.now()
+        fresh = tiles_to_publish(own, changed, published)
+        firmer = [tile for tile, due in self._again.items() if due <= now]
+        tiles = np.union1d(fresh, np.array(firmer, np.int64))
+        for tile in firmer:
+            del self._again[tile]
+        self._again |= dict.fromkeys(fresh.tolist(), now + FIRM_AFTER)
+        told = b"" if self._told is None else wire.encode(self._told)
+        restates = self.unsettled and now >= published.seal.time + RESTATES
+        change = published.put(tiles, codes_of(own.read(tiles)), counts, told, now, restates)
+        return self._merge({self._contributors.key: change})
+
+    def set_neighbours(self, neighbours: Sequence[int]) -> None:
+        """Exchange with exactly these robots from now on; the graph may have cycles."""
+        self._contributors.set_neighbours(neighbours)
+
+    def outgoing(self, neighbour: int, now: float) -> bytes | None:
+        """Return what the neighbour lacks, and what it waits to see acknowledged; None if nothing."""
+        payload = self._contributors.tell(neighbour, now)
+        return None if payload is None else self._codec.encode(payload)
+
+    def receive(self, neighbour: int, payload: bytes, now: float) -> NDArray[np.int64]:
+        """Merge a neighbour's payload; returns the tiles in which the team map changed.
+
+        What its contributor has not signed is left out. Raises ValueError, and changes nothing, if the
+        payload is malformed.
+        """
+        news = self._contributors.hear(neighbour, self._codec.decode(payload), now)
+        return self._merge({key: self._contributors.copies[key].apply(delta) for key, delta in news})
+
+    def _merge(self, changes: dict[Key, Change | None]) -> NDArray[np.int64]:
+        """Judge anew, and add up anew what has changed, tile by tile."""
+        copies = self._contributors.copies
+        changed = [NONE]
+        for key, change in changes.items():
+            if change is not None:
+                changed.append(change.tiles)
+                self._trust.see(key, change.tiles, copies[key].values.read)
+        before = self.out
+        self._judge()
+        changed += [copy.known_tiles for (robot, _), copy in copies.items() if robot in before ^ self.out]
+        self.counts = sum((copy.counts for copy in self._believed()), np.zeros_like(self.counts))
+        tiles = np.unique(np.concatenate(changed))
+        return self.show(tiles, classes_of(summed(self._believed(), tiles)))
+
+    def notes(self) -> dict[int, set[Note]]:
+        """Return the notes of the robots that are believed, by robot."""
+        told: dict[int, set[Note]] = {}
+        for (robot, _), copy in self._contributors.copies.items():
+            if copy.particulars and robot not in self.out:
+                told.setdefault(robot, set()).update(wire.decode(copy.particulars).notes)
+        return told
+
+    def _believed(self) -> Iterable[SealedSnapshot]:
+        return (copy for (robot, _), copy in self._contributors.copies.items() if robot not in self.out)
+
+    def _judge(self) -> None:
+        """Find out whom not to believe, and whether time alone would change that."""
+        copies = self._contributors.copies
+        said: dict[int, int] = {}
+        for (robot, _), copy in copies.items():
+            said[robot] = max(said.get(robot, 0), copy.seal.time)
+        # nobody alone makes it late: the time that two robots have told, at least
+        now = sorted(said.values())[-2] if len(said) > 1 else 0
+        times = {key: copy.times for key, copy in copies.items()}
+        self.out = self._trust.out(times, now)
+        self.unsettled = self.out != self._trust.out(times, now + STANDS)
+
+    def _admit(self, news: Delta[np.uint8], held: SealedSnapshot) -> None:
+        """Raise ValueError for what its contributor cannot have seen."""
+        assert news.voucher is not None
+        told = news.voucher.particulars
+        now = wire.decode(held.particulars if told is None else told)
+        if held.particulars:
+            then = wire.decode(held.particulars)
+            if (now.row, now.col, now.began) != (then.row, then.col, then.began):
+                raise ValueError("it has set out from two places")
+        self._limits.check_visits(now)
+        self._limits.check(self._tiling, news.tiles, now, news.voucher.seal.time)
+
+
+def signed_by(fusion: object) -> SignedEvidence | None:
+    """Return a way of fusing as one whose evidence is signed, if it is."""
+    return fusion if isinstance(fusion, SignedEvidence) else None
