@@ -11,13 +11,13 @@ import pytest
 
 from tests.support.notaries import certified
 from vedette.fusion import ReplicatedEvidence
-from vedette.fusion.particulars import Limits, Particulars, encode
+from vedette.fusion.particulars import Capabilities, Particulars, encode
 from vedette.fusion.signed import SignedEvidence
 from vedette.fusion.snapshots import Delta
 from vedette.kernels.tiles import TiledGrid
 
 SHAPE, COUNTS = (80, 100), 3
-LIMITS = Limits(0.1, 8.0, 0.5)
+LIMITS = Capabilities(0.1, 8.0, 0.5)
 
 
 class Clock:

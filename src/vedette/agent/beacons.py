@@ -48,7 +48,7 @@ def hear(agent: Agent, sender: int, told: bytes, now: float) -> list[Effect]:
     Raises:
         ValueError: malformed, of a robot that the team cannot have, or of another than its link's, unsigned.
     """
-    message = messages.decode_beacon(told)
+    message = messages.decode_told(told)
     if isinstance(message, Vouched):
         return _hear_vouched(agent, sender, message, told, now)
     if agent.signed is not None and message.robot != sender:
@@ -60,8 +60,8 @@ def hear(agent: Agent, sender: int, told: bytes, now: float) -> list[Effect]:
 
 def _hear_vouched(agent: Agent, sender: int, message: Vouched, told: bytes, now: float) -> list[Effect]:
     beacon = messages.decode_beacon(message.beacon)
-    if agent.signed is None or not isinstance(beacon, Beacon):
-        raise ValueError("a signed beacon, where nobody signs, or what is none")
+    if agent.signed is None:
+        raise ValueError("a signed beacon, where nobody signs")
     if beacon.robot == agent.robot or not agent.signed.notary.knows(beacon.robot):
         return []  # its certificate comes with its evidence
     try:

@@ -126,17 +126,27 @@ Wire: TypeAlias = (
 )
 
 _DECODER: msgspec.msgpack.Decoder[Wire] = msgspec.msgpack.Decoder(Wire)
-_BEACON_DECODER: msgspec.msgpack.Decoder[Beacon | Vouched] = msgspec.msgpack.Decoder(Beacon | Vouched)
+_BEACON_DECODER: msgspec.msgpack.Decoder[Beacon] = msgspec.msgpack.Decoder(Beacon)
+_TOLD_DECODER: msgspec.msgpack.Decoder[Beacon | Vouched] = msgspec.msgpack.Decoder(Beacon | Vouched)
 encode = msgspec.msgpack.Encoder().encode
 
 
-def decode_beacon(payload: bytes) -> Beacon | Vouched:
-    """Return one of `Beacons`, or what a `Vouched` holds.
+def decode_beacon(payload: bytes) -> Beacon:
+    """Return an unsigned beacon.
 
     Raises:
         ValueError: malformed.
     """
     return wire.decode(_BEACON_DECODER, payload, "beacon")
+
+
+def decode_told(payload: bytes) -> Beacon | Vouched:
+    """Return one of `Beacons`, signed or not.
+
+    Raises:
+        ValueError: malformed.
+    """
+    return wire.decode(_TOLD_DECODER, payload, "beacon")
 
 
 def decode(payload: bytes) -> Wire:

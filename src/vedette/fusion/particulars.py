@@ -41,7 +41,7 @@ def decode(data: bytes) -> Particulars:
 
 
 @dataclass(frozen=True)
-class Limits:
+class Capabilities:
     """How far any robot of the team sees, and how fast it drives."""
 
     resolution: float  # of a cell [m]

@@ -14,14 +14,14 @@ from vedette.fusion.contributors import Contributors
 from vedette.fusion.digest import fingerprint
 from vedette.fusion.link import RESEND_AFTER, Key
 from vedette.fusion.packing import CodePacking
-from vedette.fusion.particulars import Limits, Note, Particulars
+from vedette.fusion.particulars import Capabilities, Note, Particulars
 from vedette.fusion.replicated import summed
 from vedette.fusion.sealed import SealedSnapshot
 from vedette.fusion.sealing import SnapshotSealing
 from vedette.fusion.seals import Notary
 from vedette.fusion.snapshots import NONE, Change, Delta, tiles_to_publish
 from vedette.fusion.tiles import TeamMap, classes_of, codes_of
-from vedette.fusion.trust import STANDS, Tally, Trust
+from vedette.fusion.trust import STANDS, Agreement, Trust
 from vedette.kernels.tiles import TiledGrid, Tiling
 
 FIRM_AFTER, RESTATES = 10, 20  # [0.1 s]
@@ -43,7 +43,7 @@ class SignedEvidence(TeamMap):
         counts_size: int,
         *,
         notary: Notary,
-        limits: Limits,
+        limits: Capabilities,
         mark: int = 0,
         resend_after: float = RESEND_AFTER,
     ) -> None:
@@ -83,7 +83,7 @@ class SignedEvidence(TeamMap):
         """Note that a neighbour has passed on what it has changed."""
         self._sealing.complaints[robot] = of
 
-    def contradictions(self, now: int) -> dict[tuple[int, int], Tally]:
+    def contradictions(self, now: int) -> dict[tuple[int, int], Agreement]:
         """Return how far pairs of robots contradict each other, of what stands at a time [0.1 s]."""
         copies = self._contributors.copies
         return self._trust.contradictions({key: copy.times for key, copy in copies.items()}, now)

@@ -14,7 +14,7 @@ from vedette.domains.mapping.planners import planner
 from vedette.domains.mapping.sightings import BINS
 from vedette.errors import check_word
 from vedette.fusion import ChannelFilter, Fusion, ReplicatedEvidence
-from vedette.fusion.particulars import Limits
+from vedette.fusion.particulars import Capabilities
 from vedette.fusion.seals import Notary
 from vedette.fusion.signed import SignedEvidence
 from vedette.maps.lattice import Lattice
@@ -97,5 +97,5 @@ def _fusion(
     if notary is None or options.fusion != "replicated":
         return FUSIONS[options.fusion](robot, boot, shape, 4 * BINS, mark=mark)
     frame = lattice.frame
-    limits = Limits(frame.resolution, most.range, most.speed, (frame.origin_x, frame.origin_y))
+    limits = Capabilities(frame.resolution, most.range, most.speed, (frame.origin_x, frame.origin_y))
     return SignedEvidence(robot, boot, shape, 4 * BINS, notary=notary, limits=limits, mark=mark)
