@@ -24,7 +24,7 @@ from vedette.agent.messages import Evidence
 from vedette.agent.networked import Output
 from vedette.domains.mapping.views import MOST_STOPS
 from vedette.fusion.signed import SignedEvidence
-from vedette.fusion.trust import Agreement
+from vedette.fusion.trust import Comparison
 from vedette.kernels.coverage import LAYERS
 from vedette.kernels.misses import SparseMisses
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
@@ -182,7 +182,7 @@ class LyingTeam(ExploreSimulation):
     ) -> None:
         """Bring it to life at starts that follow from the seed."""
         self.mode, self.liar, self.now = mode, liar, 0.0
-        self.worst = Agreement(0, 0, 0)
+        self.worst = Comparison(0, 0, 0)
         self.named: dict[int, float] = {}  # when each robot was first complained of by somebody honest [s]
         starts = choose_starts(world, specs, np.random.default_rng([setup.seed, 1]), None)
         super().__init__(world, specs, starts, setup)
@@ -295,7 +295,7 @@ class Ending:
     named: Mapping[int, float]  # when who was first complained of [s]
     liar: int
     out: frozenset[int]  # not believed, by anybody honest
-    worst: Agreement  # how far two of the honest contradicted each other at most
+    worst: Comparison  # how far two of the honest contradicted each other at most
 
 
 def play(mode: str, robots: int, seed: int, **fields: Any) -> Ending:

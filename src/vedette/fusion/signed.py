@@ -21,7 +21,7 @@ from vedette.fusion.sealing import SnapshotSealing
 from vedette.fusion.seals import Notary
 from vedette.fusion.snapshots import NONE, Change, Delta, tiles_to_publish
 from vedette.fusion.tiles import TeamMap, classes_of, codes_of
-from vedette.fusion.trust import STANDS, Agreement, Trust
+from vedette.fusion.trust import STANDS, Comparison, Trust
 from vedette.kernels.tiles import TiledGrid, Tiling
 
 FIRM_AFTER, RESTATES = 10, 20  # [0.1 s]
@@ -83,7 +83,7 @@ class SignedEvidence(TeamMap):
         """Note that a neighbour has passed on what it has changed."""
         self._sealing.complaints[robot] = of
 
-    def contradictions(self, now: int) -> dict[tuple[int, int], Agreement]:
+    def contradictions(self, now: int) -> dict[tuple[int, int], Comparison]:
         """Return how far pairs of robots contradict each other, of what stands at a time [0.1 s]."""
         copies = self._contributors.copies
         return self._trust.contradictions({key: copy.times for key, copy in copies.items()}, now)

@@ -53,7 +53,7 @@ class Views(NamedTuple):
     open: int  # firmly free, and within the margin there is no wall, and hardly anything unknown
 
 
-class Agreement(NamedTuple):
+class Comparison(NamedTuple):
     """How far two contributors agree about a tile [cells]."""
 
     against: int  # walls of either where it is open to the other
@@ -61,7 +61,7 @@ class Agreement(NamedTuple):
     open: int  # that are free to one and open to the other
 
     @classmethod
-    def of(cls, a: Views, b: Views) -> Agreement:
+    def of(cls, a: Views, b: Views) -> Comparison:
         """Compare two views of one tile."""
         return cls(
             (a.walls & b.open).bit_count() + (b.walls & a.open).bit_count(),
@@ -70,7 +70,7 @@ class Agreement(NamedTuple):
         )
 
     @classmethod
-    def total(cls, tallies: Iterable[Agreement]) -> Agreement:
+    def total(cls, tallies: Iterable[Comparison]) -> Comparison:
         """Add them up."""
         return cls(*map(sum, zip((0, 0, 0), *tallies, strict=True)))
 
@@ -82,7 +82,7 @@ class Trust:
     tiling: Tiling
     resolution: float  # [m]
     _views: dict[Key, dict[int, Views]] = field(default_factory=dict)
-    _tallies: dict[tuple[Key, Key], dict[int, Agreement]] = field(default_factory=lambda: defaultdict(dict))
+    _tallies: dict[tuple[Key, Key], dict[int, Comparison]] = field(default_factory=lambda: defaultdict(dict))
 
     @property
     def margin(self) -> int:
@@ -109,7 +109,7 @@ class Trust:
                         self._compare(pair, tile, views[tile], theirs[tile])
 
     def _compare(self, pair: tuple[Key, Key], tile: int, a: Views, b: Views) -> None:
-        tally = Agreement.of(a, b)
+        tally = Comparison.of(a, b)
         if any(tally):
             self._tallies[pair][tile] = tally
         else:
@@ -117,19 +117,19 @@ class Trust:
 
     def contradictions(
         self, times: Mapping[Key, Mapping[int, Times]], now: int
-    ) -> dict[tuple[int, int], Agreement]:
+    ) -> dict[tuple[int, int], Comparison]:
         """Return how far pairs of robots contradict each other now, each with the lower number first.
 
         Only what stood at the same time counts, and what neither has corrected lately. ``now`` [0.1 s].
         """
-        pairs: dict[tuple[int, int], Agreement] = {}
+        pairs: dict[tuple[int, int], Comparison] = {}
         for (a, b), tallies in self._tallies.items():
             if not any(tally.against for tally in tallies.values()):
                 continue
             one, two = times[a], times[b]
             valid = [t for tile, t in tallies.items() if _counts(one.get(tile), two.get(tile), now)]
             robots = min(a[0], b[0]), max(a[0], b[0])
-            pairs[robots] = Agreement.total([*valid, pairs.get(robots, Agreement(0, 0, 0))])
+            pairs[robots] = Comparison.total([*valid, pairs.get(robots, Comparison(0, 0, 0))])
         return pairs
 
     def out(self, times: TimesOf, now: int) -> frozenset[int]:
@@ -137,7 +137,7 @@ class Trust:
         found = self.contradictions(times, now)
         return liars({pair: t.against for pair, t in found.items() if self.is_firm(t)})
 
-    def is_firm(self, tally: Agreement) -> bool:
+    def is_firm(self, tally: Comparison) -> bool:
         """Tell whether two robots cannot both be right: of what either says much is so to nobody else."""
         against, walls, opens = tally.against, tally.against + tally.alike, tally.against + tally.open
         shut = against >= self.cells(LEAST_SHUT) and SHARE * against >= opens
