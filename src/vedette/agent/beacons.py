@@ -12,7 +12,8 @@ from vedette.agent.events import Pose
 from vedette.agent.messages import Beacon, Vouched
 from vedette.agent.state import Agent
 
-SIGNED = 4  # one beacon in so many is signed, where there are keys: those alone are passed on
+SIGNED = 4  # one beacon in so many is signed, and all of the first ones, where there are keys
+INTRODUCES = 40  # the first ones bring the certificate
 BEACON = "beacon"
 
 
@@ -34,26 +35,29 @@ def tell(agent: Agent, pose: Pose) -> bytes:
         tuple(offsets.ravel().tolist()),
     )
     data = messages.encode(beacon)
-    if agent.signed is None or agent.beacons % SIGNED:
+    if agent.signed is None or (agent.beacons % SIGNED and agent.beacons > SIGNED):
         return data
-    return messages.encode(Vouched(data, agent.signed.notary.sign(BEACON, data)))
+    notary = agent.signed.notary
+    certificate = notary.certificate if agent.beacons <= INTRODUCES else b""
+    return messages.encode(Vouched(data, notary.sign(BEACON, data), certificate))
 
 
 def hear(agent: Agent, sender: int, told: bytes, now: float) -> list[Effect]:
     """Keep a mate's beacon, and pass it on.
 
-    Where there are keys, an unsigned one is its maker's own, from its own link, and goes no farther: a
-    signature each would take more bytes than the beacons do, and a mate that is links away is seldom near.
+    Where there are keys, an unsigned one that is passed on is believed as far as it agrees with the last
+    that its robot has signed, or said itself: a signature each would take more bytes than the beacons do.
 
     Raises:
-        ValueError: malformed, of a robot that the team cannot have, or of another than its link's, unsigned.
+        ValueError: malformed, or of a robot that the team cannot have.
     """
     message = messages.decode_told(told)
     if isinstance(message, Vouched):
         return _hear_vouched(agent, sender, message, told, now)
-    if agent.signed is not None and message.robot != sender:
-        raise ValueError(f"beacon of robot {message.robot} from robot {sender}, unsigned")
-    if message.robot != agent.robot and agent.mates.hear(message, now, sender) and agent.signed is None:
+    passed_on = agent.signed is not None and message.robot != sender
+    if message.robot == agent.robot or (passed_on and not agent.mates.is_likely(message, now)):
+        return []
+    if agent.mates.hear(message, now, sender, passed_on=passed_on):
         agent.relay.hear(message.robot, told, sender, agent.rounds.tree.neighbours, now)
     return []
 
@@ -62,10 +66,13 @@ def _hear_vouched(agent: Agent, sender: int, message: Vouched, told: bytes, now:
     beacon = messages.decode_beacon(message.beacon)
     if agent.signed is None:
         raise ValueError("a signed beacon, where nobody signs")
-    if beacon.robot == agent.robot or not agent.signed.notary.knows(beacon.robot):
+    notary = agent.signed.notary
+    if beacon.robot == agent.robot or not (message.certificate or notary.knows(beacon.robot)):
         return []  # its certificate comes with its evidence
     try:
-        agent.signed.notary.check(beacon.robot, message.signature, BEACON, message.beacon)
+        if message.certificate:
+            notary.admit(beacon.robot, message.certificate)
+        notary.check(beacon.robot, message.signature, BEACON, message.beacon)
     except ValueError as error:
         agent.signed.accuse(sender, f"a beacon of robot-{beacon.robot + 1} is not that robot's: {error}")
         return [Shun(sender)]

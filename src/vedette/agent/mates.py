@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 from vedette.agent.messages import Beacon
 
 MOST_MATES = 1024  # that are kept at most; each has a path of at most 500 points
+MOST_UNPROVED = 16  # beacons after one that is known to be its robot's, that are believed without proof
+ASIDE = 0.5  # and so far from there, beside what the robot can have driven [m]
+Proved = tuple[tuple[int, int], float, float, float]  # boot and sequence, x, y [m], when it came [s]
 SILENT = 3.0  # a mate not heard for so long stands where it was last [s]
 
 
@@ -46,13 +49,16 @@ class Mates:
     admitted: int = MOST_MATES  # robots of the team are numbered below it
     _newest: dict[int, tuple[int, int]] = field(default_factory=dict)  # boot and sequence
     _mates: dict[int, Mate] = field(default_factory=dict)
+    _proved: dict[int, Proved] = field(default_factory=dict)
 
-    def hear(self, beacon: Beacon, now: float, sender: int, *, signed: bool = False) -> bool:
+    def hear(
+        self, beacon: Beacon, now: float, sender: int, *, signed: bool = False, passed_on: bool = False
+    ) -> bool:
         """Keep a beacon; tell whether it is news.
 
         Of what comes from itself, or when it has been silent, a mate's beacon is news whatever its number:
         who passes beacons on could have said higher ones. Not if it is signed: nobody could, but old ones
-        might be said again.
+        might be said again. ``passed_on``: it was likely, and proves nothing.
 
         Raises:
             ValueError: of a robot that the team cannot have.
@@ -61,12 +67,27 @@ class Mates:
         if beacon.robot >= self.admitted or (known is None and len(self._mates) == MOST_MATES):
             raise ValueError(f"beacon of robot {beacon.robot}: the team has no such robot")
         stamp, newest = (beacon.boot, beacon.sequence), self._newest.get(beacon.robot, (-1, -1))
-        believed = beacon.robot == sender or ((known is None or known.silent(now)) and not signed)
+        unproved = (known is None or known.silent(now)) and not (signed or passed_on)
+        believed = beacon.robot == sender or unproved
+        if signed and beacon.robot != sender:
+            newest = self._proved.get(beacon.robot, (newest, 0.0, 0.0, 0.0))[0]
         if newest == stamp or (newest > stamp and not believed):
             return False
         self._newest[beacon.robot] = stamp
         self._mates[beacon.robot] = _mate(beacon, now)
+        if not passed_on:
+            self._proved[beacon.robot] = stamp, beacon.x / 100.0, beacon.y / 100.0, now
         return True
+
+    def is_likely(self, beacon: Beacon, now: float) -> bool:
+        """Tell whether a beacon agrees with the last that its robot is known to have said, not long ago."""
+        if beacon.robot not in self._proved:
+            return False
+        (boot, sequence), x, y, said = self._proved[beacon.robot]
+        mate, seconds = self._mates[beacon.robot], now - said
+        away = float(np.hypot(beacon.x / 100.0 - x, beacon.y / 100.0 - y))
+        follows = beacon.boot == boot and sequence < beacon.sequence <= sequence + MOST_UNPROVED
+        return follows and seconds <= SILENT and away <= ASIDE + mate.speed * (seconds + 1.0)
 
     def anybody_moves(self) -> bool:
         """Tell whether any mate was on its way when last heard."""

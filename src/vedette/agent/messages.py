@@ -119,6 +119,7 @@ class Vouched(msgspec.Struct, frozen=True, array_like=True, tag=10):
 
     beacon: bytes
     signature: bytes
+    certificate: bytes = b""  # in a robot's first ones; later it has come with the evidence
 
 
 Wire: TypeAlias = (
