@@ -46,7 +46,7 @@ def test_a_signed_beacon_is_believed_whoever_passes_it_on(chain: tuple[Agent, Ag
     payload = told(maker, 3.0)
     assert isinstance(messages.decode(payload), Vouched)
     assert beacons.hear(relay, 0, payload, 1.0) == []
-    (passed,) = relay.relay.at_once()
+    (passed,) = relay.relay.pass_on()
     assert passed == Send(2, TrafficKind.BEACONS, payload)
     assert beacons.hear(hearer, 1, payload, 1.1) == []
     assert place(hearer, 0) == 3.0

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from functools import partial
 
-
 from vedette.agent import beacons, messages
 from vedette.agent.effects import Effect, Send, Shun, TrafficKind
 from vedette.agent.events import Arrived, Event, JobDone, Message, Pose, Scan, Sensed, Stuck, TreeChanged

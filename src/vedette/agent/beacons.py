@@ -58,7 +58,8 @@ def hear(agent: Agent, sender: int, told: bytes, now: float) -> list[Effect]:
     if message.robot == agent.robot or (passed_on and not agent.mates.is_likely(message, now)):
         return []
     if agent.mates.hear(message, now, sender, passed_on=passed_on):
-        agent.relay.hear(message.robot, told, sender, agent.rounds.tree.neighbours, now)
+        links, proves = agent.rounds.tree.neighbours, agent.signed is None
+        agent.relay.hear(message.robot, told, sender, links, now, proves=proves)
     return []
 
 

@@ -43,14 +43,19 @@ class Relay:
     _next: dict[tuple[int, int], float] = field(default_factory=dict)  # by link and robot far away [s]
     _going: defaultdict[int, list[bytes]] = field(default_factory=lambda: defaultdict(list))  # by link
 
-    def hear(self, robot: int, told: bytes, sender: int, links: Iterable[int], now: float) -> None:
-        """Take in a mate's beacon, as it came, that is news; it goes on over all other links."""
+    def hear(
+        self, robot: int, told: bytes, sender: int, links: Iterable[int], now: float, *, proves: bool = True
+    ) -> None:
+        """Take in a mate's beacon, as it came, that is news; it goes on over all other links.
+
+        ``proves``: whose it is; one that does not is of no use far away, where the next comes much later.
+        """
         self._came_by[robot] = sender
         for link in links:
             if link == sender:
                 continue
             if robot in self._afar.get(link, ()):
-                if now < self._next.get((link, robot), -inf) - EARLY:
+                if not proves or now < self._next.get((link, robot), -inf) - EARLY:
                     continue
                 self._next[link, robot] = now + AFAR
             self._going[link].append(told)
