@@ -1,0 +1,44 @@
+"""The impact of a way: how much information about the field it would bring, by spot and time layer."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.errors import InputError
+from vedette.kernels.misses import CERTAIN, Misses, MissesCodec, SparseMisses
+
+Impact: TypeAlias = SparseMisses  # keys spot * layers + layer, numbers in units of information; (V124)
+NOTHING = Impact(np.empty(0, np.uint32), np.empty(0, np.uint8))
+
+
+def units_of(variance: float, unit: float) -> int:
+    """Return one measurement's information in units, rounded to the nearest; at most 255.
+
+    Raises:
+        InputError: a variance that is not > 0, or one that leaves less than half a unit.
+    """
+    if not (np.isfinite(variance) and variance > 0.0):
+        raise InputError(f"sensor: variance must be > 0; got {variance}")
+    units = round(1.0 / (variance * unit))
+    if units < 1:
+        raise InputError(
+            f"sensor: a measurement of variance {variance:g} says less than half a unit of {unit:g}"
+        )
+    return min(units, CERTAIN)
+
+
+def impact_of(spots: NDArray[np.int64], layers: NDArray[np.int64], each: int, of: int) -> Impact:
+    """Return the impact of measurements of so many units each, at spots in layers, ``of`` layers in all."""
+    keys, counts = np.unique(spots * of + layers, return_counts=True)
+    levels: Misses = np.minimum(counts * each, CERTAIN).astype(np.uint8)
+    return Impact(keys.astype(np.uint32), levels)
+
+
+class FieldImpactCodec(MissesCodec):
+    """Impacts over so many spots and layers as bytes, all layers in one go."""
+
+    def __init__(self, spots: int, layers: int) -> None:
+        super().__init__(spots, layers, runs=1, level=6)

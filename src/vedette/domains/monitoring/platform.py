@@ -1,0 +1,138 @@
+"""One robot or flyer that monitors: the ways it can take, what it would measure, its best reply."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.domains.monitoring.impact import Impact, impact_of, units_of
+from vedette.domains.monitoring.objective import MonitoringBelief, MonitoringObjective
+from vedette.domains.monitoring.ways import Place, Way, fan, passable
+from vedette.errors import InputError
+from vedette.number import is_number
+
+HYSTERESIS = 0.01  # a new way must gain this share more than the present one
+MOST_BEARINGS = 16
+
+
+@dataclass(frozen=True)
+class FieldSensor:
+    """A sensor that measures the mean over ``side x side`` cells about where it is, again and again.
+
+    Raises:
+        InputError: a number out of its range.
+    """
+
+    variance: float  # of a measurement [unit^2]
+    side: int = 1  # [cells]; 1: a point sensor
+    every: float = 1.0  # between measurements [s]
+
+    def __post_init__(self) -> None:
+        for name, value in (("variance", self.variance), ("every", self.every)):
+            if not (is_number(value) and value > 0.0):
+                raise InputError(f"sensor: {name} must be a number > 0; got {value}")
+
+
+@dataclass(eq=False)
+class MonitoringPlatform:
+    """Whoever moves at constant speed and measures; on the ground around what is blocked, or in the air.
+
+    Candidates: two legs of half the horizon each in any of some bearings, staying, and what is left of the
+    present way; each as far as there is a way, and no longer than the budget. ``place`` says where it is and
+    what is left before ``prepare``; a round then works on what that found.
+
+    Raises:
+        InputError: a number out of its range.
+    """
+
+    speed: float  # [m/s]
+    sensor: FieldSensor
+    blocked: NDArray[np.bool_] | None = None  # (R, C) cells it cannot enter; None: it flies
+    budget: float = math.inf  # way that is left [m]
+    bearings: int = 8
+    objective: MonitoringObjective = field(default_factory=MonitoringObjective)
+    here: Place = (0.0, 0.0)  # [m], team frame
+    present: Way | None = None
+    ways: list[Way] = field(default_factory=list)  # that are compared; set by prepare
+    candidates: list[Impact] = field(default_factory=list)  # what each would bring
+
+    def __post_init__(self) -> None:
+        if not (is_number(self.speed) and self.speed >= 0.0):
+            raise InputError(f"monitoring: speed must be >= 0 m/s; got {self.speed}")
+        if not self.budget >= 0.0:
+            raise InputError(f"monitoring: budget must be >= 0 m; got {self.budget}")
+        if not 1 <= self.bearings <= MOST_BEARINGS:
+            raise InputError(f"monitoring: bearings must be 1 to {MOST_BEARINGS}; got {self.bearings}")
+
+    def place(self, x: float, y: float, budget: float, present: Way | None = None) -> None:
+        """Say where it is [m], team frame, how far it may still go [m], and what is left of its way."""
+        self.here, self.budget, self.present = (x, y), budget, present
+
+    def prepare(self, belief: MonitoringBelief) -> None:
+        """List the ways, the present one among them, and what each would measure: the slow part.
+
+        Raises:
+            InputError: the robot is outside the field, or its map is of another grid.
+        """
+        frame = belief.field.model.frame
+        if not frame.contains(*self.here):
+            raise InputError(f"monitoring: the robot is at {self.here}, outside the field; place it inside")
+        if self.blocked is not None and self.blocked.shape != frame.shape:
+            raise InputError(
+                f"monitoring: blocked has shape {self.blocked.shape}; the field has {frame.shape}"
+            )
+        reach = self.speed * belief.patrol.horizon
+        wanted = [self.carry_over(belief, self.present), *fan(self.here, reach, self.bearings)]
+        ways = (passable(way, frame, self.blocked, min(self.budget, reach)) for way in wanted)
+        self.ways = list(dict.fromkeys(ways))
+        self.candidates = [self.impact(belief, way) for way in self.ways]
+
+    def carry_over(self, belief: MonitoringBelief, strategy: Way | None) -> Way:
+        """Restate a way from where the robot is; stay, where there is none."""
+        if strategy is None:
+            return Way((self.here, self.here))
+        return Way((self.here, *(strategy.places[1:] or (self.here,))))
+
+    def impact(self, belief: MonitoringBelief, strategy: Way) -> Impact:
+        """The information that measuring along the way would bring, by layer; docs/monitoring.md (V124)."""
+        frame, patrol = belief.field.model.frame, belief.patrol
+        count = math.floor(patrol.horizon / self.sensor.every)
+        times = self.sensor.every * np.arange(1, count + 1).astype(np.float64)
+        row, col = np.floor(
+            (strategy.at(self.speed * times)[:, ::-1] - (frame.origin_y, frame.origin_x)) / frame.resolution
+        ).T
+        cells = np.clip(row, 0, frame.rows - 1) * frame.cols + np.clip(col, 0, frame.cols - 1)
+        spots = belief.field.spots.of(self.sensor.side, cells.astype(np.int64))
+        each = units_of(self.sensor.variance, belief.unit)
+        return impact_of(spots, patrol.layer(times - 0.5 * self.sensor.every), each, patrol.layers)
+
+    def reply(self, belief: MonitoringBelief, others: Impact, current: Way) -> Way:
+        """Best way against the rest of the team, ``current`` if none is better; paper, eq. (30)."""
+        values = self.objective.values(belief, others, [self.impact(belief, current), *self.candidates])
+        best = int(np.argmax(values[1:]))
+        return self.ways[best] if values[1 + best] > (1.0 + HYSTERESIS) * values[0] else current
+
+    def slack(self, belief: MonitoringBelief, team: Impact) -> float:
+        """No way adds more than this to the team's impact."""
+        return max(0.0, float((self.gains(belief, team)).max(initial=0.0)))
+
+    def gains(self, belief: MonitoringBelief, others: Impact) -> NDArray[np.float64]:
+        """What each way adds to the rest of the team."""
+        return self.objective.values(belief, others, self.candidates) - self.objective.value(belief, others)
+
+
+def lawnmower(corners: Sequence[float], spacing: float) -> Way:
+    """Return the way to and fro over a box x_min, x_max, y_min, y_max, lines so far apart [m]."""
+    x_min, x_max, y_min, y_max = corners
+    if not (is_number(spacing) and spacing > 0.0):
+        raise InputError(f"lawn-mower: spacing must be > 0 m; got {spacing}")
+    lines = max(1, math.ceil((y_max - y_min) / spacing))
+    places: list[Place] = []
+    for line in range(lines):
+        y = y_min + (line + 0.5) * (y_max - y_min) / lines
+        places += [(x_min, y), (x_max, y)] if line % 2 == 0 else [(x_max, y), (x_min, y)]
+    return Way(tuple(places))
