@@ -87,7 +87,7 @@ class RoundLaw:
         outcome, stamp = negotiator.finished, belief.stamp
         assert outcome is not None
         check(stamp[1] == seen.sequence, "a round ends that never froze", stamp, seen.sequence)
-        name = (*stamp, *mission.life) if seen.is_alone else stamp
+        name = stamp if seen.tree.neighbours else (*stamp, *mission.life)
         if not seen.approximate:
             self._exact[name].add(belief.digest)
             check(len(self._exact[name]) == 1, "two maps are taken for one", mission.life, stamp)

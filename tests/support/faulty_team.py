@@ -119,7 +119,8 @@ class FaultyTeam(SiteTeam):
 
     def _let(self, i: int, act: Act) -> None:
         rounds = self.network.agents[i].rounds
-        seen, decisions, cuts, turns = rounds.round, rounds.decisions, rounds.cuts, _turns_in(rounds.round)
+        seen, decisions, cuts = rounds.round, rounds.decisions, rounds.cuts
+        turns, negotiator = _turns_in(seen), None if seen is None else seen.negotiator
         super()._let(i, act)
         agent = self.network.agents[i]
         mission = mission_of(agent)
@@ -129,7 +130,9 @@ class FaultyTeam(SiteTeam):
         if rounds.decisions > decisions:
             assert seen is not None
             if not self.suffers:
-                self.round_law.decided(mission, seen, ended=_turns_in(seen) > turns)
+                self.round_law.decided(
+                    mission, seen, ended=_turns_in(seen) > (turns if seen.negotiator is negotiator else 0)
+                )
             self._say(f"{i} decides {mission.strategy} in {rounds.stamp}, quiet {agent.quiet}")
         if not self.forged and self.evidence.check(mission):
             self._say(f"{i} holds {versions_of(mission)}")

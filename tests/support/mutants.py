@@ -17,7 +17,7 @@ from vedette.agent.effects import Send
 from vedette.agent.networked import BEACON, HELLO, PACKET, TERMS, Output
 from vedette.fusion.link import Payload
 from vedette.fusion.snapshots import Delta
-from vedette.negotiation.messages import Down, Gather, Stop, Token, Up
+from vedette.negotiation.messages import Down, Fork, Gather, Joined, Offer, Settled, Stop, Tidings, Token, Up
 from vedette.overlay.hello import Hello
 from vedette.overlay.packet import Packet
 
@@ -34,7 +34,10 @@ AGENTS = (
     messages.Negotiate,
 )
 BEACONS = ("Beacon", "Beacons")
-NEGOTIATION = {0: Gather, 1: Token, 2: Up, 3: Down, 4: Stop}  # by tag
+NEGOTIATION = {
+    kind.__struct_config__.tag: kind
+    for kind in (Gather, Token, Up, Down, Stop, Fork, Joined, Settled, Offer, Tidings)
+}
 EVIDENCE = ("nonce", "echo", "have robot", "have boot", "have version", "robot", "boot", "base", "version")
 
 
