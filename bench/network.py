@@ -1,5 +1,7 @@
 """``python -m bench.network``: teams of real processes on this host, against what is asked of them.
 
+With ``--modes``: teams with a member that misbehaves, so far as the results file does not have them.
+
 The figures are wall-clock and mission times of processes that share the host's cores with whatever else runs:
 the load is told beside them.
 """
@@ -16,6 +18,7 @@ import numpy as np
 
 from bench import RESULTS, command, machine
 from bench.criteria import BenchReport, Criterion, Measurement, verdicts
+from bench.members import ALL, modes_of, results, sizes_of, table
 from tests.support.net_processes import (
     Chain,
     Diary,
@@ -47,13 +50,21 @@ Progress = Callable[[str], None]
 @click.command()
 @click.option("--quick", is_flag=True, help="A smoke run: a small office, few missions.")
 @click.option("--speed", default=SPEED, show_default=True, help="Of the mission that is compared.")
+@click.option("--modes", help=f"Of a member that misbehaves, with commas between, or all: {', '.join(ALL)}.")
+@click.option("--robots", default="3,5", show_default=True, help="Of such teams, with commas between.")
 @click.option("--date", help="Of the run, to be put into the JSON.  [default: the commit's]")
 @click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for the JSON.")
-def network(quick: bool, speed: float, date: str | None, out: Path) -> None:
+def network(quick: bool, speed: float, modes: str | None, robots: str, date: str | None, out: Path) -> None:
     """Measure teams of processes, and say MET or MISSED. Exit status 0 either way."""
     folder = command.results_folder(out)
     about = machine.describe()
     click.echo(f"{about['machine']}; Python {about['python']}; commit {about['commit']}")
+    if modes is not None:
+        wanted = modes_of(modes), sizes_of(robots)
+        for each in results(folder / "members.jsonl", *wanted, speed, about["commit"]):
+            click.echo(f"  {each.mode}, {each.robots} robots: {each.outcome}", err=True)
+        click.echo(table(folder / "members.jsonl"), nl=False)
+        return
     about |= {"date": date or about["commit_date"], "load_before": _load()}
 
     def progress(text: str) -> None:

@@ -43,7 +43,7 @@ def misbehave(mode: str) -> None:
 
         AgentProcess._run = slowly  # type: ignore[method-assign]
     else:
-        program = MODES[mode](np.random.default_rng(0))
+        program = misbehaving.Dead if mode == "dead" else MODES[mode](np.random.default_rng(0))
         start.NetworkedAgent = partial(program)  # type: ignore[attr-defined,misc]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -13,13 +14,16 @@ from math import inf
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from threading import Timer
-from typing import Any
+from types import TracebackType
+from typing import Any, Self
 
+import msgspec
 import numpy as np
 
 from tests.support.small_missions import robots
 from vedette.maps.world import World
 from vedette.missions.explore.options import ExploreOptions
+from vedette.net.endpoints import free_port
 from vedette.net.explore.plan import ExplorePlan
 from vedette.net.explore.watch import ExploreWatcher
 from vedette.net.launch import TeamProcesses
@@ -29,12 +33,14 @@ from vedette.net.team import TeamWatch
 from vedette.net.transport import Operator, Published
 from vedette.record.explore.log import ExploreSnapshot
 from vedette.record.explore.observer import ExploreReport
+from vedette.record.explore.views import RobotView
 from vedette.record.summary import Setting
 from vedette.sim.starts import choose_starts
 
 SPEED = 5.0  # times real time
 LEASE = 3.0  # [s]
 UNTIL_AGREED = 10.0  # for the last evidence to come round [s]
+SETTLED = 2.0  # for which robots that have settled are done [s]
 
 
 def plan_of(world: World, count: int, speed: float = SPEED, lease: float = LEASE) -> ExplorePlan:
@@ -81,6 +87,33 @@ class Diary:
     def agree(self, robots: Sequence[int]) -> bool:
         """Tell whether these said last that they hold the same evidence."""
         return len({self.last(i).digest for i in robots}) == 1
+
+    def settled(self, robots: Sequence[int]) -> bool:
+        """Tell whether these are done, have been so for a while, and hold the same evidence."""
+        if not all(map(self.heard, robots)) or not self.agree(robots):
+            return False
+        late = time.monotonic() - SETTLED
+        return all(told.said.state == "done" for i in robots for told in self.by_robot[i] if told.time > late)
+
+    def done_at(self, robot: int) -> float:
+        """Mission time at which a robot was done, for good [s]; infinite if it is not."""
+        at = inf
+        for told in reversed(self.by_robot.get(robot, [])):
+            if told.said.state != "done":
+                break
+            at = told.said.time - (told.said.began or 0.0)
+        return at
+
+    def named_at(self, robots: Sequence[int], culprit: int) -> float:
+        """When one of these first complained of another, since all had reported [s]; infinite if never."""
+        began = max(self.by_robot[i][0].time for i in robots)
+        named = (
+            told.time
+            for i in robots
+            for told in self.by_robot[i]
+            if any(each.robot == culprit for each in told.said.complaints)
+        )
+        return max(min(named, default=inf) - began, 0.0)
 
 
 @dataclass(frozen=True)
@@ -130,6 +163,31 @@ def freeze(find: Callable[[Diary], int], seconds: float = inf) -> Callable[[Diar
 
 
 @dataclass
+class Doubled(TeamProcesses):
+    """The last robot's number is started twice, the second time with links to all others."""
+
+    def __enter__(self) -> Self:
+        """Start the double last."""
+        super().__enter__()
+        last = self.plan.size - 1
+        config = msgspec.yaml.decode(self._file_of(last).read_text())
+        config["links"] |= {"listen": [f"tls/127.0.0.1:{free_port()}"], "connect": self.endpoints[:last]}
+        double = self.folder / "double.yaml"
+        double.write_text(msgspec.yaml.encode(config).decode())
+        command = [str(double) if part == str(self._file_of(last)) else part for part in self._command(last)]
+        self._double = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Stop the double too."""
+        self._double.kill()
+        self._double.wait()
+        super().__exit__(kind, error, trace)
+
+
+@dataclass
 class Chain(TeamProcesses):
     """Each robot reaches the one before it and the one after it alone."""
 
@@ -164,9 +222,13 @@ class _Fate:
 
     diary: Diary
     faults: list[Fault]
+    enough: Sequence[int] | None  # the mission is over when these have settled
+    stop: Callable[[], None] = lambda: None  # ends the mission
 
     def update(self, snapshot: ExploreSnapshot) -> None:
         """Let the next fault come when it is due; the first, once all robots have reported."""
+        if self.enough is not None and self.diary.settled(self.enough):
+            self.stop()
         if len(self.diary.by_robot) < len(snapshot.robots):
             return
         assert snapshot.coverage is not None, "the ground is known"
@@ -184,6 +246,7 @@ class Mission:
     diary: Diary
     ended: float  # [s]
     survivors: list[int]  # whose processes ran at the end
+    views: Sequence[RobotView]  # as it ended
 
     @property
     def struck(self) -> float:
@@ -207,8 +270,9 @@ def run(
     team: Callable[[ExplorePlan, Path, Path], TeamProcesses] = TeamProcesses,
     max_time: float = 900.0,
     rest: float = 0.0,
+    enough: Sequence[int] | None = None,
 ) -> Mission:
-    """Run a team to the end of its mission, or for ``max_time`` of it [s].
+    """Run a team to the end of its mission, or for ``max_time`` of it [s], or until ``enough`` have settled.
 
     It goes on until the maps of those that live agree, and for ``rest`` [s] in any case.
     """
@@ -218,9 +282,10 @@ def run(
         operator = stack.enter_context(Operator(processes.operator))
         diary = Diary(plan, processes)
         operator.subscribe(Topic.REPORT, diary.take)
-        fate = _Fate(diary, sorted(faults, key=lambda fault: fault.coverage))
+        fate = _Fate(diary, sorted(faults, key=lambda fault: fault.coverage), enough)
         watcher = ExploreWatcher(plan, Setting(seed=plan.seed), (fate,))
         watch = TeamWatch(plan, processes, operator, watcher, max_time)
+        fate.stop = watch.stop
         report = watch.run()
         ended = time.monotonic()
         living = [i for i in range(len(plan.specs)) if processes.runs(i)]
@@ -229,7 +294,7 @@ def run(
         ):
             time.sleep(0.05)
         time.sleep(rest)
-    return Mission(report, diary, ended, living)
+    return Mission(report, diary, ended, living, watcher._views)
 
 
 # -- how fast a team gets over a loss --------------------------------------------------------------------

@@ -14,7 +14,7 @@ from vedette.net.names import MOST_ROBOTS, Names, Topic, check_team
 
 MOST_PAYLOAD = (1 << 24) + 1024  # [bytes]
 RETRY = {"period_init_ms": 250, "period_max_ms": 1000, "period_increase_factor": 1.5}
-PENDING_TIMEOUT = 3000  # for a stranger to show its certificate [ms]
+PENDING_TIMEOUT = 10_000  # for a link to be opened, or a stranger to show its certificate [ms]
 
 Settings: TypeAlias = dict[str, Any]
 Rule: TypeAlias = tuple[str, list[str], list[str]]  # flow, messages, key expressions
