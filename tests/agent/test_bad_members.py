@@ -18,6 +18,14 @@ def test_no_member_stops_the_others(mode: str) -> None:
         play(mode, seed)
 
 
+@pytest.mark.parametrize("mode", ["mates", "epoch", "echo", "wrong map"])
+def test_who_says_what_cannot_be_is_named_by_a_neighbour(mode: str) -> None:
+    team = play(mode, 0)
+    lives = [robot.life for robot in team.network._robots]
+    named = {robot for i in team.honest for robot in lives[i].complaints}
+    assert named == set(team.bad)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("first", range(SEEDS, ALL, BATCH))
 @pytest.mark.parametrize("mode", MODES)

@@ -9,6 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from vedette.agent.intents import Intent
+from vedette.agent.refuges import refuge, retreat
 from vedette.agent.rightofway import give_way, queues
 from vedette.kernels.distance import distance_field, path_to, shortcut
 from vedette.kernels.motion import block_discs
@@ -415,6 +416,14 @@ def test_block_discs_clears_exactly_the_cells_whose_centre_lies_in_a_disc() -> N
     assert open_.all()
 
 
+def test_where_no_ground_is_known_there_is_no_refuge() -> None:
+    nothing = np.zeros((0, 0), np.bool_)
+    me = Intent(1, 3.0, 5.0, np.array([(3.0, 5.0), (6.0, 5.0)]))
+    mate = Intent(0, 6.0, 5.0, np.array([(6.0, 5.0), (3.0, 5.0)]))
+    assert refuge(nothing, RESOLUTION, me, mate, [], 0.0) is None
+    assert retreat(nothing, RESOLUTION, me, mate.path, [mate]) is None
+
+
 def test_in_the_open_nobody_gives_way() -> None:
     open_ = inflated(box(10, 10))
     me = Intent(1, 3.0, 5.0, np.array([(3.0, 5.0), (6.0, 5.0)]))
@@ -427,10 +436,10 @@ def test_before_a_door_only_the_later_robot_gives_way_and_its_refuge_is_clear_of
     east = np.column_stack((np.linspace(3.0, 6.0, 16), np.full(16, 3.05)))
     first, second = Intent(0, 3.0, 3.05, east), Intent(1, 6.0, 3.05, east[::-1])
     assert give_way(open_, RESOLUTION, first, [second]) is None
-    refuge = give_way(open_, RESOLUTION, second, [first])
-    assert refuge is not None
-    assert refuge[0] == pytest.approx((6.0, 3.05))
-    assert np.hypot(*(east - refuge[-1]).T).min() >= 0.2 + 0.2 + 0.1
+    path = give_way(open_, RESOLUTION, second, [first])
+    assert path is not None
+    assert path[0] == pytest.approx((6.0, 3.05))
+    assert np.hypot(*(east - path[-1]).T).min() >= 0.2 + 0.2 + 0.1
 
 
 def test_two_robots_that_go_the_same_way_through_a_door_do_not_give_way() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from vedette.agent.networked import BEACON, PACKET
-from vedette.net.inbox import MOST_BEACONS, MOST_OF_ONE, Inbox, PeerGone, ReceivedDatagram
+from vedette.net.inbox import MOST_BEACONS, MOST_OF_ONE, MUCH, Inbox, PeerGone, ReceivedDatagram
 
 
 def test_a_flood_of_one_neighbours_beacons_keeps_nobody_elses_datagrams_out() -> None:
@@ -38,3 +38,12 @@ def test_one_neighbour_gets_half_of_the_memory_at_most() -> None:
         inbox.put(ReceivedDatagram(1, PACKET + bytes(99), 0.0))
     inbox.put(ReceivedDatagram(2, PACKET + bytes(99), 0.0))
     assert inbox.dropped == 15
+
+
+def test_who_floods_is_known_and_nobody_else() -> None:
+    inbox = Inbox()
+    for k in range(MOST_BEACONS + MUCH):
+        assert inbox.drowning == frozenset()
+        inbox.put(ReceivedDatagram(1, BEACON + b"x", float(k)))
+        inbox.put(ReceivedDatagram(2, b"x", float(k)))
+    assert inbox.drowning == {1}

@@ -33,7 +33,7 @@ def step(agent: Agent, events: Iterable[Event], now: float) -> list[Effect]:
 def _take(agent: Agent, event: Event, now: float) -> list[Effect]:
     match event:
         case Message(sender, payload):
-            return _guarded(agent, lambda: _hear(agent, sender, payload, now))
+            return _guarded(agent, sender, lambda: _hear(agent, sender, payload, now))
         case Pose():
             agent.pose, agent.posed = event, now
         case Scan() | Sensed():
@@ -50,12 +50,13 @@ def _take(agent: Agent, event: Event, now: float) -> list[Effect]:
     return []
 
 
-def _guarded(agent: Agent, hear: Callable[[], list[Effect]]) -> list[Effect]:
+def _guarded(agent: Agent, sender: int, hear: Callable[[], list[Effect]]) -> list[Effect]:
     """Hear a message; one that is malformed or out of place is the sender's fault: counted, never ours."""
     try:
         return hear()
     except ValueError:
         agent.dropped += 1
+        agent.dropped_of[sender] += 1
         return []
 
 
@@ -63,7 +64,7 @@ def _prepared(agent: Agent, key: tuple[int, int], now: float) -> list[Effect]:
     """Start negotiating, and take in what came before this robot was ready."""
     effects = agent.rounds.prepared(key, now)
     for sender, message in agent.rounds.take_early():
-        effects += _guarded(agent, partial(agent.rounds.negotiate, sender, message, now))
+        effects += _guarded(agent, sender, partial(agent.rounds.negotiate, sender, message, now))
     return effects
 
 
@@ -76,7 +77,8 @@ def _hear(agent: Agent, sender: int, payload: bytes, now: float) -> list[Effect]
         case Beacon() | Vouched():
             return beacons.hear(agent, sender, payload, now)
         case Beacons(told):
-            heard = [_guarded(agent, partial(beacons.hear, agent, sender, each, now)) for each in told]
+            told_on = partial(beacons.hear, agent, sender)
+            heard = [_guarded(agent, sender, partial(told_on, each, now)) for each in told]
             return [effect for effects in heard for effect in effects]
         case messages.Evidence(data):
             agent.mission.fusion.receive(sender, data, now)

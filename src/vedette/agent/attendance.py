@@ -27,16 +27,15 @@ class Attendance:
     _until: dict[int, float] = field(default_factory=dict)  # left out until [s]
 
     def keep(self, neighbours: Iterable[int]) -> None:
-        """Forget all but these; whoever comes again has a fresh start."""
+        """Ask all but these again when they come again; who was left out before has one round to be there."""
         for robot in (self._missed.keys() | self._until.keys()) - set(neighbours):
             self._missed.pop(robot, None)
-            self._pauses.pop(robot, None)
             self._until.pop(robot, None)
 
     def missed(self, child: int, now: float, tempo: float) -> None:
         """Note that a child was cut from a round; ``tempo``: seconds of ``now``'s clock in a real one."""
         self._missed[child] += 1
-        if self._missed[child] >= MISSES:
+        if self._missed[child] >= MISSES or child in self._pauses:
             self._pauses[child] = min(2.0 * self._pauses.get(child, PAUSE / 2.0), MOST_PAUSE)
             self._until[child] = now + self._pauses[child] * tempo
 
@@ -55,23 +54,25 @@ class Attendance:
 class Upwards:
     """How rounds fare that come by the parent; the farther the root, the longer a robot bears with it.
 
-    So whose neighbour is at fault acts before those behind it.
+    So whose neighbour is at fault acts before those behind it. A tree on which no round has ended yet gets
+    one round less.
     """
 
     _failed: int = 0  # rounds in a row that came to nothing
+    _worked: bool = False  # a round has ended on this tree
     _unlike: int = 0  # rounds in a row in which the belief was not the root's
 
     def fails(self, tree: TreeChanged) -> bool:
         """Note a round that came to nothing; tell whether to do without the parent."""
         self._failed += 1
-        return self._is_enough(tree, self._failed > _far(tree))
+        return self._is_enough(tree, self._failed + (not self._worked) > _far(tree))
 
     def ends(self, tree: TreeChanged, approximate: bool) -> bool:
         """Note a round that has ended, on the root's belief or another; tell likewise.
 
         A belief that is never the root's tells of evidence that is changed on its way.
         """
-        self._failed = 0
+        self._failed, self._worked = 0, True
         self._unlike = self._unlike + 1 if approximate else 0
         return self._is_enough(tree, self._unlike >= UNLIKE * _far(tree))
 

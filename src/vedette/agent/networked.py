@@ -23,6 +23,7 @@ from vedette.overlay import Overlay, Place, ReliableLink
 HELLO, PACKET, BEACON, TERMS = b"H", b"P", b"B", b"T"  # a datagram's first byte
 SETTLED = 0.5  # a first place on a tree has to last so long before the agent is told of it [s]
 ALONE_AT_FIRST = 2.0  # a robot waits so long to be taken in by others before it begins on its own [s]
+MUCH = 20  # messages of one neighbour that make no sense are worth a complaint
 MOST_WAITING = 4096  # events that wait for a job to end, beside new places on the tree
 
 
@@ -88,6 +89,7 @@ class NetworkedAgent:
         self._links: dict[int, ReliableLink] = {}
         self._sessions: dict[int, tuple[int, int]] = {}  # boot and epoch that each link is open to
         self._waiting: list[Event] = []
+        self.drowning: frozenset[int] = frozenset()  # neighbours that say more than the process can hear
         self._reached: frozenset[int] = frozenset()  # robots that the transport reaches
         self._excluded: dict[int, str] = {}  # robots to have nothing to do with, and why
 
@@ -103,7 +105,11 @@ class NetworkedAgent:
     def complaints(self) -> dict[int, str]:
         """What is wrong with whom, by robot; this robot's own number among them."""
         known, agent = self._acquaintance, self.agent
-        return known.warnings | self.overlay.complaints | known.complaints | agent.complaints | self._excluded
+        much = [robot for robot, count in agent.dropped_of.items() if count >= MUCH]
+        odd = dict.fromkeys(much, "much of what it says makes no sense or cannot be, and is dropped")
+        odd |= dict.fromkeys(self.drowning, "it says more than can be heard; what is too much is dropped")
+        said = known.warnings | odd | self.overlay.complaints | known.complaints
+        return said | agent.complaints | self._excluded
 
     # -- what happens --------------------------------------------------------------------------------
 

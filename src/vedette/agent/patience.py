@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from vedette.agent.pace import Pace
 
+SLOW = 0.5  # of the least patience that a preparation takes [1]
 IDLE = 1.0  # a robot that did not look after its rounds for longer did not want any [s of the transport]
 
 
@@ -60,3 +61,11 @@ class TeamPatience:
         """Tell whether it has decided with nobody for so long that it had better plan alone."""
         alone = self._together + self.pace.overdue + 3.0 * self.least(size) + self._preparation
         return now > alone
+
+    def ignored(self, size: int, since: float, now: float) -> bool:
+        """Tell whether calls of so long ago should have been answered by a round: a root that is there does.
+
+        A robot that is slow itself may have been left out of rounds for that, and does not blame its parent.
+        """
+        least = self.least(size)
+        return self._preparation < SLOW * least and now > since + 2.0 * least + self.pace.beat

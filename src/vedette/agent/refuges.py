@@ -29,13 +29,15 @@ def refuge(
     bystanders: Sequence[Intent],
     further: float,
 ) -> NDArray[np.float64] | None:
-    """Path to the refuge that costs me the least detour and that I reach without meeting the mate.
+    """Path to the refuge that costs me the least detour and that I reach without meeting the mate, if any.
 
     ``further``: room that I leave the mate beyond what it needs [m].
     """
     rows, cols = _box(traversable.shape, resolution, me.x, me.y, WINDOW)
     corner = np.array((cols.start, rows.start)) * resolution
     window = np.ascontiguousarray(traversable[rows, cols])
+    if not window.size:  # nothing is known here yet, as by a robot that has just been started anew
+        return None
     discs = [(o.x - corner[0], o.y - corner[1], me.radius + o.radius + GAP) for o in (mate, *bystanders)]
     here = _flat(window.shape, resolution, np.array((me.x, me.y)) - corner)
     open_ = block_discs(window, resolution, discs)
@@ -78,6 +80,8 @@ def retreat(
     rows, cols = _box(traversable.shape, resolution, me.x, me.y, RETREAT)
     corner = np.array((cols.start, rows.start)) * resolution
     window = np.ascontiguousarray(traversable[rows, cols])
+    if not window.size:  # nothing is known here yet, as by a robot that has just been started anew
+        return None
     here = _flat(window.shape, resolution, np.array((me.x, me.y)) - corner)
     discs = [(o.x - corner[0], o.y - corner[1], me.radius + o.radius + GAP / 2) for o in others]
     open_ = block_discs(window, resolution, discs)

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
+from math import inf
 from typing import Any
 
 from vedette.agent.attendance import Attendance, Upwards
@@ -69,6 +70,7 @@ class Rounds:
     _sequence: int = 0
     _wanted: bool = False
     _called: float = -1e9
+    _asks: float = inf  # since when its calls have not been answered [s]
     _began: float = -1e9
     _ended: float = -1e9
     _attendance: Attendance = field(default_factory=Attendance)
@@ -123,7 +125,7 @@ class Rounds:
             return
         self.round = None
         self._sequence, self._upwards = 0, Upwards()
-        self._called = -1e9
+        self._called, self._asks = -1e9, inf
 
     def want(self) -> None:
         """Ask for a round as soon as one may begin."""
@@ -193,8 +195,11 @@ class Rounds:
             wanted = self._wanted or now >= self._ended + self.pace.period
             begins = wanted and self.pace.on_beat(self._began, now)
             return self.begin(Begin(self.tree.epoch, self._sequence + 1, 0), now) if begins else []
-        if self._is_lonely(now) and self._wanted and self.pace.on_beat(self._began, now):
-            return [*self._call(now), *self._begin_alone(now), *self._fail()]
+        ignored = self.patience.ignored(self._size, self._asks, now)
+        if (ignored or self._is_lonely(now)) and self._wanted and self.pace.on_beat(self._began, now):
+            if ignored:
+                self._asks = now - self.patience.least(self._size)
+            return [*self._call(now), *self._begin_alone(now), *(self._fail() if ignored else [])]
         # A root that takes the mission for finished begins no round: who does not, calls for one.
         self._wanted |= now >= self._ended + self.pace.overdue
         return self._call(now) if self._wanted else []
@@ -203,7 +208,7 @@ class Rounds:
         """Tell the parent that a plan is needed, unless it has just been told."""
         if self.tree.parent is None or now < self._called + CALL_AGAIN:
             return []
-        self._called = now
+        self._called, self._asks = now, min(self._asks, now)
         return [say(self.tree.parent, Call(self.tree.epoch))]
 
     def _begin_alone(self, now: float) -> list[Effect]:
@@ -287,7 +292,7 @@ class Rounds:
             return []
         unfinished = [] if self.round is None or self.round.is_alone else self._give_up(self.round, now)
         self._sequence = message.sequence
-        self._began = now
+        self._began, self._asks = now, inf
         self._wanted = False
         absent = (self._attendance.absent(now) | self.distrusted) - {self.tree.parent}
         tree = replace(self.tree, neighbours=tuple(k for k in self.tree.neighbours if k not in absent))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, field
 from enum import Enum
 from math import inf
@@ -92,6 +93,7 @@ class Agent:
     posed: float = 0.0  # when that came [s]
     awake: bool = False  # it takes part in rounds
     dropped: int = 0  # messages that did not make sense
+    dropped_of: Counter[int] = field(default_factory=Counter)  # the same by neighbour
     mates: Mates = field(default_factory=Mates)
     relay: Relay = field(default_factory=Relay)  # of their beacons
     rounds: Rounds = field(init=False)

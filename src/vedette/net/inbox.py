@@ -6,12 +6,14 @@ import queue
 import threading
 from collections import Counter
 from dataclasses import dataclass
+from typing import TypeGuard
 
 from vedette.agent.networked import BEACON
 
 MOST_EVENTS = 4096
 MOST_BYTES = 1 << 26
 MOST_OF_ONE = 1024  # datagrams of one neighbour that wait
+MUCH = 100  # datagrams beyond a neighbour's share are worth a complaint
 MOST_BEACONS = 32  # of these, beacons: the next one is worth more than all before
 
 
@@ -55,6 +57,7 @@ class Inbox:
         self._bytes = 0
         self._waiting: Counter[tuple[int, bool]] = Counter()  # by neighbour, beacons apart
         self._bytes_of: Counter[int] = Counter()
+        self._dropped_of: Counter[int] = Counter()  # beyond what a neighbour may say
         self.dropped = 0
 
     def put(self, event: object) -> None:
@@ -62,6 +65,7 @@ class Inbox:
         with self._lock:
             if self._is_too_much(event):
                 self.dropped += 1
+                self._dropped_of[event.robot] += 1
                 return
             if self._queue.qsize() >= self._most_events:
                 self.dropped += 1
@@ -81,7 +85,13 @@ class Inbox:
             self._count(event, -1)
         return event
 
-    def _is_too_much(self, event: object) -> bool:
+    @property
+    def drowning(self) -> frozenset[int]:
+        """Neighbours of whose datagrams many did not fit."""
+        with self._lock:
+            return frozenset(robot for robot, count in self._dropped_of.items() if count >= MUCH)
+
+    def _is_too_much(self, event: object) -> TypeGuard[ReceivedDatagram]:
         """Tell whether a datagram is beyond what there is room for, or beyond its neighbour's share."""
         if not isinstance(event, ReceivedDatagram):
             return False

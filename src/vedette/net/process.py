@@ -180,6 +180,7 @@ class AgentProcess:
         self._heed_revoked(now)
         at = self.mission.shows(now)
         self._reported, self._reported_at = now, at
+        self.node.drowning = self.inbox.drowning
         if self.show is not None:
             self.show(at)
         for robot, what in self.node.complaints.items():
