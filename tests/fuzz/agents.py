@@ -35,7 +35,7 @@ DELAY = 0.03  # of links and jobs [s]
 TICK = 0.1  # [s]
 MOST_SCENES = 2  # before messages of a kind from a sender
 AFTER = 8  # poses after a script
-NOT_STATE = frozenset({"dropped", "answers"})  # mere counts
+NOT_STATE = frozenset({"dropped", "dropped_of", "answers"})  # mere counts
 
 
 @dataclass(eq=False)

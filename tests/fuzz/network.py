@@ -26,7 +26,9 @@ BEGIN = 0.5  # of what is caught, the tree's forming included [s]
 AFTER = 12  # times to go on after a script
 _PARTS = msgspec.msgpack.Decoder(tuple[int, bytes])
 _ENCODER = msgspec.msgpack.Encoder()
-COUNTS = frozenset({"malformed", "dropped", "answers", "complaints"})  # what a refused datagram may change
+COUNTS = frozenset(
+    {"malformed", "dropped", "dropped_of", "answers", "complaints"}
+)  # what a refused datagram may change
 
 
 @dataclass(eq=False)
