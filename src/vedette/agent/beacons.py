@@ -13,7 +13,7 @@ from vedette.agent.messages import Beacon, Vouched
 from vedette.agent.state import Agent
 
 SIGNED = 4  # one beacon in so many is signed, and all of the first ones, where there are keys
-INTRODUCES = 40  # the first ones bring the certificate
+INTRODUCES = 8  # the first ones bring the certificate
 BEACON = "beacon"
 
 
