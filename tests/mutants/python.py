@@ -23,7 +23,7 @@ only_mutate = {json.dumps([f"src/vedette/{each}" for each in _MUTATED])}
 do_not_mutate = {json.dumps([f"src/vedette/{each}" for each in _LEFT])}
 do_not_mutate_patterns = ['raise \\w+', 'assert ']
 also_copy = ["bench", "docs", "examples", "tools", "README.md"]
-pytest_add_cli_args = ["-p", "no:cacheprovider", "-p", "no:randomly"]
+pytest_add_cli_args = ["-p", "no:cacheprovider", "-p", "no:randomly", "--hypothesis-profile=ci"]
 pytest_add_cli_args_test_selection = {json.dumps([*TESTS, "-m", "not slow"])}
 use_git_change_detection = false
 """

@@ -53,7 +53,18 @@ def run(name: str, diff: str) -> str:
         return "unbuildable"
     _KERNELS.unlink()
     shutil.copy2(WORK / "target/release/lib_kernels.so", _KERNELS)
-    tests = [sys.executable, "-m", "pytest", "-x", "-q", "-m", "not slow", "-p", "no:randomly"]
+    tests = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "-x",
+        "-q",
+        "-m",
+        "not slow",
+        "-p",
+        "no:randomly",
+        "--hypothesis-profile=ci",
+    ]
     for folder in ("tests/kernels", "tests/domains"):
         done = subprocess.run([*tests, folder], cwd=TREE, env=env, capture_output=True, preexec_fn=_limit)
         if done.returncode:
