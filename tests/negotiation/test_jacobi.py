@@ -18,13 +18,13 @@ WORTH = np.array([3.0, 2.0])
 
 
 def best_replies(weights: Float, candidates: list[list[Float]], choice: list[int]) -> list[int]:
-    """The paper's eq. (29) by brute force; the present choice is kept on a tie."""
+    """The paper's eq. (29) by brute force; kept unless another gains a share of 1e-9."""
     chosen = [own[k] for own, k in zip(candidates, choice, strict=True)]
     replies = []
     for i, own in enumerate(candidates):
         rest = np.prod([np.ones_like(weights), *chosen[:i], *chosen[i + 1 :]], axis=0)
         values = [float(np.sum(weights * (1.0 - rest * m))) for m in own]
-        keep = max(values) <= values[choice[i]] + 1e-9
+        keep = max(values) - values[choice[i]] <= 1e-9 * max(values)
         replies.append(choice[i] if keep else int(np.argmax(values)))
     return replies
 
