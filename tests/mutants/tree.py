@@ -9,6 +9,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 WORK = ROOT / "build" / "mutants"
 TREE = WORK / "tree"
+CRATE_AS_IT_WAS = WORK / "rust"
 TESTS = [
     f"tests/{name}" for name in ("problem", "negotiation", "fusion", "overlay", "agent", "domains", "kernels")
 ]
@@ -22,6 +23,8 @@ def copy() -> str:
             (TREE / line).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(ROOT / line, TREE / line)
     shutil.copy2(ROOT / "src/vedette/_kernels.abi3.so", TREE / "src/vedette")
+    shutil.rmtree(CRATE_AS_IT_WAS, ignore_errors=True)
+    shutil.copytree(TREE / "rust", CRATE_AS_IT_WAS)
     return git("rev-parse", "--short", "HEAD").strip()
 
 
