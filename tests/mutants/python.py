@@ -9,7 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from tests.mutants.tree import TESTS, TREE
+from tests.mutants.tree import TESTS, TREE, WORK
 
 _MUTATED = (
     "problem/*", "negotiation/*", "fusion/*", "overlay/*", "agent/round.py", "agent/rounds.py",
@@ -31,17 +31,21 @@ _MAKE = """
 from mutmut import __main__ as mutmut
 from mutmut.mutation.trampoline import set_mutant_under_test
 set_mutant_under_test("mutant_generation")
-mutmut.copy_src_dir(); mutmut.copy_also_copy_files(); mutmut.create_mutants(1)
+mutmut.copy_src_dir(); mutmut.copy_also_copy_files(); mutmut.setup_source_paths(); mutmut.create_mutants(1)
+mutmut.collect_or_load_stats(mutmut.get_mutant_runner(1))
 """
 _KILLED = {1, 3, 24, -24, 36, 152, 255, -11, -9}  # exit codes: a failed test, no end, a crash
 _NO_TESTS = {5, 33}
 
 
 def mutants() -> list[str]:
-    """Make all mutants in the copy, and return their names."""
+    """Make all mutants in the copy, run all tests once to see which come by what, and return the names."""
     pyproject = TREE / "pyproject.toml"
     pyproject.write_text(pyproject.read_text(encoding="utf-8") + _CONFIG, encoding="utf-8")
-    subprocess.run([sys.executable, "-c", _MAKE], cwd=TREE, env=_env(), check=True, stdout=subprocess.DEVNULL)
+    with (WORK / "make.log").open("w", encoding="utf-8") as log:
+        subprocess.run(
+            [sys.executable, "-c", _MAKE], cwd=TREE, env=_env(), check=True, stdout=log, stderr=log
+        )
     return sorted(_codes())
 
 
