@@ -153,9 +153,12 @@ def test_a_robot_without_neighbours_explores_alone_over_plain_tcp_with_a_warning
     path = config(folder, "alone.yaml", links=links)
     command = [sys.executable, "-m", "vedette", "agent", str(path), "--speed", "10"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as agent:
-        wait_until(lambda: state_of(path) == "done", 2 * START)
-        agent.send_signal(number)
-        out, err = agent.communicate(timeout=START)
+        try:
+            wait_until(lambda: state_of(path) == "done", 2 * START)
+            agent.send_signal(number)
+            out, err = agent.communicate(timeout=START)
+        finally:
+            agent.kill()  # else a failure waits for an agent that nobody ends
     assert agent.returncode == 0
     assert err == "vedette: links are plain TCP: whoever reaches the port can read and write\n"
     assert out.startswith("robot 1 of team office: listens on tcp/127.0.0.1:")

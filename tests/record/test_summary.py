@@ -24,7 +24,7 @@ def _summary(**changes: object) -> ExploreSummary:
         "planner": "tours",
         "scheme": "token", "fusion": "evidence", "world": "office-3", "radio": "12,3", "faults": None,
         "time_s": 0.1 + 0.2, "t50_s": 10.0,
-        "t90_s": 20.0, "t95_s": 25.0, "t99_s": None, "auc_s": 12.3456789, "coverage": 0.999, "map_errors": 4,
+        "t90_s": 20.0, "t95_s": 25.0, "t99_s": None, "auc_s": 12.3456789, "coverage": 0.999, "known_m2": 95.5, "rate_m2_s": 0.75, "frontiers": 2, "beyond": 0, "map_errors": 4,
         "map_error_share": 1e-5, "path_m": {"robot-1": 12.0, "robot-2": -0.0}, "overlap": 0.25,
         "collisions": 0,
         "min_clearance_m": 0.06, "rounds": 12, "sweeps": 30, "bound_ratio": None, "apart_s": 1.5,

@@ -52,7 +52,7 @@ class Inbox:
 
     def __init__(self, most_events: int = MOST_EVENTS, most_bytes: int = MOST_BYTES) -> None:
         self._most_events, self._most_bytes = most_events, most_bytes
-        self._queue: queue.SimpleQueue[object] = queue.SimpleQueue()
+        self._queue: queue.Queue[object] = queue.Queue()  # a simple one waits for ever where a signal came
         self._lock = threading.Lock()
         self._bytes = 0
         self._waiting: Counter[tuple[int, bool]] = Counter()  # by neighbour, beacons apart
