@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vedette.fusion.codec import EvidenceCodec
 from vedette.fusion.contributors import Contributors
-from vedette.fusion.link import RESEND_AFTER
+from vedette.fusion.link import RESEND_AFTER, Key
 from vedette.fusion.packing import CodePacking
+from vedette.fusion.replicated_map import ReplicatedMap
 from vedette.fusion.snapshots import NONE, Change, Delta, Snapshot, tiles_to_publish
-from vedette.fusion.tiles import WORDS, TeamMap, classes_of, codes_of
+from vedette.fusion.tiles import WORDS, classes_of, codes_of
 from vedette.kernels.tiles import CELLS, TiledGrid, Tiling
 
 
-class ReplicatedEvidence(TeamMap):
+class ReplicatedEvidence(ReplicatedMap[Snapshot[np.uint8]]):
     """Team evidence = sum over contributors of the latest known snapshot of each one's own evidence.
 
     Memory is O(contributors x the area each has seen), 3 bytes a cell, beside a byte a cell for the team;
@@ -36,15 +37,11 @@ class ReplicatedEvidence(TeamMap):
     ) -> None:
         """Start with nothing known; ``boot < 2**38`` must differ from those of the robot's earlier starts."""
         tiling = Tiling(*shape)
-        super().__init__(tiling, counts_size, mark)
-        self._codec = EvidenceCodec(tiling, counts_size, CodePacking())
-        self._contributors: Contributors[Snapshot[np.uint8], Delta[np.uint8]] = Contributors(
+        contributors: Contributors[Snapshot[np.uint8], Delta[np.uint8]] = Contributors(
             robot, boot, lambda: Snapshot(tiling, counts_size, np.uint8), resend_after
         )
-
-    def contributors(self) -> int:
-        """Return how many robots' evidence this robot holds; each start of a robot counts."""
-        return len(self._contributors.known())
+        codec = EvidenceCodec(tiling, counts_size, CodePacking())
+        super().__init__(tiling, counts_size, mark, codec, contributors)
 
     def publish(
         self, own: TiledGrid[np.int8], changed: NDArray[np.int64] | None, counts: NDArray[np.int64] | None
@@ -55,29 +52,13 @@ class ReplicatedEvidence(TeamMap):
         """
         published = self._contributors.own
         tiles = tiles_to_publish(own, changed, published)
-        return self._merge([published.write(tiles, codes_of(own.read(tiles)), counts)])
+        change = published.write(tiles, codes_of(own.read(tiles)), counts)
+        return self._merge({self._contributors.key: change})
 
-    def set_neighbours(self, neighbours: Sequence[int]) -> None:
-        """Exchange with exactly these robots from now on; the graph may have cycles."""
-        self._contributors.set_neighbours(neighbours)
-
-    def outgoing(self, neighbour: int, now: float) -> bytes | None:
-        """Return what the neighbour lacks, and what it waits to see acknowledged; None if nothing."""
-        payload = self._contributors.tell(neighbour, now)
-        return None if payload is None else self._codec.encode(payload)
-
-    def receive(self, neighbour: int, payload: bytes, now: float) -> NDArray[np.int64]:
-        """Merge a neighbour's payload; returns the tiles in which the team map changed.
-
-        Raises ValueError, and changes nothing, if the payload is malformed.
-        """
-        news = self._contributors.hear(neighbour, self._codec.decode(payload), now)
-        return self._merge([self._contributors.copies[key].apply(delta) for key, delta in news])
-
-    def _merge(self, changes: Sequence[Change | None]) -> NDArray[np.int64]:
+    def _merge(self, changes: Mapping[Key, Change | None]) -> NDArray[np.int64]:
         """Add up anew what has changed, tile by tile."""
         changed = [NONE]
-        for change in changes:
+        for change in changes.values():
             if change is not None:
                 self.counts += change.more_counts
                 changed.append(change.tiles)

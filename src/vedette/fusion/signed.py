@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 from msgspec import structs
@@ -16,18 +16,19 @@ from vedette.fusion.link import RESEND_AFTER, Key
 from vedette.fusion.packing import CodePacking
 from vedette.fusion.particulars import Capabilities, Note, Particulars
 from vedette.fusion.replicated import summed
+from vedette.fusion.replicated_map import ReplicatedMap
 from vedette.fusion.sealed import SealedSnapshot
 from vedette.fusion.sealing import SnapshotSealing
 from vedette.fusion.seals import Notary
 from vedette.fusion.snapshots import NONE, Change, Delta, tiles_to_publish
-from vedette.fusion.tiles import TeamMap, classes_of, codes_of
+from vedette.fusion.tiles import classes_of, codes_of
 from vedette.fusion.trust import STANDS, Comparison, Trust
 from vedette.kernels.tiles import TiledGrid, Tiling
 
 FIRM_AFTER, RESTATES = 10, 20  # [0.1 s]
 
 
-class SignedEvidence(TeamMap):
+class SignedEvidence(ReplicatedMap[SealedSnapshot]):
     """Team evidence = sum over the contributors that are believed; all are held and passed on.
 
     Who is believed is a function of what all have signed, and of nothing else, so that robots that hold the
@@ -49,16 +50,17 @@ class SignedEvidence(TeamMap):
     ) -> None:
         """Start with nothing known; ``boot < 2**38`` must differ from those of the robot's earlier starts."""
         tiling = Tiling(*shape)
-        super().__init__(tiling, counts_size, mark)
+        sealing = SnapshotSealing(notary, self._admit)
+        contributors: Contributors[SealedSnapshot, Delta[np.uint8]] = Contributors(
+            robot, boot, lambda: SealedSnapshot(tiling, counts_size), resend_after, sealing
+        )
+        codec = EvidenceCodec(tiling, counts_size, CodePacking(), sealed=True)
+        super().__init__(tiling, counts_size, mark, codec, contributors)
         self.out: frozenset[int] = frozenset()  # robots that are not believed
         self.unsettled = False  # time alone may change who is believed
         self.notary = notary
         self._limits, self._trust = limits, Trust(tiling, limits.resolution)
-        self._codec = EvidenceCodec(tiling, counts_size, CodePacking(), sealed=True)
-        self._sealing = SnapshotSealing(notary, self._admit)
-        self._contributors: Contributors[SealedSnapshot, Delta[np.uint8]] = Contributors(
-            robot, boot, lambda: SealedSnapshot(tiling, counts_size), resend_after, self._sealing
-        )
+        self._sealing = sealing
         self._again: dict[int, int] = {}  # tiles to look at again, since evidence grows firm: when [0.1 s]
         self._told: Particulars | None = None  # by this robot
 
@@ -87,10 +89,6 @@ class SignedEvidence(TeamMap):
         """Return how far pairs of robots contradict each other, of what stands at a time [0.1 s]."""
         copies = self._contributors.copies
         return self._trust.contradictions({key: copy.times for key, copy in copies.items()}, now)
-
-    def contributors(self) -> int:
-        """Return how many robots' evidence this robot holds; each start of a robot counts."""
-        return len(self._contributors.known())
 
     def set_out(self, row: int, col: int) -> None:
         """Note the cell at which this robot starts; the first one stands."""
@@ -125,25 +123,7 @@ class SignedEvidence(TeamMap):
         change = published.put(tiles, codes_of(own.read(tiles)), counts, told, now, restates)
         return self._merge({self._contributors.key: change})
 
-    def set_neighbours(self, neighbours: Sequence[int]) -> None:
-        """Exchange with exactly these robots from now on; the graph may have cycles."""
-        self._contributors.set_neighbours(neighbours)
-
-    def outgoing(self, neighbour: int, now: float) -> bytes | None:
-        """Return what the neighbour lacks, and what it waits to see acknowledged; None if nothing."""
-        payload = self._contributors.tell(neighbour, now)
-        return None if payload is None else self._codec.encode(payload)
-
-    def receive(self, neighbour: int, payload: bytes, now: float) -> NDArray[np.int64]:
-        """Merge a neighbour's payload; returns the tiles in which the team map changed.
-
-        What its contributor has not signed is left out. Raises ValueError, and changes nothing, if the
-        payload is malformed.
-        """
-        news = self._contributors.hear(neighbour, self._codec.decode(payload), now)
-        return self._merge({key: self._contributors.copies[key].apply(delta) for key, delta in news})
-
-    def _merge(self, changes: dict[Key, Change | None]) -> NDArray[np.int64]:
+    def _merge(self, changes: Mapping[Key, Change | None]) -> NDArray[np.int64]:
         """Judge anew, and add up anew what has changed, tile by tile."""
         copies = self._contributors.copies
         changed = [NONE]
