@@ -29,8 +29,10 @@ def test_a_transform_is_where_and_when_it_says() -> None:
     np.testing.assert_array_equal(joint.T, planar(1.0, 2.0, 0.0))
 
 
-def test_a_rotation_of_zeros_is_left_out() -> None:
-    nothing = Message(x=0.0, y=0.0, z=0.0, w=0.0)
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("length", [0.0, 1e-200, 1e200])
+def test_a_rotation_of_no_length_or_of_one_beyond_all_measure_is_left_out(length: float) -> None:
+    nothing = Message(x=0.0, y=0.0, z=0.0, w=length)
     assert not list(joints_of(Message(transforms=[transform("odom", "base", nothing)]), fixed=True))
 
 

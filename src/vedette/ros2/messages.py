@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import hypot
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ from vedette.ros2.transforms import Matrix, deviations, matrix
 
 MOST_SIDE = 1e3  # of a map's cell [m]
 MOST_METRES = 2.1e7  # from the origin of its frame to a map
+LEAST_LENGTH = 1e-6  # of a quaternion that turns, and one part in its most [1]
 
 
 def seconds(stamp: Any) -> float:
@@ -67,11 +69,12 @@ def patch_of(message: Any) -> Patch | None:
 def _transform(at: Any, turn: Any, *, upright: bool = False) -> Matrix | None:
     """Return a translation and a rotation as a matrix; None where it is none, or leads nowhere.
 
-    A quaternion of zeros is none; where such things are to be ``upright``, as maps are, it turns nothing.
+    A quaternion of next to no length is none, nor is one of millions; where such things are to be
+    ``upright``, as maps are, one of zeros turns nothing.
     """
     place, quaternion = (at.x, at.y, at.z), (turn.x, turn.y, turn.z, turn.w)
     if upright and not any(quaternion):
         quaternion = (0.0, 0.0, 0.0, 1.0)
     if not np.isfinite((*place, *quaternion)).all() or max(map(abs, place)) > MOST_METRES:
         return None
-    return matrix(place, quaternion) if any(quaternion) else None
+    return matrix(place, quaternion) if LEAST_LENGTH < hypot(*quaternion) < 1.0 / LEAST_LENGTH else None
