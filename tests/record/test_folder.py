@@ -56,6 +56,18 @@ def test_without_a_name_runs_are_numbered(monkeypatch: pytest.MonkeyPatch, tmp_p
         assert (one.path, other.path) == (Path("runs/x-001"), Path("runs/x-002"))
 
 
+@pytest.mark.parametrize("there", [False, True])
+def test_a_run_that_comes_to_nothing_leaves_no_folder_that_was_not_there(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, there: bool
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    if there:
+        (tmp_path / "runs").mkdir()
+    with pytest.raises(InputError), OutputFolder.make(None, False, "x"):
+        raise InputError("nothing")
+    assert [path.name for path in tmp_path.iterdir()] == ["runs"] * there
+
+
 @pytest.mark.parametrize("vanish", WAYS)
 def test_a_folder_that_vanishes_is_told_once_and_another_beside_it_is_used(
     out: Path, vanish: Callable[[Path], None]

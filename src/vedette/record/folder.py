@@ -14,6 +14,8 @@ from vedette.errors import InputWarning
 from vedette.record.files import new_directory, output_directory
 from vedette.record.lock import locked
 
+RUNS = Path("runs")  # where folders are made that nobody has named
+
 
 class OutputFolder:
     """A folder for results, entered for as long as they are written: ``folder / name`` is a place in it.
@@ -23,9 +25,9 @@ class OutputFolder:
     takes its place, and an `InputWarning` says so.
     """
 
-    def __init__(self, path: Path, *, made: bool = False) -> None:
-        """Take a folder that is there; ``made`` for this run."""
-        self._path, self._made = path, made
+    def __init__(self, path: Path, *, made: bool = False, around: Path | None = None) -> None:
+        """Take a folder that is there; ``made`` for this run, as was the one ``around`` it, if given."""
+        self._path, self._made, self._around = path, made, around
         self._entered = ExitStack()
         self._identity = path.stat()
 
@@ -43,7 +45,8 @@ class OutputFolder:
             text = "--force changes nothing without --out: the results go into a new folder"
             warnings.warn(text, InputWarning, stacklevel=2)
         if out is None:
-            return cls(new_directory("runs", stem), made=True)
+            around = None if RUNS.exists() else RUNS
+            return cls(new_directory(RUNS, stem), made=True, around=around)
         made = not out.exists()
         return cls(output_directory(out, force, inputs), made=made)
 
@@ -59,11 +62,13 @@ class OutputFolder:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Leave it to others; one that was made for a run that came to nothing is gone again."""
+        """Leave it to others; what was made for a run that came to nothing is gone again."""
         self._entered.close()
         if self._made and error is not None:
             with suppress(OSError):  # something is in it
                 self._path.rmdir()
+                if self._around is not None:
+                    self._around.rmdir()
 
     @property
     def path(self) -> Path:
