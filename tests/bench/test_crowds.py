@@ -13,24 +13,16 @@ from bench import crowds as bench_crowds
 from bench.crowds import Crowd, CrowdResult, crowds, crowds_table
 from bench.idleness import Idleness
 from tests.support.schemas import valid
-from tests.support.small_missions import robots, small_office
+from tests.support.small_missions import begun
 from vedette.domains.mapping.platform import STAY
 from vedette.errors import InputError
-from vedette.sim.explore.run import prepare, views
-from vedette.sim.explore.simulation import ExploreSetup, ExploreSimulation
+from vedette.sim.explore.run import views
+from vedette.sim.explore.simulation import ExploreSimulation
 
 RESULT = CrowdResult(
     world="cave", robots=8, seed=0, outcome="complete", coverage=0.9991, t90_s=40.0, t99_s=60.0, time_s=70.0,
     last_gain_s=61.0, standing_s=4.0, idle_s=3.0, never_left=0, collisions=0, cpu_s=9.0, commit="abc",
 )  # fmt: skip
-
-
-def begun(seconds: float) -> ExploreSimulation:
-    """A team of two that has explored a small office for a while."""
-    simulation = prepare(small_office(seed=1), robots(2), ExploreSetup(seed=7))
-    while simulation.now < seconds:
-        simulation.step()
-    return simulation
 
 
 def stand(idleness: Idleness, simulation: ExploreSimulation, times: tuple[float, ...]) -> float:

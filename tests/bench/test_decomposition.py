@@ -13,22 +13,14 @@ from click.testing import CliRunner
 from bench import decomposition as bench_decomposition
 from bench.decomposition import KINDS, LOOK, PHASES, Case, Decomposition, Shares, decomposition_table
 from tests.support.schemas import valid
-from tests.support.small_missions import robots, small_office
-from vedette.sim.explore.run import prepare, views
-from vedette.sim.explore.simulation import ExploreSetup, ExploreSimulation
+from tests.support.small_missions import begun
+from vedette.sim.explore.run import views
+from vedette.sim.explore.simulation import ExploreSimulation
 
 RESULT = Shares(
     world="cave", robots=3, planner="tours", seed=0, outcome="complete", time_s=70.0,
     seconds={phase: dict.fromkeys(KINDS, 2.0) for phase in PHASES}, cpu_s=9.0, commit="abc",
 )  # fmt: skip
-
-
-def begun(seconds: float) -> ExploreSimulation:
-    """A team of two that has explored a small office for a while."""
-    simulation = prepare(small_office(seed=1), robots(2), ExploreSetup(seed=7))
-    while simulation.now < seconds:
-        simulation.step()
-    return simulation
 
 
 def told(simulation: ExploreSimulation, shift: float, turn: float) -> dict[str, float]:

@@ -87,6 +87,14 @@ def run(world: World, specs: Sequence[PlatformSpec], **setup: Any) -> tuple[Expl
     return simulation, explore(simulation)
 
 
+def begun(seconds: float) -> ExploreSimulation:
+    """A team of two that has explored a small office for a while."""
+    simulation = prepare(small_office(seed=1), robots(2), ExploreSetup(seed=7))
+    while simulation.now < seconds:
+        simulation.step()
+    return simulation
+
+
 def covered(
     world: World, specs: Sequence[PlatformSpec], starts: NDArray[np.float64], report: ExploreReport
 ) -> float:
