@@ -50,6 +50,7 @@ def test_a_mistyped_command_gets_the_nearest_one(
         (("--verson",), "unknown option '--verson'; did you mean '--version'?"),
         (("explore", "--zzz"), "unknown option '--zzz'; see vedette explore --help"),
         (("study",), "SPEC is missing; see vedette study --help"),
+        (("world", "office"), "--out DIR is missing; see vedette world --help"),
         (("keys", "pair"), "DIR is missing; see vedette keys make --help"),
     ],
 )

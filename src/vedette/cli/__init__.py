@@ -110,9 +110,9 @@ def _line(error: click.ClickException | InputError) -> str:
         close = difflib.get_close_matches(error.option_name, known, n=1)
         return f"unknown option {error.option_name!r}; {f'did you mean {close[0]!r}?' if close else help_of}"
     if isinstance(error, click.MissingParameter) and error.param is not None:
-        return (
-            f"{error.param.make_metavar(error.ctx) if error.ctx else error.param.name} is missing; {help_of}"
-        )
+        name = error.param.make_metavar(error.ctx) if error.ctx else error.param.name
+        option = f"{error.param.opts[-1]} " if isinstance(error.param, click.Option) else ""
+        return f"{option}{name} is missing; {help_of}"
     return error.format_message()
 
 
