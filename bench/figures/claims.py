@@ -44,7 +44,7 @@ def claims(records: Mapping[str, Record]) -> list[Claim]:
     if not set(MISSIONS) <= set(records):
         return []
     return [
-        Claim(README, records["office"]["closing"]),
+        *(Claim(README, records["office"][line]) for line in ("closing", "left_out")),
         Claim(README, _cost(records["office"])),
         *(Claim(document, _area(records["willow"])) for document in (README, GALLERY)),
         Claim(README, _building(records["willow"])),

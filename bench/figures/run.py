@@ -51,11 +51,15 @@ def carry_out(mission: Mission, folder: Path, maps: Path | None) -> dict[str, An
 
 
 def _told(said: str, outcome: str) -> dict[str, Any]:
-    """Return the line that tells the outcome, and how each robot was on the last line before."""
+    """Return the line that tells the outcome, of frontiers left out, and how each robot was in the end."""
     lines = said.splitlines()
     end = next(i for i, line in enumerate(lines) if line.startswith(outcome))
     states = _STATE.findall(lines[end - 1]) if end else []
-    return {"closing": lines[end]} | ({"robots": states} if states else {})
+    left = [line for line in lines[end + 1 :] if line.startswith("frontiers left out")]
+    told: dict[str, Any] = {"closing": lines[end]}
+    if left:
+        told["left_out"] = left[0]
+    return told | ({"robots": states} if states else {})
 
 
 def _figure(folder: Path, summary: Mapping[str, Any], name: str) -> Any:

@@ -104,6 +104,7 @@ def test_a_mission_run_again_gives_the_recorded_figures(name: str, tmp_path: Pat
         assert found["figures"][key] == wanted, f"{key}: record anew with `make figures`"
     if same:
         assert found["closing"] == recorded["closing"]
+        assert found.get("left_out") == recorded.get("left_out")
     assert found.get("robots") == recorded.get("robots")
 
 
