@@ -55,6 +55,7 @@ class ForkNode(Generic[ImpactT]):
         self._joined: dict[int, Joined[ImpactT]] = {}
         self._refused: set[int] = set()  # children that are to go back to what they were
         self._moved = self._first = False  # this platform, in this sweep
+        self._fewer = 0  # children lost in this sweep, in which others have still counted on them
         self._slack = math.inf  # own, in this sweep
         self._lost: list[int] = []  # cut, but still counted above
         self._cut: set[int] = set()
@@ -114,7 +115,10 @@ class ForkNode(Generic[ImpactT]):
             self._lost.append(neighbour)
             return []  # the next sweep will come by, or the round end first
         self._drop(neighbour)
-        return self._join() if self._forked else self._gather()
+        if not self._forked:
+            return self._gather()
+        self._fewer += 1
+        return self._join()
 
     def _drop(self, child: int) -> None:
         self._children.remove(child)
@@ -163,6 +167,7 @@ class ForkNode(Generic[ImpactT]):
         """Reply to the rest of the team as told (paper, eq. (30)); then let all children do so at once."""
         if not keep:
             self._go_back()
+        self._fewer = len(self._lost)
         while self._lost:
             self._drop(self._lost.pop())
         self.sweeps += 1
@@ -214,7 +219,7 @@ class ForkNode(Generic[ImpactT]):
             slack=self._slack + sum(each.slack for each in reports),
             size=self._size(),
             ceiling=self._ceiling(),
-            moved=int(self._moved) + sum(each.moved for each in reports),
+            moved=int(self._moved) + self._fewer + sum(each.moved for each in reports),
             first=(self._moved and self._first) or any(each.first for each in reports),
         )
         self._joined = {}

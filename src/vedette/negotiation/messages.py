@@ -96,7 +96,7 @@ class Joined(msgspec.Struct, Generic[ImpactT], frozen=True, array_like=True, tag
     slack: Most  # sum over the part; counts if nobody in the team has moved
     size: Size
     ceiling: Most
-    moved: Count  # platforms that changed, whether or not their parents let them
+    moved: Count  # platforms that changed, whether or not their parents let them, and children that were cut
     first: bool  # one of them had no strategy before
 
 
