@@ -22,6 +22,7 @@ from bench.large.cases import LargeResult
 from bench.latency import LatencyReport
 from bench.scale.report import ScaleReport
 from bench.stonesoup.__main__ import StoneSoupReport
+from vedette.net.results import RobotSummary, TracksFound
 from vedette.net.status import TeamStatus
 from vedette.record.explore.summary import ExploreSummary
 from vedette.record.replay.summary import ReplaySummary
@@ -37,6 +38,8 @@ KINDS: Mapping[str, type] = {
     "replay-summary": ReplaySummary,
     "timing": Timing,
     "status": TeamStatus,
+    "robot-summary": RobotSummary,
+    "tracks": TracksFound,
     "study-run": RunFile,
     "bench": BenchReport,
     "bench-compare": CompareReport,

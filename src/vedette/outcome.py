@@ -36,6 +36,11 @@ class Outcome(StrEnum):
     ORDERED = "ordered", 0, "the operator ordered the end"
     INTERRUPTED = "interrupted", 130, "it was interrupted; the files hold what was done until then"
 
+    @classmethod
+    def of(cls, word: str) -> Self:
+        """Return the outcome of that word, which is one."""
+        return next(outcome for outcome in cls if outcome.value == word)
+
     @property
     def completed(self) -> bool:
         """Whether the team did what it was to do."""

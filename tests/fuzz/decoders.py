@@ -201,8 +201,9 @@ def _reports() -> list[bytes]:
     classes[4:9] = 1
     impact = MappingCodec(FRAME.size).encode(Misses(np.arange(3, dtype=np.uint32), np.ones(3, np.uint8)))
     (condition,) = conditions()
+    grids = (slice(0, FRAME.rows), slice(0, FRAME.cols)), classes, classes > 0
     return [
-        report.encode(report.Report(condition, map_content.content((0, 0), classes, classes > 0, told)))
+        report.encode(report.Report(condition, map_content.content(FRAME, *grids, told)))
         for told in (impact, None)
     ]
 

@@ -27,7 +27,7 @@ def test_robots_are_called_as_their_team_file_calls_them() -> None:
     watcher = ExploreWatcher(plan, Setting(seed=0))
     (condition,) = conditions()
     classes = np.ones((4, 4), np.uint8)
-    watcher.take(condition, content((0, 0), classes, classes > 0, None))
+    watcher.take(condition, content(world.frame, (slice(0, 4), slice(0, 4)), classes, classes > 0, None))
     watcher.look(1.0, [True], None)
     timing = Timing(planning_ms=None, answer_ms=None, round_ms=None, real_time_factor=1.0, wall_s=1.0)
     assert list(watcher.report(Outcome.COMPLETE, timing, 1.0).summary.path_m) == ["scout"]

@@ -22,8 +22,11 @@ BAD_INPUT = 2
 
 COMMANDS = {
     "agent": "Run one robot of a team, with the neighbours that its file names.",
+    "compare": "Lay the figures of runs side by side.",
     "explore": "Let a team of robots explore a building in simulation.",
     "keys": "Make the keys of a team.",
+    "map": "Fetch the map of a team on the network.",
+    "plot": "Draw the pictures of a run anew.",
     "replay": "Let recorded lidar data go through a team's agents.",
     "reproduce": "Compute the paper's figures and try its claims.",
     "ros2": "Look at a robot that runs ROS 2.",
@@ -34,6 +37,8 @@ COMMANDS = {
     "track": "Let a team of vehicles follow targets in simulation.",
     "world": "Generate an office, a cave or a maze.",
 }
+
+_FUNCTIONS = {"map": "map_"}  # where a command's own name is Python's
 
 
 class _Commands(click.Group):
@@ -52,11 +57,11 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Return a command, which is named as its module is."""
+        """Return a command: its module has its name, and so has its function, if it can."""
         if cmd_name not in COMMANDS:
             return None
         module = import_module(f"vedette.cli.{cmd_name}")
-        command: click.Command = getattr(module, cmd_name)
+        command: click.Command = getattr(module, _FUNCTIONS.get(cmd_name, cmd_name))
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:

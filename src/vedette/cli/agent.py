@@ -8,7 +8,7 @@ import threading
 import time
 import warnings
 from collections.abc import Callable, Mapping
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 import click
@@ -19,6 +19,7 @@ from vedette.cli.options import FILE, Positive
 from vedette.errors import InputError, InputWarning, brief
 from vedette.interrupt import ENDINGS
 from vedette.net.config import AgentConfig, load_config
+from vedette.net.keeping import Keeper, folder_of_a_start
 from vedette.net.start import agent_process
 from vedette.ros2.settings import Ros2Settings
 
@@ -40,9 +41,20 @@ WATCH_PERIOD = 1.0  # [s]
     help="For a robot that runs ROS 2 to tell what is needed, before the agent ends; else as its file says.",
 )
 @click.option("--namespace", metavar="NAME", help="Of a robot that runs ROS 2; else as its file says.")
+@click.option(
+    "--out",
+    type=FILE,
+    metavar="DIR",
+    help="For what it finds out, kept every 30 s and in the end; else as its file says.",
+)
 @click.option("--starter", type=int, hidden=True, help="Stop when this process, the parent, ends.")
 def agent(
-    config_path: Path, speed: float, wait: float | None, namespace: str | None, starter: int | None
+    config_path: Path,
+    speed: float,
+    wait: float | None,
+    namespace: str | None,
+    out: Path | None,
+    starter: int | None,
 ) -> None:
     """Run the robot that CONFIG.yaml describes, with the neighbours it names, until Ctrl-C or SIGTERM.
 
@@ -50,12 +62,13 @@ def agent(
     """
     config = load_config(config_path)
     config = told_by_options(config, {"wait": wait, "namespace": namespace})
+    folder = config_path.resolve().parent
     try:
-        process = agent_process(
-            config, config_path.resolve().parent, speed, lambda line: _tell(f"vedette: {line}", err=True)
-        )
+        process = agent_process(config, folder, speed, _say)
     except InputError as error:
         raise InputError(f"{config_path}: {error}") from error
+    if out is None and config.out is not None:
+        out = folder / config.out
     for number in ENDINGS:
         if number == signal.SIGINT or signal.getsignal(number) is not signal.SIG_IGN:  # as nohup has SIGHUP
             signal.signal(number, lambda *_: process.stop())
@@ -68,9 +81,17 @@ def agent(
         f"robot {config.robot} of team {config.team}: listens on {', '.join(links.listen) or 'nothing'}, "
         f"connects to {', '.join(links.connect) or 'nobody'}; stop it with Ctrl-C"
     )
-    with process.transport:
+    with process.transport, ExitStack() as kept:
+        if out is not None:
+            results = kept.enter_context(folder_of_a_start(out))
+            process.keeper = Keeper(results, config.team, config.mission, _say)
         process.run()
     _tell(f"robot {config.robot}: stopped")
+
+
+def _say(line: str) -> None:
+    """Tell whoever watches the process."""
+    _tell(f"vedette: {line}", err=True)
 
 
 def _tell(line: str, err: bool = False) -> None:

@@ -8,14 +8,19 @@ from typing import Any
 import click
 
 from vedette.cli.exploring import EXPLORING, exploring_options, team_named, world_named
-from vedette.cli.options import Output, fault_options, output_options
+from vedette.cli.options import FILE, Output, fault_options, output_options
 from vedette.cli.running import simulate
+from vedette.errors import InputError
 from vedette.run import Explore
 from vedette.run.inputs import files_of
+from vedette.run.saved import seed_of
 
 
 @click.command()
 @exploring_options
+@click.option(
+    "--continue", "saved", type=FILE, metavar="RUN_DIR", help="Start from the map that an earlier run left."
+)
 @fault_options
 @output_options
 def explore(
@@ -24,6 +29,7 @@ def explore(
     robots: int | None,
     team: Path | None,
     starts: str | None,
+    saved: Path | None,
     output: Output,
     **options: Any,
 ) -> None:
@@ -33,6 +39,8 @@ def explore(
     30 x 20 m. Exit status: 0 complete, 1 incomplete, 2 bad input, 130 interrupted.
     """
     world, specs = world_named(map_path, resolution), team_named(team, robots, starts)
-    mission = Explore(world, specs, **options)
-    mission.inputs += files_of(None, team)
+    if saved is not None and world is None and (seed := seed_of(saved)) not in (None, options["seed"]):
+        raise InputError(f"--continue: {saved} is of the office of seed {seed}; add --seed {seed}")
+    mission = Explore(world, specs, saved=saved, **options)
+    mission.inputs += files_of(None if saved is None else saved / "map.yaml", team)
     simulate(EXPLORING, mission, mission.scene, output)

@@ -10,17 +10,17 @@ from vedette.errors import InputError
 
 
 @contextlib.contextmanager
-def atomic_path(path: Path | str) -> Iterator[Path]:
+def atomic_path(path: Path | str, mark: str = ".part-") -> Iterator[Path]:
     """Yield a temporary path in the same folder; move it onto ``path`` when the block succeeds.
 
-    The temporary name keeps the suffix, from which many writers infer the format. Where the block fails,
-    ``path`` keeps what it held and the temporary file is removed.
+    The temporary name, ``mark`` before that of ``path``, keeps the suffix, from which many writers infer the
+    format. Where the block fails, ``path`` keeps what it held and the temporary file is removed.
 
     Raises:
         InputError: the file cannot be written there.
     """
     path = Path(path)
-    temporary = path.with_name(f".part-{path.name}")
+    temporary = path.with_name(f"{mark}{path.name}")
     try:
         yield temporary
         temporary.replace(path)

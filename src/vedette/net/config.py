@@ -111,6 +111,7 @@ class AgentConfig(Struct, forbid_unknown_fields=True, frozen=True):
     scenario: str | None = None  # of track and search, beside this file; None: the one that is built in
     begins: Annotated[datetime, Meta(tz=True)] | None = None  # when the mission's, or the faults', time is 0
     faults: str | None = None  # a schedule of what befalls links, beside this file; to try a team
+    out: str | None = None  # folder for what it finds out, beside this file
 
     @property
     def mission(self) -> str:

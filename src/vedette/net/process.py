@@ -17,7 +17,9 @@ from vedette.agent.networked import Output
 from vedette.net.clock import Clockwork
 from vedette.net.inbox import Inbox, PeerGone, PeerSeen
 from vedette.net.inbox import ReceivedDatagram as Received
+from vedette.net.keeping import Keeper
 from vedette.net.names import Topic, robot_name
+from vedette.net.report import encode
 from vedette.net.revocations import KIND as REVOKED
 from vedette.net.revocations import Revocations
 from vedette.net.transport import Published, Transport
@@ -65,6 +67,7 @@ class AgentProcess:
     say: Callable[[str], None]  # tells whoever watches this process, a line each
     revocations: Revocations | None = None  # of certificates; None: links are open to everybody
     staged: Staged | None = None  # what befalls its links, to try a team
+    keeper: Keeper | None = None  # of what the robot finds out
     clock: Callable[[], float] = time.monotonic
     stopped: bool = False
     _reported: float = -1e9  # [s]
@@ -140,7 +143,8 @@ class AgentProcess:
         if self.shown is not None:
             self.transport.publish(Topic.BODY, self.shown.show(now))
         self._do(partial(self.node.step, sensed, now))
-        if at >= self._reported_at + REPORT_PERIOD and now >= self._reported + LEAST_REPORTS:
+        due = at >= self._reported_at + REPORT_PERIOD and now >= self._reported + LEAST_REPORTS
+        if due and not self.node.hold:  # not while the agent is at work in another thread
             self._report(now)
 
     def _hear_of_revoked(self, robot: int, payload: bytes, now: float) -> None:
@@ -174,9 +178,7 @@ class AgentProcess:
             self.witness.malformed += 1
 
     def _report(self, now: float, state: str | None = None) -> None:
-        """Tell the operator, if any, how it goes; not while the agent is at work in another thread."""
-        if self.node.hold:
-            return
+        """Tell the operator, if any, how it goes, and keep what has come to be known."""
         self._heed_revoked(now)
         at = self.mission.shows(now)
         self._reported, self._reported_at = now, at
@@ -187,7 +189,10 @@ class AgentProcess:
             if self._said.get(robot) != what:
                 self._said[robot] = what
                 self.say(f"{robot_name(robot)}: {what}")
-        self.transport.publish(Topic.REPORT, self.witness.report(now, at, state))
+        report = self.witness.report(now, at, state)
+        self.transport.publish(Topic.REPORT, encode(report))
+        if self.keeper is not None:
+            self.keeper.take(report, now)
         if (remark := self.witness.remark) is not None and not self._remarked:
             self._remarked = True
             self.say(remark)

@@ -52,12 +52,12 @@ def _left(told: Mapping[int, Condition | None]) -> list[int]:
 def team_status(told: Mapping[int, Condition | None]) -> TeamStatus:
     """Return what ``vedette status --json`` prints: robots by their numbers, which count from 1."""
     return TeamStatus(
-        robots={robot_name(robot): None if said is None else _numbered(said) for robot, said in told.items()},
+        robots={robot_name(robot): None if said is None else numbered(said) for robot, said in told.items()},
         left=tuple(map(robot_name, _left(told))),
     )
 
 
-def _numbered(said: Condition) -> Condition:
+def numbered(said: Condition) -> Condition:
     """Return what a robot said with robots' numbers in the place of their indices."""
     return replace(
         said,

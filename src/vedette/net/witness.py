@@ -74,7 +74,7 @@ class Witness:
         if rounds.decisions != self._decisions:
             self._decisions, self._decided = rounds.decisions, now
 
-    def report(self, now: float, mission_time: float, state: str | None) -> bytes:
+    def report(self, now: float, mission_time: float, state: str | None) -> wire.Report:
         """Return a report; ``state`` takes the place of the agent's own."""
         if self._began is None and self.node.agent.awake:
             self._began = mission_time
@@ -82,7 +82,7 @@ class Witness:
         if state is not None:
             condition = structs.replace(condition, state=state)
         self.status = wire.encode(condition)
-        return wire.encode(wire.Report(condition, self.teller.content(mission_time)))
+        return wire.Report(condition, self.teller.content(mission_time))
 
     @property
     def remark(self) -> str | None:

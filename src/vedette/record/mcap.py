@@ -9,6 +9,7 @@ from __future__ import annotations
 import shutil
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
+from copy import deepcopy
 from pathlib import Path
 from types import TracebackType
 from typing import IO, Any, Generic, Self, TypeAlias, TypeVar
@@ -36,9 +37,8 @@ class McapFile(Generic[RosT]):
         self._states: dict[str, str] = {}
         self._closed = False
         self._files = ExitStack()
-        self._writer = Writer(
-            self._files.enter_context(atomic_stream(place)), compression=CompressionType.ZSTD
-        )
+        self._stream = self._files.enter_context(atomic_stream(place))
+        self._writer = Writer(self._stream, compression=CompressionType.ZSTD)
         self._writer.start(profile="ros2", library="vedette")
         self._writer.add_metadata("vedette", {"frame": FRAME_ID} | dict(facts))
 
@@ -49,6 +49,19 @@ class McapFile(Generic[RosT]):
             with self._files:
                 self._write_rest()
                 self._writer.finish()  # type: ignore[no-untyped-call]
+
+    def save(self, path: Path) -> None:
+        """Put a whole file of what has been recorded up to now in place; recording goes on.
+
+        Raises:
+            InputError: the file cannot be written there.
+        """
+        self._writer.flush()  # type: ignore[no-untyped-call]
+        with atomic_path(path, ".saved-") as part, part.open("wb") as copy:
+            self._stream.seek(0)
+            shutil.copyfileobj(self._stream, copy)
+            twin = deepcopy(self._writer, {id(self._stream): copy})  # it writes its index to the copy
+            twin.finish()  # type: ignore[no-untyped-call]
 
     def __enter__(self) -> Self:
         """Return the writer."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, TypeAlias, Unpack
 
@@ -34,6 +34,7 @@ from vedette.run.inputs import (
 )
 from vedette.run.mission import Followers, ProgressSink, StepwiseMission
 from vedette.run.result import MissionResult
+from vedette.run.saved import read_saved_map
 from vedette.sim.explore.run import ExploreRun, prepare, views
 from vedette.sim.explore.simulation import ExploreSetup
 
@@ -83,6 +84,7 @@ class Explore(_Mission):
         return_home: bool = False,
         area: Sequence[Sequence[float]] | None = None,
         unbounded: bool = False,
+        saved: str | Path | None = None,
         record: str | Path | None = None,
         **conditions: Unpack[Conditions],
     ) -> None:
@@ -98,6 +100,7 @@ class Explore(_Mission):
             return_home: whether the robots drive back to their starts in the end.
             area: corners x, y [m] of the ground that is the team's; None: all of the world.
             unbounded: whether the robots are not told how far their ground goes.
+            saved: folder of an earlier run, whose map the team starts from: its first robot has it.
             record: a folder for the run record, ``run.mcap``.
             conditions: see `vedette.run.inputs.Conditions`.
 
@@ -117,6 +120,8 @@ class Explore(_Mission):
         )
         tell_unheeded(setup.planner, len(specs), **links_of(setup))
         self.world = world_of(world, setup.seed)
+        if saved is not None:
+            setup = replace(setup, saved=read_saved_map(Path(saved), self.world.frame.resolution))
         self.simulation = prepare(self.world, specs, setup)
         self.scene = ExploreScene.of(self.world, [spec.name for spec in specs])
         followers = Followers[ExploreSnapshot]()

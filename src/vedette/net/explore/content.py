@@ -16,9 +16,10 @@ from vedette.agent import Agent, GroundBehaviour
 from vedette.domains.mapping.impact import MapImpactCodec
 from vedette.domains.mapping.leftovers import Leftover, Why
 from vedette.maps import OCCUPIED, GridFrame
+from vedette.maps.bounds import Extent
 from vedette.missions.explore.exploring import Exploring
 from vedette.net.gather import figures_of, path_of
-from vedette.net.report import MOST_BYTES, Condition, Count, Real, inflated
+from vedette.net.report import FARTHEST, MOST_BYTES, Condition, Count, Real, inflated
 from vedette.net.witness import Known
 from vedette.record.explore.log import RobotSample
 from vedette.record.explore.views import GroundFigures, RobotView, held, left_out
@@ -38,7 +39,7 @@ class Spot(NamedTuple):
     why: Why
 
 
-class MapContent(msgspec.Struct, frozen=True, array_like=True, tag=3):
+class MapContent(msgspec.Struct, frozen=True, array_like=True, tag=4):
     """A robot's map: the part of the team's lattice outside of which it knows nothing."""
 
     row: Cells  # of the lattice, where the part begins
@@ -48,6 +49,9 @@ class MapContent(msgspec.Struct, frozen=True, array_like=True, tag=3):
     classes: Grid  # deflated
     seen: Grid  # bits of what its own sensor observed, deflated
     impact: Grid | None  # of its last decision
+    resolution: Annotated[float, Meta(gt=0.0, le=FARTHEST)]  # [m]
+    x: Real  # of the part's corner [m], team frame
+    y: Real
     left_out: Annotated[tuple[Spot, ...], Meta(max_length=1024)] = ()
 
 
@@ -87,23 +91,24 @@ class ExploreTeller:
         mission, decided = self._mission, self.agent.rounds.impact
         impact = None if decided is None else mission.codec.encode(decided)
         spots = tuple(Spot(each.x, each.y, each.unknown, each.why) for each in mission.left_out)
-        rows, cols = mission.known
-        grids = held(mission.fusion.classes, mission.own.log_odds, (rows, cols))
-        return content((rows.start, cols.start), *grids, impact, spots[-1024:])
+        grids = held(mission.fusion.classes, mission.own.log_odds, mission.known)
+        return content(mission.frame, mission.known, *grids, impact, spots[-1024:])
 
 
 def content(
-    corner: tuple[int, int],
+    lattice: GridFrame,
+    known: Extent,
     classes: NDArray[np.uint8],
     seen: NDArray[np.bool_],
     impact: bytes | None,
     left: tuple[Spot, ...] = (),
 ) -> bytes:
-    """Return a map as bytes; ``classes`` and ``seen`` are ``(R, C)`` from a cell of the lattice on."""
-    rows, cols = classes.shape
+    """Return a map as bytes; ``classes`` and ``seen`` are ``(R, C)``, the known rows and columns."""
+    (rows, cols), part = known, lattice.window(*known)
     packed = zlib.compress(np.ascontiguousarray(classes).tobytes(), 1)
     bits = zlib.compress(np.packbits(seen).tobytes(), 1)
-    return _encode(MapContent(*corner, rows, cols, packed, bits, impact, left))
+    corner, place = (rows.start, cols.start), (part.resolution, part.origin_x, part.origin_y)
+    return _encode(MapContent(*corner, part.rows, part.cols, packed, bits, impact, *place, left))
 
 
 def read_content(payload: bytes) -> MapContent:
@@ -147,6 +152,11 @@ def view_of(
         frontiers=condition.frontiers,
         beyond=condition.beyond,
     )
+
+
+def frame_of(told: MapContent) -> GridFrame:
+    """Return where the map lies that was told."""
+    return GridFrame(told.resolution, told.rows, told.cols, told.x, told.y)
 
 
 def classes_of(told: MapContent) -> NDArray[np.uint8]:

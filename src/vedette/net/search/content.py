@@ -15,14 +15,16 @@ from vedette import wire
 from vedette.agent import Agent, FlightBehaviour
 from vedette.agent.flight import step_of
 from vedette.domains.search.belief import TargetPdf
+from vedette.maps import GridFrame
 from vedette.missions.search.case import SearchCase
 from vedette.missions.search.searching import Declared, Searching
 from vedette.net.gather import figures_of, path_of
-from vedette.net.report import MOST_BYTES, Condition, Count, Real, inflated
+from vedette.net.report import FARTHEST, MOST_BYTES, Condition, Count, Real, inflated
 from vedette.record.search.log import SearchSample
 from vedette.record.search.observer import SearchView, ahead
 
 MOST_LOOKS = 64  # in a step
+MOST_SIDE = 1 << 13  # of the area [cells]
 
 
 class DeclaredPlace(NamedTuple):
@@ -41,7 +43,7 @@ class StepLooks(NamedTuple):
     poses: Annotated[tuple[tuple[Real, Real, Real], ...], Meta(max_length=MOST_LOOKS)]  # [m, m, rad]
 
 
-class PdfContent(msgspec.Struct, frozen=True, array_like=True, tag=3):
+class PdfContent(msgspec.Struct, frozen=True, array_like=True, tag=4):
     """A vehicle's belief, and its latest looks."""
 
     step: Count
@@ -49,7 +51,12 @@ class PdfContent(msgspec.Struct, frozen=True, array_like=True, tag=3):
     declared: DeclaredPlace | None
     goal: tuple[Real, Real] | None  # where it will search after its plan [m]
     looks: Annotated[tuple[StepLooks, ...], Meta(max_length=MOST_LOOKS)]
-    outside: Annotated[float, Meta(ge=0.0, le=1.0)] = 0.0  # probability that the target has left
+    outside: Annotated[float, Meta(ge=0.0, le=1.0)]  # probability that the target has left
+    rows: Annotated[int, Meta(ge=1, le=MOST_SIDE)]
+    cols: Annotated[int, Meta(ge=1, le=MOST_SIDE)]
+    resolution: Annotated[float, Meta(gt=0.0, le=FARTHEST)]  # [m]
+    x: Real  # of the area's corner [m], team frame
+    y: Real
 
 
 _CONTENTS: msgspec.msgpack.Decoder[PdfContent] = msgspec.msgpack.Decoder(PdfContent)
@@ -92,6 +99,10 @@ class SearchTeller:
                     for step, poses in mission.looked
                 ),
                 pdf.outside,
+                *pdf.frame.shape,
+                pdf.frame.resolution,
+                pdf.frame.origin_x,
+                pdf.frame.origin_y,
             )
         )
 
@@ -104,15 +115,41 @@ def view_of(
     Raises:
         ValueError: malformed, or of another area.
     """
-    told = wire.decode(_CONTENTS, payload, "report")
-    mass = np.frombuffer(inflated(told.mass, 4 * prior.frame.size), "<f4").astype(np.float64)
-    if not (np.isfinite(mass).all() and (mass >= 0.0).all() and mass.sum() + told.outside > 0.0):
-        raise ValueError("report of a pdf that is none")
+    told = read_content(payload)
+    frame = frame_of(told)
+    if frame != prior.frame:
+        raise ValueError(f"report of a pdf over {frame}, not over {prior.frame}")
     at = condition.x, condition.y, condition.heading
     view = SearchView(
         SearchSample(*at, condition.state, True, path_of(condition), told.goal),
-        replace(prior, mass=mass.reshape(prior.frame.shape), step=told.step, outside=told.outside),
+        replace(prior, mass=mass_of(told), step=told.step, outside=told.outside),
         None if told.declared is None else Declared(*told.declared),
         figures_of(condition),
     )
     return view, {each.step: np.array(each.poses, np.float64).reshape(-1, 3) for each in told.looks}
+
+
+def read_content(payload: bytes) -> PdfContent:
+    """Return a vehicle's belief; its grid is still packed.
+
+    Raises:
+        ValueError: malformed.
+    """
+    return wire.decode(_CONTENTS, payload, "report")
+
+
+def frame_of(told: PdfContent) -> GridFrame:
+    """Return where the cells lie that were told of."""
+    return GridFrame(told.resolution, told.rows, told.cols, told.x, told.y)
+
+
+def mass_of(told: PdfContent) -> NDArray[np.float64]:
+    """Return ``(R, C)`` probability that the target is in each cell.
+
+    Raises:
+        ValueError: no pdf of that size.
+    """
+    mass = np.frombuffer(inflated(told.mass, 4 * told.rows * told.cols), "<f4").astype(np.float64)
+    if not (np.isfinite(mass).all() and (mass >= 0.0).all() and mass.sum() + told.outside > 0.0):
+        raise ValueError("report of a pdf that is none")
+    return mass.reshape(told.rows, told.cols)

@@ -16,14 +16,14 @@ from vedette.domains.tracking.belief import Tracks
 from vedette.missions.track.scenario import MOST_TARGETS, TrackScenario
 from vedette.missions.track.tracking import Tracking
 from vedette.net.gather import figures_of, path_of
-from vedette.net.report import MOST_BYTES, Condition, Count
+from vedette.net.report import FARTHEST, MOST_BYTES, Condition, Count, Real
 from vedette.record.track.log import TrackSample
 from vedette.record.track.observer import TrackView, ahead
 
 Floats = Annotated[bytes, Meta(max_length=MOST_BYTES)]  # little-endian doubles
 
 
-class TracksContent(msgspec.Struct, frozen=True, array_like=True, tag=2):
+class TracksContent(msgspec.Struct, frozen=True, array_like=True, tag=3):
     """A vehicle's tracks in information form, at a step of their own."""
 
     step: Count
@@ -31,6 +31,8 @@ class TracksContent(msgspec.Struct, frozen=True, array_like=True, tag=2):
     vector: Floats  # (T, 4)
     skipped: Count  # measurements that it left out
     seen: Annotated[tuple[Count, ...], Meta(max_length=MOST_TARGETS)]  # targets, by its latest look
+    dt: Annotated[float, Meta(gt=0.0, le=FARTHEST)]  # of a step [s]
+    origin: tuple[Real, Real]  # that the vectors are relative to [m], team frame
 
 
 _CONTENTS: msgspec.msgpack.Decoder[TracksContent] = msgspec.msgpack.Decoder(TracksContent)
@@ -58,7 +60,8 @@ class TrackTeller:
         mission = cast(Tracking, self.agent.mission)
         tracks = mission.tracks()
         matrix, vector = tracks.Y.astype("<f8").tobytes(), tracks.y.astype("<f8").tobytes()
-        return _encode(TracksContent(tracks.k0, matrix, vector, mission.skipped, mission.seen))
+        count = mission.skipped, mission.seen
+        return _encode(TracksContent(tracks.k0, matrix, vector, *count, tracks.dt, tracks.origin))
 
 
 def view_of(condition: Condition, payload: bytes, prior: Tracks) -> TrackView:
@@ -67,7 +70,7 @@ def view_of(condition: Condition, payload: bytes, prior: Tracks) -> TrackView:
     Raises:
         ValueError: malformed, or of other targets.
     """
-    told = wire.decode(_CONTENTS, payload, "report")
+    told = read_content(payload)
     matrix = _floats(told.matrix, prior.Y.shape)
     vector = _floats(told.vector, prior.y.shape)
     at = condition.x, condition.y, condition.heading
@@ -78,6 +81,32 @@ def view_of(condition: Condition, payload: bytes, prior: Tracks) -> TrackView:
         told.skipped,
         figures_of(condition),
     )
+
+
+def read_content(payload: bytes) -> TracksContent:
+    """Return a vehicle's tracks; their numbers are still packed.
+
+    Raises:
+        ValueError: malformed.
+    """
+    return wire.decode(_CONTENTS, payload, "report")
+
+
+def moments(told: TracksContent) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return means ``(T, 4)`` [m, m/s] and covariances ``(T, 4, 4)``, team frame.
+
+    Raises:
+        ValueError: no information, or none of such a size.
+    """
+    targets = len(told.vector) // 32
+    matrix, vector = _floats(told.matrix, (targets, 4, 4)), _floats(told.vector, (targets, 4))
+    try:
+        covariances: NDArray[np.float64] = np.linalg.inv(matrix)
+    except np.linalg.LinAlgError:
+        raise ValueError("report of tracks without information") from None
+    means = np.einsum("tij,tj->ti", covariances, vector)
+    means[:, :2] += told.origin
+    return means, covariances
 
 
 def _floats(data: bytes, shape: tuple[int, ...]) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""The team's links as ROS 2 markers, which Foxglove and RViz draw over the map."""
+"""The team's links as ROS 2 markers, which Foxglove and RViz draw over the map, and back."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from vedette.record import palette
-from vedette.record.explore.log import ExploreSnapshot
+from vedette.record.explore.log import ExploreSnapshot, RobotSample
 from vedette.record.links import Link
 from vedette.record.ros import RosMessages
 
@@ -74,3 +74,18 @@ class LinkMessages(RosMessages):
 
     def _colour(self, alpha: float) -> Any:
         return self._make("std_msgs/msg/ColorRGBA", *_COLOUR, alpha)
+
+
+def links_in(array: Any, robots: Sequence[RobotSample]) -> tuple[Link, ...]:
+    """Return the links that a ``visualization_msgs/MarkerArray`` shows between robots where they are."""
+    places = {(robot.x, robot.y): i for i, robot in enumerate(robots)}
+    links = []
+    for marker in array.markers:
+        opacity = _TREE_OPACITY if marker.ns == "tree" else _OTHER_OPACITY
+        ends = [places.get((point.x, point.y)) for point in marker.points]
+        for k in range(0, len(ends) - 1, 2):
+            a, b = ends[k], ends[k + 1]
+            if a is not None and b is not None:
+                loss = (1.0 - marker.colors[k].a / opacity) / _FADING
+                links.append(Link(min(a, b), max(a, b), marker.ns == "tree", min(max(loss, 0.0), 1.0)))
+    return tuple(links)

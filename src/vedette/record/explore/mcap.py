@@ -12,7 +12,7 @@ from vedette.record.explore.markers import LinkMessages
 from vedette.record.mcap import McapFile, Place, stamp_of
 from vedette.record.ros import ros_names
 
-OF_KNOWN = ("coverage", "known_fraction", "entropy")  # metrics, where the ground to explore is known
+OF_KNOWN = ("coverage", "known_fraction", "entropy", "known_m2", "frontiers")  # metrics of known ground
 OF_OPEN = ("known_m2", "rate_m2_s", "frontiers")  # where nobody knows how much there is
 
 
@@ -43,6 +43,7 @@ class ExploreMcapWriter(McapFile[LinkMessages]):
         for name, robot in team:
             self._write_state(stamp, name, robot)
             self._write_plan(stamp, name, robot)
+            self._write(f"/{name}/driven", stamp, self._ros.number(robot.driven))
         self._write_metrics(stamp, snapshot, OF_OPEN if snapshot.coverage is None else OF_KNOWN)
         if snapshot.links is not None:
             self._write("/links", stamp, self._ros.links(stamp, snapshot))

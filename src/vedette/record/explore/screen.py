@@ -21,7 +21,7 @@ from vedette.record.explore.log import ExploreScene, ExploreSnapshot, RobotSampl
 from vedette.record.explore.raster import Window, paint, pool
 from vedette.record.explore.told import progress
 from vedette.record.marks import badge, sign, together, two_colours
-from vedette.record.view import Size, TeamTable, arranged, explained, figure, flowing, share_bar
+from vedette.record.view import Column, Size, TeamTable, arranged, explained, figure, flowing, share_bar
 
 _MARKS = (
     *(
@@ -34,15 +34,17 @@ _MARKS = (
 _GLYPHS = (("·", "", "free"), ("█", "", "wall"), ("×", "", "lost"))
 
 
-def screen(scene: ExploreScene, console: Console, snapshot: ExploreSnapshot) -> RenderableType:
-    """Return the picture of a snapshot, fitted to the console."""
+def screen(
+    scene: ExploreScene, console: Console, snapshot: ExploreSnapshot, beside: Sequence[Column] = ()
+) -> RenderableType:
+    """Return the picture of a snapshot, fitted to the console; ``beside``: more to tell of the robots."""
     figures = [figure("time", f"{snapshot.t:.1f} s"), *(figure(*each) for each in progress(snapshot))]
     if snapshot.links is not None:
         style = "bold" if len(snapshot.parts) < 2 else "bold yellow"
         figures += [Text.assemble(("team ", "dim"), (together(snapshot.parts), style))]
     robots = snapshot.robots
     goals = ["" if robot.goal is None else f"{robot.goal[0]:.1f}, {robot.goal[1]:.1f}" for robot in robots]
-    columns = [("driven (m)", [f"{robot.driven:.1f}" for robot in robots]), ("goal (m)", goals)]
+    columns = [*beside, ("driven (m)", [f"{robot.driven:.1f}" for robot in robots]), ("goal (m)", goals)]
     width = console.width - 4
     bar = () if snapshot.coverage is None else (share_bar("covered", snapshot.coverage, width),)
     return arranged(

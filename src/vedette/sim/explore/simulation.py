@@ -16,6 +16,7 @@ from vedette.maps.world import World
 from vedette.missions.explore.assemble import assemble
 from vedette.missions.explore.exploring import Exploring
 from vedette.missions.explore.options import ExploreOptions
+from vedette.missions.explore.own_map import OwnMap
 from vedette.sim.robots import Robots
 from vedette.sim.setup import Setup
 from vedette.sim.simulation import Simulation, random_streams
@@ -31,6 +32,7 @@ class ExploreSetup(Setup):
     return_home: bool = False
     area: tuple[tuple[float, float], ...] | None = None  # corners [m], as in ``ExploreOptions``
     unbounded: bool = False
+    saved: OwnMap | None = None  # an earlier mission's map, which the first robot knows from the start
 
     @property
     def options(self) -> ExploreOptions:
@@ -67,7 +69,10 @@ class ExploreSimulation(Simulation):
     def _explorer(self, robot: int, boot: int) -> Agent:
         specs = self.specs
         options, most = self.setup.options, Most.of(specs)
-        return assemble(self.lattice, specs[robot], options, robot, boot, robots=len(specs), most=most)
+        agent = assemble(self.lattice, specs[robot], options, robot, boot, robots=len(specs), most=most)
+        if robot == 0 and self.setup.saved is not None:
+            cast(Exploring, agent.mission).own.take_over(self.setup.saved, ())
+        return agent
 
     def held(self, robots: Sequence[int]) -> list[int]:
         """Return the digests of their maps."""

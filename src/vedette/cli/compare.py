@@ -1,0 +1,100 @@
+"""``vedette compare``: the figures of several runs side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import click
+from rich.console import Console
+from rich.table import Table
+
+from vedette.cli.options import FILE
+from vedette.errors import InputError
+from vedette.record.plain import json_text
+from vedette.run.saved import read_figures
+
+SHOWN = 5  # runs in a table; more are asked for as JSON
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A figure of every run."""
+
+    name: str
+    values: tuple[Any, ...]  # None: a run has none
+
+    @property
+    def differs(self) -> bool:
+        """Whether the runs differ in it."""
+        return any(value != self.values[0] for value in self.values)
+
+
+@click.command()
+@click.argument("runs", metavar="RUN_DIR...", nargs=-1, required=True, type=FILE)
+@click.option("--all", "everything", is_flag=True, help="Show what is the same in all runs, too.")
+@click.option("--json", "as_json", is_flag=True, help="Print the figures as JSON.")
+def compare(runs: tuple[Path, ...], everything: bool, as_json: bool) -> None:
+    """Lay the figures of runs side by side: what differs, and by what factor from the first.
+
+    What summary.json has by robot is added up. Exit status: 0, or 2 for bad input.
+    """
+    if len(runs) < 2:
+        raise InputError("there is one run only; name two or more")
+    compared = figures_side_by_side([read_figures(run) for run in runs])
+    if as_json:
+        figures = {each.name: each.values for each in compared}
+        click.echo(json_text({"runs": tuple(map(str, runs)), **figures}), nl=False)
+        return
+    if len(runs) > SHOWN:
+        raise InputError(f"{len(runs)} runs do not fit a table of {SHOWN}; ask for --json, or for fewer")
+    shown = [each for each in compared if everything or each.differs]
+    if not shown:
+        click.echo("the runs have the same figures")
+        return
+    table = Table()
+    table.add_column("")
+    for run in runs:
+        table.add_column(str(run), justify="right", overflow="fold")
+    for each in shown:
+        table.add_row(each.name, *(_told(value, each.values[0]) for value in each.values))
+    Console().print(table)
+
+
+def figures_side_by_side(summaries: Sequence[Mapping[str, Any]]) -> list[Compared]:
+    """Return the figures that any run has, in the order of the first that has them."""
+    plain = [_added_up(summary) for summary in summaries]
+    names = dict.fromkeys(name for each in plain for name in each)
+    return [Compared(name, tuple(each.get(name) for each in plain)) for name in names]
+
+
+def _added_up(summary: Mapping[str, Any]) -> dict[str, Any]:
+    """Return numbers and words as they are, numbers by robot as their sum, and of lists the length."""
+    told: dict[str, Any] = {}
+    for name, value in summary.items():
+        if isinstance(value, dict):
+            told[name] = sum(_numbers(value))
+        elif isinstance(value, list):
+            told[name] = len(value)
+        elif name != "schema_version":
+            told[name] = value
+    return told
+
+
+def _numbers(value: Any) -> list[float]:
+    if isinstance(value, dict):
+        return [number for inner in value.values() for number in _numbers(inner)]
+    return [value] if isinstance(value, int | float) else []
+
+
+def _told(value: Any, first: Any) -> str:
+    """Return a value, with its factor of the first run's if that is another number."""
+    if value is None:
+        return "-"
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return str(value).lower() if isinstance(value, bool) else str(value)
+    text = f"{value:.6g}"
+    comparable = isinstance(first, int | float) and not isinstance(first, bool) and first > 0
+    return f"{text} (x{value / first:.2f})" if comparable and value != first else text

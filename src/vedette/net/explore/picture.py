@@ -1,0 +1,85 @@
+"""An exploring team's reports as one picture, without knowing the world that it explores."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.domains.mapping.belief import planning_factor
+from vedette.maps import UNKNOWN, GridFrame
+from vedette.maps.laid import part_laid
+from vedette.net.explore.content import MOST_CELLS, MapContent, classes_of, frame_of, read_content
+from vedette.net.gather import path_of
+from vedette.net.names import robot_name
+from vedette.net.report import Report
+from vedette.net.results import lasted
+from vedette.record.explore.log import ExploreScene, ExploreSnapshot, RobotSample
+
+NOWHERE = GridFrame(1.0, 1, 1)
+
+
+def picture_of(
+    team: str, reports: Mapping[int, Report], states: Mapping[int, str]
+) -> tuple[ExploreScene, ExploreSnapshot]:
+    """Return what robots report, together: the map that they hold, where they are and where they go.
+
+    Args:
+        team: its name.
+        reports: by robot, its latest.
+        states: words that take the place of robots' own.
+
+    Raises:
+        ValueError: a report is malformed.
+    """
+    frame, classes = _together([read_content(report.content) for report in reports.values()])
+    planning = frame.coarse(planning_factor(frame.resolution))
+    names = tuple(map(robot_name, reports))
+    scene = ExploreScene(name=team, vehicles=names, frame=frame, planning=planning)
+    told = [report.condition for report in reports.values()]
+    snapshot = ExploreSnapshot(
+        t=max((lasted(each) for each in told), default=0.0),
+        robots=tuple(_sample(report, states.get(robot)) for robot, report in reports.items()),
+        coverage=None,
+        known_fraction=max((each.known for each in told if each.known is not None), default=None),
+        entropy=None,
+        classes=classes,
+        impact=None,
+        known_m2=float(np.count_nonzero(classes != UNKNOWN)) * frame.resolution**2,
+        frontiers=max((each.frontiers for each in told if each.frontiers is not None), default=None),
+    )
+    return scene, snapshot
+
+
+def _together(maps: Sequence[MapContent]) -> tuple[GridFrame, NDArray[np.uint8]]:
+    """Return the least grid that holds all maps, and what they know together; occupied wins over free."""
+    parts = [(frame_of(each), classes_of(each)) for each in maps if each.rows and each.cols]
+    if not parts:
+        return NOWHERE, np.zeros(NOWHERE.shape, np.uint8)
+    frame = _around([part for part, _ in parts])
+    whole = np.zeros(frame.shape, np.uint8)
+    for part, classes in parts:
+        there, under = part_laid(classes, part, frame)
+        whole[there] = np.maximum(whole[there], under)  # UNKNOWN < FREE < OCCUPIED
+    return frame, whole
+
+
+def _around(frames: Sequence[GridFrame]) -> GridFrame:
+    resolution = frames[0].resolution
+    extents = np.array([frame.extent for frame in frames])
+    x, y = float(extents[:, 0].min()), float(extents[:, 2].min())
+    rows = round((float(extents[:, 3].max()) - y) / resolution)
+    cols = round((float(extents[:, 1].max()) - x) / resolution)
+    if rows * cols > MOST_CELLS:
+        raise ValueError(f"reports of maps that lie {cols * resolution:.0f} m apart")
+    return GridFrame(resolution, rows, cols, x, y)
+
+
+def _sample(report: Report, state: str | None) -> RobotSample:
+    told, path = report.condition, path_of(report.condition)
+    goal = (float(path[-1, 0]), float(path[-1, 1])) if len(path) else None
+    at = told.x, told.y, told.heading
+    return RobotSample(
+        *at, state or told.state, state is None, path, robot_name(told.robot), goal, told.travelled
+    )

@@ -1,0 +1,102 @@
+"""A robot's own folder: its map, its summary and its record stay there, whatever becomes of the process."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+
+from vedette.agent.state import State
+from vedette.errors import InputError, InputWarning
+from vedette.net.explore import content as maps
+from vedette.net.gather import path_of
+from vedette.net.names import robot_name
+from vedette.net.report import Report
+from vedette.net.results import lasted, told, write_results
+from vedette.outcome import Outcome
+from vedette.record.files import new_directory
+from vedette.record.folder import OutputFolder
+from vedette.record.log import LEFT, VehicleSample
+from vedette.record.robot import RobotRecorder
+
+PERIOD = 30.0  # of real time, at most, in which what has come to be known is put on disk [s]
+RECORD = "run.mcap"
+
+
+class Keeper:
+    """Writes a robot's reports into a folder: every 30 s, when the mission has ended for it, when it stops.
+
+    A folder that cannot be written to is told of once, and the mission goes on; it is tried again each time.
+    """
+
+    def __init__(self, folder: OutputFolder, team: str, mission: str, say: Callable[[str], None]) -> None:
+        """Keep in a folder that is this start's alone; ``say`` tells whoever watches the process."""
+        self._folder, self._team, self._mission, self._say = folder, team, mission, say
+        self._record: RobotRecorder | None = None
+        self._due: float | None = None  # when to write next [s]
+        self._ended: Outcome | None = None  # of the mission, for this robot
+        self._failed = False
+
+    def take(self, report: Report, now: float) -> None:
+        """Add a report to the record, and write it all if it is time; ``now`` by the process's clock [s]."""
+        state, ended = report.condition.state, self._ended
+        if state != LEFT:
+            self._ended = Outcome.of(report.condition.ending) if state == State.DONE.value else None
+        last = state == LEFT
+        due = self._due is not None and now >= self._due
+        if self._due is None or due:
+            self._due = now + PERIOD
+        try:
+            self._add(report, with_map=due or last)
+            if due or last or self._ended is not ended:
+                self._write(report, last)
+            self._failed = False
+        except InputError as error:
+            if not self._failed:
+                self._say(f"{error}; the mission goes on")
+            self._failed = True
+
+    def _add(self, report: Report, with_map: bool) -> None:
+        condition = report.condition
+        if self._record is None:
+            name, facts = robot_name(condition.robot), {"team": self._team, "mission": self._mission}
+            self._record = RobotRecorder(lambda: self._folder / RECORD, name, facts)
+        at = condition.x, condition.y, condition.heading
+        t = max(lasted(condition), 0.0)
+        self._record.add(t, VehicleSample(*at, condition.state, True, path_of(condition)))
+        if with_map and self._mission == "explore":
+            seen = maps.read_content(report.content)
+            if seen.rows and seen.cols:
+                self._record.add_map(t, maps.frame_of(seen), maps.classes_of(seen))
+
+    def _write(self, report: Report, last: bool) -> None:
+        outcome = self._ended or (Outcome.INTERRUPTED if last else None)
+        folder = self._folder.path
+        summary = write_results(report, folder, self._team, self._mission, outcome)
+        if self._record is not None and last:
+            self._record.close()
+        elif self._record is not None:
+            self._record.save(folder / RECORD)
+        if outcome is not None:
+            self._say(f"{told(summary)}; kept in {folder}")
+
+
+def folder_of_a_start(out: Path) -> OutputFolder:
+    """Return a folder for what one start of a robot finds out: what an earlier one has left stays as it is.
+
+    Raises:
+        InputError: it cannot be made or written to.
+
+    Warns:
+        InputWarning: there is something in the folder, so that another beside it is made.
+    """
+    try:
+        used = out.is_dir() and any(out.iterdir())
+    except OSError as error:
+        raise InputError(f"cannot read {out}: {error.strerror or error}; choose another folder") from error
+    if not used:
+        return OutputFolder.make(out, True, "")
+    beside = new_directory(out.parent, out.name)
+    text = f"{out} has what an earlier start left; this one's results go to {beside}"
+    warnings.warn(text, InputWarning, stacklevel=2)
+    return OutputFolder(beside, made=True)
