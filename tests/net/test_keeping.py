@@ -12,7 +12,6 @@ import pytest
 from mcap.reader import make_reader
 from msgspec import structs
 
-from tests.cli.test_agent import config
 from tests.fuzz.decoders import conditions
 from tests.support.commands import Command
 from tests.support.net_team import issue, real_time, wait_until
@@ -20,6 +19,7 @@ from tests.support.schemas import valid
 from tests.support.small_missions import TWO_ROOMS, drawn
 from vedette.errors import InputWarning
 from vedette.maps import FREE, OCCUPIED, GridFrame, read_map
+from vedette.net.endpoints import free_port
 from vedette.net.explore.content import Spot, content
 from vedette.net.keeping import PERIOD, Keeper, folder_of_a_start
 from vedette.net.report import Report
@@ -126,7 +126,11 @@ def test_an_agent_keeps_its_map_and_an_operator_fetches_it_while_it_goes_on(
 ) -> None:
     drawn(TWO_ROOMS).save(tmp_path)
     issue(tmp_path / "keys", 1)
-    path = config(tmp_path, out="kept")
+    path = tmp_path / "robot.yaml"
+    path.write_text(
+        f"team: office\nrobot: 1\nout: kept\nlinks: {{listen: ['tls/127.0.0.1:{free_port()}'], "
+        "keys: keys/robot-1}\nbody: {map: map.yaml, start: [1.0, 1.0, 0.0]}\n"
+    )
     command = [sys.executable, "-m", "vedette", "agent", str(path), "--speed", "5"]
     log = (tmp_path / "log").open("w")
     agent = subprocess.Popen(command, stdout=log, stderr=log)

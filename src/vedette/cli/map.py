@@ -31,7 +31,7 @@ def map_(config_paths: tuple[Path, ...], keys: Path | None, wait: float, out: Pa
     asked = {config.robot - 1 for config in configs}
     with Operator(access) as operator:
         hearing = Hearing(operator)
-        hearing.listen(wait, lambda: hearing.reports.keys() >= asked)
+        hearing.listen(wait, lambda: hearing.reports.keys() >= asked and _anything(hearing))
     if not hearing.reports:
         click.echo(f"nobody answered within {wait:g} s: no agent runs where the files say", err=True)
         raise SystemExit(Outcome.UNHEARD.status)
@@ -45,6 +45,11 @@ def map_(config_paths: tuple[Path, ...], keys: Path | None, wait: float, out: Pa
         summary = write_results(best, folder.path, team, mission, ended)
         names = ", ".join(map(robot_name, sorted(hearing.reports)))
         click.echo(f"{told(summary)}\nof {summary.robot}, which knows most of {names}; kept in {folder.path}")
+
+
+def _anything(hearing: Hearing) -> bool:
+    """Tell whether anybody knows anything."""
+    return any(report.condition.known_m2 != 0.0 for report in hearing.reports.values())
 
 
 def _knows(report: Report) -> tuple[float, float]:

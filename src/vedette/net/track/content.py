@@ -101,7 +101,7 @@ def moments(told: TracksContent) -> tuple[NDArray[np.float64], NDArray[np.float6
     targets = len(told.vector) // 32
     matrix, vector = _floats(told.matrix, (targets, 4, 4)), _floats(told.vector, (targets, 4))
     try:
-        covariances: NDArray[np.float64] = np.linalg.inv(matrix)
+        covariances: NDArray[np.float64] = np.linalg.inv(matrix).astype(np.float64)
     except np.linalg.LinAlgError:
         raise ValueError("report of tracks without information") from None
     means = np.einsum("tij,tj->ti", covariances, vector)
