@@ -25,6 +25,7 @@ from bench.stonesoup.__main__ import StoneSoupReport
 from vedette.net.results import RobotSummary, TracksFound
 from vedette.net.status import TeamStatus
 from vedette.record.explore.summary import ExploreSummary
+from vedette.record.monitor.summary import MonitorSummary
 from vedette.record.replay.summary import ReplaySummary
 from vedette.record.search.summary import SearchSummary
 from vedette.record.summary import Timing
@@ -35,6 +36,7 @@ KINDS: Mapping[str, type] = {
     "explore-summary": ExploreSummary,
     "track-summary": TrackSummary,
     "search-summary": SearchSummary,
+    "monitor-summary": MonitorSummary,
     "replay-summary": ReplaySummary,
     "timing": Timing,
     "status": TeamStatus,

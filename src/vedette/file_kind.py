@@ -15,6 +15,7 @@ _KINDS: Mapping[str, tuple[set[str], str]] = {
     "robot's file": ({"team", "robot"}, "vedette agent CONFIG.yaml"),
     "tracking scenario": ({"vehicles", "targets"}, "vedette track SCENARIO"),
     "search scenario": ({"vehicles", "prior"}, "vedette search SCENARIO"),
+    "monitoring scenario": ({"vehicles", "field"}, "vedette monitor SCENARIO"),
     "study's spec": ({"planners"}, "vedette study SPEC"),
     "fault schedule": ({"faults"}, "--faults FILE of a mission"),
 }

@@ -101,7 +101,7 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
         {"begins": "tomorrow"},
         "begins: must be a time with its zone, such as 2027-01-31T12:00:00Z; got 'tomorrow'",
     ),
-    ({"scenario": "raft.yaml"}, "scenario: is for vehicles that track or search; leave it out"),
+    ({"scenario": "raft.yaml"}, "scenario: is for vehicles, not for robots that explore; leave it out"),
     ({"faults": "storm.yaml"}, "begins: missing; faults need the time at which the mission begins"),
 ]
 

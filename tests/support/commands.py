@@ -20,6 +20,7 @@ FILES = {  # by the command that leaves them
     "explore": {
         "summary.json", "timing.json", "map.yaml", "map.pgm", "progress.png", "curves.png", "run.mcap"
     },
+    "monitor": {"summary.json", "timing.json", "field.png", "curves.png", "run.mcap"},
     "search": {"summary.json", "timing.json", "pdf.png", "detection.png", "run.mcap"},
     "track": {"summary.json", "timing.json", "tracks.png", "entropy.png", "run.mcap"},
 }  # fmt: skip

@@ -11,7 +11,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.agent.flight import FlightPlan
+from vedette.agent.flight import AnyPlan
 from vedette.maps import GridFrame
 
 
@@ -62,10 +62,11 @@ class Drive:
 class Fly:
     """Fly a plan from its start on, and until then what was planned before; circle when it is over.
 
-    The circle is a turn at the vehicle's greatest rate, counter-clockwise (``flight.Itinerary``).
+    The circle is a turn at the vehicle's greatest rate, counter-clockwise (``flight.Itinerary``); what may
+    stand, stands.
     """
 
-    plan: FlightPlan
+    plan: AnyPlan
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,11 +1,12 @@
-"""Flights: turn-rate plans laid end to end in time, and where they take a vehicle."""
+"""Flights: plans laid end to end in time, of turn rates or of velocities, and where they take a vehicle."""
 
 from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from math import ceil, floor, inf
+from math import atan2, ceil, floor, hypot, inf
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -29,6 +30,10 @@ def start_step(t0: float, lead: float, step: float) -> int:
     return ceil((t0 + lead) / step - _ROUNDING)
 
 
+Control: TypeAlias = float | NDArray[np.float64] | None
+"""A turn rate [rad/s], counter-clockwise positive; a velocity (2,) [m/s], team frame; None: it stands."""
+
+
 @dataclass(frozen=True, eq=False)
 class FlightPlan:
     """Turn rates held for a step each, from a time on."""
@@ -37,12 +42,45 @@ class FlightPlan:
     step: float  # dt [s]
     turn_rates: NDArray[np.float64]  # (K,) [rad/s], counter-clockwise positive
 
-    def held(self, time: float) -> tuple[float | None, float]:
+    @property
+    def end(self) -> float:
+        """When it is over [s]."""
+        return self.start + self.step * len(self.turn_rates)
+
+    def held(self, time: float) -> tuple[Control, float]:
         """Return the turn rate [rad/s] held at a time after ``start`` (None past the end), and until when."""
-        k = max(floor((time - self.start) / self.step + _ROUNDING), 0)
+        k = _step_within(self, time)
         if k >= len(self.turn_rates):
             return None, inf
         return float(self.turn_rates[k]), self.start + (k + 1) * self.step
+
+
+@dataclass(frozen=True, eq=False)
+class MovePlan:
+    """Velocities held for a step each, from a time on: of one that turns at once, and may stand."""
+
+    start: float  # [s]
+    step: float  # dt [s]
+    velocities: NDArray[np.float64]  # (K, 2) [m/s], team frame
+
+    @property
+    def end(self) -> float:
+        """When it is over [s]."""
+        return self.start + self.step * len(self.velocities)
+
+    def held(self, time: float) -> tuple[Control, float]:
+        """Return the velocity (2,) [m/s] held at a time after ``start``, None past the end, until when."""
+        k = _step_within(self, time)
+        if k >= len(self.velocities):
+            return None, inf
+        return self.velocities[k], self.start + (k + 1) * self.step
+
+
+AnyPlan: TypeAlias = FlightPlan | MovePlan
+
+
+def _step_within(plan: AnyPlan, time: float) -> int:
+    return max(floor((time - plan.start) / plan.step + _ROUNDING), 0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,14 +88,14 @@ class Itinerary:
     """What a vehicle flies: each plan from its start until the next one's; without one, a circle.
 
     Before its first plan and after its last a vehicle turns at ``loiter``. It then stays within
-    ``2 V / loiter`` of where the plan left it, which a straight line would not.
+    ``2 V / loiter`` of where the plan left it, which a straight line would not. One that may stand, stands.
     """
 
-    loiter: float  # [rad/s]
-    plans: tuple[FlightPlan, ...] = ()
+    loiter: float | None  # [rad/s]; None: it stands
+    plans: tuple[AnyPlan, ...] = ()
     since: tuple[float, ...] = ()  # when each takes over [s], increasing
 
-    def joined(self, plan: FlightPlan, now: float) -> Itinerary:
+    def joined(self, plan: AnyPlan, now: float) -> Itinerary:
         """Return this flight up to the plan's start, the plan from then on.
 
         A plan that comes after its start is taken up where it would be by now. Plans over by now are dropped.
@@ -76,8 +114,8 @@ class Itinerary:
         k = bisect_right(self.since, now) - 1
         return k >= 0 and self.plans[k].held(now)[0] is not None
 
-    def held(self, begin: float, end: float) -> Iterator[tuple[float, float]]:
-        """Yield the turn rates [rad/s] held between two times, each with its duration [s]."""
+    def held(self, begin: float, end: float) -> Iterator[tuple[Control, float]]:
+        """Yield the turn rates or velocities held between two times, each with its duration [s]."""
         time = begin
         while time < end - _ROUNDING:
             k = bisect_right(self.since, time + _ROUNDING) - 1
@@ -93,6 +131,34 @@ class Itinerary:
         Exact, at constant ``speed`` [m/s]; at an ``end`` that is not after ``begin`` it is where it was.
         """
         here = np.asarray(pose, np.float64)
-        for rate, duration in self.held(begin, end):
-            here = drive(here, [rate], speed, duration)[0]
+        for control, duration in self.held(begin, end):
+            here = _moved(here, control, speed, duration)
         return here
+
+    def rested(self, speed: float, begin: float, end: float) -> float:
+        """Return how much longer than its way at full ``speed`` [m/s] takes the time between two is [s]."""
+        rested = 0.0
+        for control, duration in self.held(begin, end) if self.loiter is None else ():
+            share = hypot(*control) / speed if isinstance(control, np.ndarray) and speed > 0.0 else 0.0
+            rested += (1.0 - share) * duration
+        return rested
+
+    def ahead(self, pose: ArrayLike, speed: float, begin: float, every: float) -> NDArray[np.float64]:
+        """Return where it takes a vehicle from ``begin`` on, as far as it is planned, (k, 2) [m].
+
+        A place each ``every`` seconds, the first is where the vehicle is.
+        """
+        end = max((plan.end for plan in self.plans), default=begin)
+        times = np.arange(begin, max(end, begin) + 1e-6, every)
+        return np.array([self.fly(pose, speed, begin, time)[:2] for time in times])
+
+
+def _moved(pose: NDArray[np.float64], control: Control, speed: float, duration: float) -> NDArray[np.float64]:
+    """Return the pose (3,) after holding a control for so long [s]."""
+    if control is None:
+        return pose
+    if not isinstance(control, np.ndarray):
+        return np.asarray(drive(pose, [control], speed, duration)[0])
+    x, y = (pose[:2] + duration * control).tolist()
+    heading = atan2(control[1], control[0]) if control.any() else pose[2]
+    return np.array((x, y, heading))

@@ -1,4 +1,4 @@
-"""What a vehicle with a bounded turn rate does with its strategy: it flies it, and circles when it has none.
+"""What a vehicle does with its strategy: it flies it, and circles when it has none, or stands if it may.
 
 Vehicles keep altitudes of their own, so that nobody makes room for anybody, and none gets stuck.
 """
@@ -21,15 +21,15 @@ from vedette.outcome import Outcome
 
 @dataclass
 class FlightBehaviour:
-    """Flies the turn rates of the latest decision; ``vedette.agent.state.Behaviour``.
+    """Flies the turn rates or velocities of the latest decision; ``vedette.agent.state.Behaviour``.
 
     A plan holds from its start until the next decision's: rounds that fail cost nothing as long as it lasts.
-    When it has run out, and before the first one, the vehicle circles at its greatest turn rate.
+    When it has run out, and before the first one, the vehicle circles at its greatest turn rate, or stands.
     """
 
     mission: FlightMission[Any, Any, Any]
     speed: float  # [m/s]
-    turn_rate: float  # greatest [rad/s]
+    turn_rate: float | None  # greatest [rad/s]; None: it turns at once, and may stand
     state: State = State.WAITING
     flight: Itinerary = field(init=False)
 
@@ -58,9 +58,9 @@ class FlightBehaviour:
         if agent.finished:
             self.state = State.DONE
         elif self.flight.planned(now):
-            self.state = State.FLYING
+            self.state = State.FLYING if self.turn_rate is not None else State.DRIVING
         elif self.flight.plans:
-            self.state = State.CIRCLING
+            self.state = State.CIRCLING if self.turn_rate is not None else State.IDLE
         return [] if plan is None else [Fly(plan)]
 
     def look_out(self, agent: Agent, pose: Pose, now: float) -> list[Effect]:

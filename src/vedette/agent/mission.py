@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from vedette.agent.effects import Route
 from vedette.agent.events import Pose
-from vedette.agent.flight import FlightPlan
+from vedette.agent.flight import AnyPlan
 from vedette.agent.mates import Mate
 from vedette.agent.messages import Note
 from vedette.outcome import Outcome
@@ -174,10 +174,10 @@ class GroundMission(Mission[BeliefT, StrategyT, ImpactT], Protocol[BeliefT, Stra
 
 
 class FlightMission(Mission[BeliefT, StrategyT, ImpactT], Protocol[BeliefT, StrategyT, ImpactT]):
-    """A mission whose strategies are turn rates, held for a step each from a common time on."""
+    """A mission whose strategies are turn rates or velocities, held for a step each from a common time on."""
 
     def start(self, belief: BeliefT) -> float:
         """Return when strategies planned on a belief start [s]."""
 
-    def plan(self) -> FlightPlan | None:
-        """Return the present strategy as turn rates; None: circle."""
+    def plan(self) -> AnyPlan | None:
+        """Return the present strategy as turn rates or velocities; None: circle, or stand."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import sys
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib import import_module
 from typing import Any
@@ -16,6 +16,7 @@ from vedette.cli.pipes import readers_may_leave
 from vedette.errors import InputError, InputWarning, check_word
 from vedette.interrupt import ending_on_any_signal
 from vedette.outcome import Outcome
+from vedette.sim.domains import DOMAINS, Declared
 
 BAD_INPUT = 2
 
@@ -26,6 +27,7 @@ COMMANDS = {
     "explore": "Let a team of robots explore a building in simulation.",
     "keys": "Make the keys of a team.",
     "map": "Fetch the map of a team on the network.",
+    **{name: domain.line for name, domain in DOMAINS.items()},
     "plot": "Draw the pictures of a run anew.",
     "replay": "Let recorded lidar data go through a team's agents.",
     "reproduce": "Compute the paper's figures and try its claims.",
@@ -57,9 +59,12 @@ class _Commands(click.Group):
         return super().resolve_command(ctx, args)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Return a command: its module has its name, and so has its function, if it can."""
+        """Return a command: its module and function have its name, if they can; or a domain has."""
         if cmd_name not in COMMANDS:
             return None
+        if cmd_name in DOMAINS:
+            command_of: Callable[[Declared], click.Command] = import_module("vedette.cli.domain").command_of
+            return command_of(DOMAINS[cmd_name])
         module = import_module(f"vedette.cli.{cmd_name}")
         command: click.Command = getattr(module, _FUNCTIONS.get(cmd_name, cmd_name))
         return command

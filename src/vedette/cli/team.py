@@ -14,6 +14,7 @@ from typing import Any, TypeVar
 import click
 import numpy as np
 
+from vedette.cli.domain import STATUS, domain_options, kind_of
 from vedette.cli.exploring import EXPLORING, exploring_options, team_named, world_named
 from vedette.cli.options import Output, Positive, output_options, with_options
 from vedette.cli.running import ReportT
@@ -29,6 +30,8 @@ from vedette.missions.search.options import SearchOptions
 from vedette.missions.track.assemble import TrackTeam
 from vedette.missions.track.options import TrackOptions
 from vedette.missions.track.scenario import default_scenario
+from vedette.net.config import DomainOptions
+from vedette.net.domain import DomainWatcher
 from vedette.net.explore.plan import ExplorePlan
 from vedette.net.explore.ros2_plan import Ros2Plan, environment, strangers
 from vedette.net.explore.watch import ExploreWatcher
@@ -48,6 +51,7 @@ from vedette.record.track.log import TrackScene
 from vedette.run.inputs import files_of, schedule_of, world_of
 from vedette.run.searching import case_of, heat_maps
 from vedette.run.tracking import scenario_of
+from vedette.sim.domains import DOMAINS, Declared
 from vedette.sim.faults import Schedule, faults_text
 from vedette.sim.search.hidden import Hidden
 from vedette.sim.starts import choose_starts
@@ -77,7 +81,21 @@ def process_options(command: CommandT) -> CommandT:
     )  # fmt: skip
 
 
-@click.group()
+class _Missions(click.Group):
+    """What a team of processes does; domains that are declared as one object are imported when asked for."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the names of all missions."""
+        return sorted([*super().list_commands(ctx), *DOMAINS])
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Return a mission's command."""
+        return (
+            _domain_command(DOMAINS[cmd_name]) if cmd_name in DOMAINS else super().get_command(ctx, cmd_name)
+        )
+
+
+@click.group(cls=_Missions)
 def team() -> None:
     """Start a team of agent processes on this host and watch it."""
 
@@ -217,6 +235,46 @@ def search(
             SearchWatcher(vehicles, duration, setting, hidden.at, curves, sinks), folder
         ),
     )
+
+
+def _domain_command(declared: Declared) -> click.Command:
+    """Return ``vedette team NAME`` of a domain that is declared as one object."""
+
+    def run(
+        scenario_path: Path | None,
+        seed: int,
+        max_time: float | None,
+        speed: float,
+        lease: float,
+        faults: str | None,
+        output: Output,
+        **how: Any,
+    ) -> None:
+        domain, options = declared.load(), DomainOptions(name=declared.name, **how)
+        case = domain.case(scenario_path)
+        size = len(case.names)
+        tell_unsaid(options.coordination, size, options.scheme, fusion=options.fusion, lease=lease)
+        tell_duration(max_time, case.duration)
+        plan = FlightsPlan("domain", options, scenario_path, size, seed, speed, lease)
+        vehicles = domain.team(case, options, plan.times)
+        limit = case.duration + 1.0 if max_time is None else max_time
+        processes = _Processes(plan, limit, schedule_of(faults, size, clocks=False))
+        setting = Setting(seed=seed, faults=faults)
+        kind_of(domain).run(
+            domain.scene(case),
+            output,
+            (*files_of(None, scenario_path, faults), *case.files),
+            lambda sinks, folder: processes.watched_by(
+                DomainWatcher(domain, vehicles, setting, sinks), folder
+            ),
+        )
+
+    about = (
+        f"The mission of `vedette {declared.name}` by a team of agent processes: one process a vehicle.\n\n"
+        f"SCENARIO and the outputs are the same, the comparison left out. {STATUS}"
+    )
+    command = click.command(declared.name, help=about, short_help=declared.line)
+    return command(domain_options(declared)(process_options(output_options(run))))
 
 
 @dataclass(frozen=True)

@@ -29,23 +29,33 @@ for _order, _numbers in (
 
 @dataclass(frozen=True, eq=False)
 class Raster:
-    """Numbers on a grid, bottom row first; 0 where the file has no data."""
+    """Numbers on a grid, bottom row first."""
 
-    values: NDArray[np.float64]  # (rows, cols), finite and >= 0
+    values: NDArray[np.float64]  # (rows, cols)
     extent: Extent | None  # where it lies, as the file says; None: it does not
 
 
-def read_raster(path: Path, what: str) -> Raster:
+def read_numbers(path: Path, what: str) -> Raster:
     """Read a PGM, PNG, BMP or JPEG in grey, a TIFF or GeoTIFF, or a ``.npy``; ``what`` is for messages.
 
-    Alpha thins what it covers. Rows of an image go down; those of an array go up, as all grids here do.
+    NaN where the file has no data. Alpha thins what it covers. Rows of an image go down; those of an array
+    go up, as all grids here do.
 
     Raises:
-        InputError: missing, unreadable, too large, in colours, negative or infinite somewhere, or a GeoTIFF
-            whose place is not in metres along the axes; the line says what to do.
+        InputError: missing, unreadable, too large, in colours, or a GeoTIFF whose place is not in metres
+            along the axes; the line says what to do.
     """
-    values, extent = _array(path, what) if path.suffix.lower() == ".npy" else _image(path, what)
-    values = np.where(np.isnan(values), 0.0, values)
+    return Raster(*(_array(path, what) if path.suffix.lower() == ".npy" else _image(path, what)))
+
+
+def read_raster(path: Path, what: str) -> Raster:
+    """Read a raster of weights as `read_numbers` does: finite and >= 0, 0 where the file has no data.
+
+    Raises:
+        InputError: as `read_numbers`, or a number is negative or infinite.
+    """
+    raster = read_numbers(path, what)
+    values, extent = np.where(np.isnan(raster.values), 0.0, raster.values), raster.extent
     if not np.isfinite(values).all() or (values < 0.0).any():
         wrong = values[~(np.isfinite(values) & (values >= 0.0))][0]
         raise InputError(
@@ -91,7 +101,7 @@ def _image(path: Path, what: str) -> tuple[NDArray[np.float64], Extent | None]:
         raise InputError(f"cannot read {what} {path}: {reason}") from error
     missing = no_data(tags)
     if missing is not None:
-        values[np.isclose(values, missing, rtol=1e-6, atol=0.0)] = 0.0
+        values[np.isclose(values, missing, rtol=1e-6, atol=0.0)] = np.nan
     return values[::-1], placed(path, what, tags, values.shape)
 
 

@@ -17,7 +17,8 @@ from vedette.fusion.gaussian import WAYS
 from vedette.maps.area import Area
 from vedette.missions.explore.assemble import FUSIONS
 from vedette.missions.explore.options import ExploreOptions
-from vedette.missions.search import options as search_options
+from vedette.missions.flights import COORDINATIONS, FlightOptions
+from vedette.missions.flights import FUSIONS as STEP_FUSIONS
 from vedette.missions.search.options import SearchOptions
 from vedette.missions.track import options as track_options
 from vedette.missions.track.options import TrackOptions
@@ -31,7 +32,7 @@ from vedette.scenario import load_scenario
 from vedette.team import PlatformSpec
 
 OF_BODY = tuple(field.name for field in fields(PlatformSpec) if field.name not in ("name", "start"))
-MISSIONS = ("explore", "track", "search")
+MISSIONS = ("explore", "track", "search", "domain")
 RESOLUTION = 0.1  # of the map that robots make which are not simulated in one [m]
 ADMITTED = 64  # robots numbered higher are let in only by a robot that knows of so many
 
@@ -96,6 +97,12 @@ class BestOfTeam(Struct, forbid_unknown_fields=True, frozen=True):
     speed: Annotated[float, Meta(gt=0.0)]  # [m/s]
 
 
+class DomainOptions(FlightOptions, forbid_unknown_fields=True, frozen=True, kw_only=True):
+    """The domain of a vehicle, if it is neither of the others; ``vedette.sim.domains`` knows of it."""
+
+    name: str
+
+
 class AgentConfig(Struct, forbid_unknown_fields=True, frozen=True):
     """One robot's file for ``vedette agent``."""
 
@@ -105,18 +112,24 @@ class AgentConfig(Struct, forbid_unknown_fields=True, frozen=True):
     robots: Robot = 1  # it waits for so many, itself included, before it begins; for a while
     best: BestOfTeam | None = None  # of the whole team; None: as this robot
     links: LinkSettings = LinkSettings()
-    explore: ExploreOptions | None = None  # one of the three; without any, it explores
+    explore: ExploreOptions | None = None  # one of the four; without any, it explores
     track: TrackOptions | None = None
     search: SearchOptions | None = None
-    scenario: str | None = None  # of track and search, beside this file; None: the one that is built in
+    domain: DomainOptions | None = None
+    scenario: str | None = None  # of vehicles, beside this file; None: the one that is built in
     begins: Annotated[datetime, Meta(tz=True)] | None = None  # when the mission's, or the faults', time is 0
     faults: str | None = None  # a schedule of what befalls links, beside this file; to try a team
     out: str | None = None  # folder for what it finds out, beside this file
 
     @property
     def mission(self) -> str:
-        """What the robot does: ``explore``, ``track`` or ``search``."""
+        """What the robot does: one of MISSIONS."""
         return next((name for name in MISSIONS if getattr(self, name) is not None), MISSIONS[0])
+
+    @property
+    def flies(self) -> TrackOptions | FlightOptions | None:
+        """How it is one of a team of vehicles, by a scenario; None: it explores."""
+        return self.track or self.search or self.domain
 
 
 def load_config(path: Path | str) -> AgentConfig:
@@ -179,7 +192,7 @@ def _check_explore(config: AgentConfig) -> None:
     _check_kind(config.body)
     config.body.spec(f"robot-{config.robot}")
     if config.scenario is not None:
-        raise InputError("scenario: is for vehicles that track or search; leave it out")
+        raise InputError("scenario: is for vehicles, not for robots that explore; leave it out")
     if config.links.delay != LinkSettings().delay:
         raise InputError("links.delay: is for vehicles, which reckon with it; leave it out")
     if config.faults is not None and config.begins is None:
@@ -214,16 +227,14 @@ def _check_ground(body: BodySettings, options: ExploreOptions) -> None:
 
 
 def _check_flight(config: AgentConfig) -> None:
-    mission, options = config.mission, config.track or config.search
+    mission, options = config.mission, config.flies
     assert options is not None
-    coordinations, fusions = (
-        (track_options.COORDINATIONS[:-1], WAYS)  # the optimum is nobody's to work out
-        if mission == "track"
-        else (search_options.COORDINATIONS, search_options.FUSIONS)
-    )
-    _check_word(f"{mission}.coordination", options.coordination, coordinations)
+    if mission == "track":  # the optimum is nobody's to work out
+        _check_word("track.coordination", options.coordination, track_options.COORDINATIONS[:-1])
+    elif mission == "search":
+        _check_word("search.coordination", options.coordination, COORDINATIONS)
     _check_scheme(mission, options.scheme)
-    _check_word(f"{mission}.fusion", options.fusion, fusions)
+    _check_word(f"{mission}.fusion", options.fusion, WAYS if mission == "track" else STEP_FUSIONS)
     if config.begins is None:
         raise InputError(
             "begins: missing; vehicles plan by a common clock: give the time at which the mission begins, "

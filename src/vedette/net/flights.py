@@ -32,7 +32,7 @@ def check_number(robot: int, vehicles: int) -> None:
 class FlightsPlan:
     """A team of vehicles that is to be started as processes; ``vedette.net.launch.TeamPlan``."""
 
-    mission: str  # "track" or "search"
+    mission: str  # "track", "search" or "domain"
     options: msgspec.Struct  # of the mission
     scenario: Path | None  # None: the one that is built in
     size: int  # number of vehicles

@@ -6,16 +6,20 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import radians
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from vedette.maps.area import Area
 from vedette.maps.world import World
+from vedette.missions.flights import FlightCase
 from vedette.missions.search.case import SearchCase
 from vedette.missions.track.assemble import TrackTeam
 from vedette.net.clock import MissionClock
 from vedette.net.config import AgentConfig
 from vedette.net.names import robot_name
+from vedette.sim.domain import Domain as Domain
+from vedette.sim.domains import domain_of as domain_of
 from vedette.sim.faults import StagedLinks, Timeline, load_faults
 from vedette.sim.own_body import OwnBody
 from vedette.sim.own_vehicle import OwnVehicle
@@ -50,6 +54,14 @@ def simulated_searcher(config: AgentConfig, case: SearchCase) -> OwnVehicle:
     """Return the vehicle of a searching team that a file describes; all of one seed hide the same target."""
     robot, hidden = config.robot - 1, Hidden.of(case, config.body.seed)
     return _put(OwnVehicle(case.scenario.vehicles[robot], robot, Searchers.of(case, hidden)), config)
+
+
+def simulated_vehicle(
+    config: AgentConfig, domain: Domain[Any, Any, Any, Any, Any], case: FlightCase
+) -> OwnVehicle:
+    """Return the vehicle that a file describes; all of one seed meet the same truth."""
+    robot, vehicles = config.robot - 1, domain.vehicles(case, config.body.seed, lambda now: None)
+    return _put(OwnVehicle(case.vehicles[robot], robot, vehicles), config)
 
 
 def _put(vehicle: OwnVehicle, config: AgentConfig) -> OwnVehicle:

@@ -12,6 +12,7 @@ from vedette.agent.body import TICK
 from vedette.missions.pairs import tell_unheeded, tell_unsaid
 from vedette.net.clock import Clockwork, MissionClock, ToldClock
 from vedette.net.config import AgentConfig, access_of
+from vedette.net.domain import vehicle
 from vedette.net.explore.robot import explorer
 from vedette.net.inbox import Inbox
 from vedette.net.names import robot_name
@@ -28,6 +29,7 @@ ROBOTS: Mapping[str, Callable[[AgentConfig, Path, int, float], Robot]] = {
     "explore": explorer,
     "track": tracker,
     "search": searcher,
+    "domain": vehicle,
 }
 EPOCH = datetime(2025, 1, 1, tzinfo=UTC)
 
@@ -96,7 +98,7 @@ def _clock_of(config: AgentConfig, robot: Robot, speed: float, shared: MissionCl
 
 def _tell_what_is_in_vain(config: AgentConfig) -> None:
     """Say which of its options a robot's mission makes nothing of; ``robots`` 0: as many as there are."""
-    if (options := config.track or config.search) is not None:
+    if (options := config.flies) is not None:
         tell_unsaid(options.coordination, 0, options.scheme, fusion=options.fusion)
     elif config.explore is not None:
         tell_unheeded(config.explore.planner, 0, config.explore.scheme)

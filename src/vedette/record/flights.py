@@ -1,15 +1,19 @@
-"""What missions of vehicles with a bounded turn rate have in common: they are looked at once a step."""
+"""What missions of vehicles have in common: they are looked at once a step."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
 from vedette.agent.body import TICK
+from vedette.outcome import Outcome
+from vedette.record.figures import RobotFigures
 from vedette.record.log import Floats, MissionScene, Sink, VehicleSample
+from vedette.record.summary import Timing
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,3 +76,48 @@ class FlightLog(Generic[SceneT, SnapshotT]):
         """Return where everybody was up to a time, (k, n, 2) [m]."""
         places = [[(vehicle.x, vehicle.y) for vehicle in s.vehicles] for s in self.until(until)]
         return np.array(places, np.float64).reshape(len(places), len(self.scene.vehicles), 2)
+
+
+ContentT = TypeVar("ContentT")
+ReportT = TypeVar("ReportT")
+
+
+@dataclass(frozen=True, eq=False)
+class FlightView(Generic[ContentT]):
+    """All that can be told of one vehicle from outside; nothing in it changes after it is made."""
+
+    sample: VehicleSample
+    content: ContentT | None  # what it tells of its mission, in the domain's own terms; None: nothing yet
+    figures: RobotFigures
+
+
+class FlightObserver(ABC, Generic[ContentT, SnapshotT, ReportT]):
+    """Measures a mission from views of its vehicles, step by step: it knows the truth, the agents do not.
+
+    Where the views come from makes no difference: from vehicles simulated in this process, or from what
+    vehicles on a network report.
+    """
+
+    def __init__(self, log: FlightLog[Any, SnapshotT]) -> None:
+        """Prepare to observe a mission that has not begun."""
+        self.log = log
+        self.views: tuple[FlightView[ContentT], ...] = ()  # of the last look
+
+    def look(self, views: Sequence[FlightView[ContentT]]) -> None:
+        """Log the next step from views of all vehicles at it, in the order of the team."""
+        self.views = tuple(views)
+        self.log.add(self.snapshot())
+
+    def finish(self, now: float, views: Sequence[FlightView[ContentT]]) -> None:
+        """Take what the team has counted in the end; log the step in which the mission ended."""
+        self.views = tuple(views)
+        if not self.log.snapshots or now >= self.log.step * self.log.scene.dt - 1e-6:
+            self.look(views)
+
+    @abstractmethod
+    def snapshot(self) -> SnapshotT:
+        """Return the step ``log.step`` by the present views."""
+
+    @abstractmethod
+    def report(self, outcome: Outcome, timing: Timing, now: float) -> ReportT:
+        """Return what the mission leaves that ended at ``now`` [s]."""

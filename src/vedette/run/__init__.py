@@ -3,6 +3,7 @@
 ``explore``, ``track`` and ``search`` with no arguments run the missions of the commands without options.
 """
 
+from vedette.run.domain import DomainMission
 from vedette.run.exploring import Explore, ExploreResult, explore
 from vedette.run.mission import Deciding
 from vedette.run.searching import Search, SearchResult, search
@@ -10,6 +11,7 @@ from vedette.run.tracking import Track, TrackResult, track
 
 __all__ = [
     "Deciding",
+    "DomainMission",
     "Explore",
     "ExploreResult",
     "Search",

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from vedette.errors import InputError
 from vedette.kernels.misses import CERTAIN, Misses, MissesCodec, SparseMisses
+from vedette.number import many
 
 Impact: TypeAlias = SparseMisses  # keys spot * layers + layer, numbers in units of information; (V124)
 NOTHING = Impact(np.empty(0, np.uint32), np.empty(0, np.uint8))
@@ -35,6 +36,15 @@ def impact_of(spots: NDArray[np.int64], layers: NDArray[np.int64], each: int, of
     keys, counts = np.unique(spots * of + layers, return_counts=True)
     levels: Misses = np.minimum(counts * each, CERTAIN).astype(np.uint8)
     return Impact(keys.astype(np.uint32), levels)
+
+
+def check_claim(impact: Impact, most: int, robots: int) -> None:
+    """Raise ``ValueError`` for more units than so many of the team's best sensors measure, ``most``."""
+    claimed = int(impact.misses.astype(np.int64).sum())
+    if claimed > most:
+        raise ValueError(
+            f"impact claims {claimed} units of information, too many for {many(robots, 'vehicle')}"
+        )
 
 
 class FieldImpactCodec(MissesCodec):

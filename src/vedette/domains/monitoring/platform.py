@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from vedette.domains.monitoring.impact import Impact, impact_of, units_of
 from vedette.domains.monitoring.objective import MonitoringBelief, MonitoringObjective
 from vedette.domains.monitoring.ways import Place, Way, fan, passable
 from vedette.errors import InputError
+from vedette.maps import GridFrame
 from vedette.number import is_number
 
 HYSTERESIS = 0.01  # a new way must gain this share more than the present one
@@ -52,7 +53,9 @@ class MonitoringPlatform:
     speed: float  # [m/s]
     sensor: FieldSensor
     blocked: NDArray[np.bool_] | None = None  # (R, C) cells it cannot enter; None: it flies
+    ground: GridFrame | None = None  # of these cells, and beyond which there is no way; None: the belief's
     budget: float = math.inf  # way that is left [m]
+    awake: float = math.inf  # how long it measures yet [s]
     bearings: int = 8
     objective: MonitoringObjective = field(default_factory=MonitoringObjective)
     here: Place = (0.0, 0.0)  # [m], team frame
@@ -78,7 +81,7 @@ class MonitoringPlatform:
         Raises:
             InputError: the robot is outside the field, or its map is of another grid.
         """
-        frame = belief.field.model.frame
+        frame = self.ground or belief.field.model.frame
         if not frame.contains(*self.here):
             raise InputError(f"monitoring: the robot is at {self.here}, outside the field; place it inside")
         if self.blocked is not None and self.blocked.shape != frame.shape:
@@ -88,19 +91,23 @@ class MonitoringPlatform:
         reach = self.speed * belief.patrol.horizon
         wanted = [self.carry_over(belief, self.present), *fan(self.here, reach, self.bearings)]
         ways = (passable(way, frame, self.blocked, min(self.budget, reach)) for way in wanted)
-        self.ways = list(dict.fromkeys(ways))
+        self.ways = list(dict.fromkeys(replace(way, step=belief.field.step) for way in ways))
         self.candidates = [self.impact(belief, way) for way in self.ways]
+
+    def restated(self, belief: MonitoringBelief) -> Way:
+        """Return what is left of the present way, as far as the budget allows, whatever else there is."""
+        way = self.carry_over(belief, self.present)
+        return passable(way, self.ground or belief.field.model.frame, self.blocked, self.budget)
 
     def carry_over(self, belief: MonitoringBelief, strategy: Way | None) -> Way:
         """Restate a way from where the robot is; stay, where there is none."""
-        if strategy is None:
-            return Way((self.here, self.here))
-        return Way((self.here, *(strategy.places[1:] or (self.here,))))
+        onward = () if strategy is None else strategy.places[1:]
+        return Way((self.here, *(onward or (self.here,))), belief.field.step)
 
     def impact(self, belief: MonitoringBelief, strategy: Way) -> Impact:
         """The information that measuring along the way would bring, by layer; docs/monitoring.md (V124)."""
         frame, patrol = belief.field.model.frame, belief.patrol
-        count = math.floor(patrol.horizon / self.sensor.every)
+        count = math.floor(min(patrol.horizon, self.awake) / self.sensor.every + 1e-9)
         times = self.sensor.every * np.arange(1, count + 1).astype(np.float64)
         row, col = np.floor(
             (strategy.at(self.speed * times)[:, ::-1] - (frame.origin_y, frame.origin_x)) / frame.resolution

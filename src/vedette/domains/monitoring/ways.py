@@ -18,6 +18,7 @@ class Way:
     """A strategy: from a place along straight legs, and then stay; places in the team frame [m]."""
 
     places: tuple[Place, ...]  # the first is where it begins
+    step: int = 0  # at which it begins
 
     @property
     def length(self) -> float:
@@ -66,7 +67,7 @@ def passable(way: Way, frame: GridFrame, blocked: NDArray[np.bool_] | None, most
         return way
     marks = zip(way.places, way._marks, strict=True)
     [(x, y)] = way.at(np.array([reached])).tolist()
-    return Way((*(place for place, mark in marks if mark < reached or mark == 0.0), (x, y)))
+    return replace(way, places=(*(place for place, mark in marks if mark < reached or mark == 0.0), (x, y)))
 
 
 def fan(place: Place, reach: float, bearings: int) -> list[Way]:

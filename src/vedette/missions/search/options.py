@@ -2,22 +2,10 @@
 
 from __future__ import annotations
 
-from msgspec import Struct
+from vedette.missions.flights import COORDINATIONS, FUSIONS, FlightOptions
 
-from vedette.missions.pairs import SCHEME
-
-COORDINATIONS = ("none", "shared", "negotiated")
-FUSIONS = ("replicated", "sums")
+__all__ = ["COORDINATIONS", "FUSIONS", "SearchOptions"]
 
 
-class SearchOptions(Struct, forbid_unknown_fields=True, frozen=True):
-    """The same for the whole team."""
-
-    coordination: str = "negotiated"  # of COORDINATIONS
-    scheme: str | None = None  # of negotiation; None: token
-    fusion: str = "replicated"  # of FUSIONS
-
-    @property
-    def negotiates_by(self) -> str:
-        """The scheme."""
-        return self.scheme or SCHEME
+class SearchOptions(FlightOptions, forbid_unknown_fields=True, frozen=True):
+    """The same for the whole team: one of COORDINATIONS, of SCHEMES, of FUSIONS."""

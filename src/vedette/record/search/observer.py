@@ -156,8 +156,5 @@ def ended_as(
 
 def ahead(flight: Itinerary, pose: Floats, case: SearchCase, vehicle: int, step: int) -> Floats:
     """Return where a flight takes a vehicle as far as it is planned, in half steps, (k, 2) [m]."""
-    dt, speed = case.scenario.step, case.scenario.vehicles[vehicle].speed
-    begin = step * dt
-    end = max((plan.start + plan.step * len(plan.turn_rates) for plan in flight.plans), default=begin)
-    times = np.arange(begin, max(end, begin) + 1e-6, 0.5 * dt)
-    return np.array([flight.fly(pose, speed, begin, time)[:2] for time in times])
+    dt = case.scenario.step
+    return flight.ahead(pose, case.scenario.vehicles[vehicle].speed, step * dt, 0.5 * dt)

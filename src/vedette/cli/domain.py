@@ -1,0 +1,75 @@
+"""The command of a domain that is declared as one object, and what it shares with that of a team."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+from vedette.cli.options import (
+    FILE,
+    OneOf,
+    Output,
+    Positive,
+    fault_options,
+    output_options,
+    seed_option,
+    with_options,
+)
+from vedette.cli.running import Kind, simulate
+from vedette.missions.flights import FUSIONS
+from vedette.missions.pairs import SCHEME
+from vedette.negotiation import SCHEMES
+from vedette.run.domain import DomainMission
+from vedette.sim.domain import Domain
+from vedette.sim.domains import Declared
+
+CommandT = TypeVar("CommandT", bound=Callable[..., Any])
+STATUS = "Exit status: 0 complete, 1 incomplete, 2 bad input, 130 interrupted."
+
+
+def kind_of(domain: Domain[Any, Any, Any, Any, Any]) -> Kind[Any, Any, Any]:
+    """Return what is shown, recorded, written and said of its missions."""
+    return Kind(domain.display, domain.recorder, domain.write, domain.closing, tuple(domain.leaves))
+
+
+def domain_options(domain: Declared) -> Callable[[CommandT], CommandT]:
+    """``SCENARIO`` and what says how its vehicles work together."""
+    return lambda command: with_options(
+        command,
+        click.argument("scenario_path", metavar="[SCENARIO]", required=False, type=FILE),
+        seed_option(domain.seeds),
+        click.option(
+            "--coordination", type=OneOf(domain.coordinations), default="negotiated", show_default=True,
+            help="How the vehicles decide.",
+        ),
+        click.option("--scheme", type=OneOf(SCHEMES), help=f"How they negotiate.  [default: {SCHEME}]"),
+        click.option(
+            "--fusion", type=OneOf(FUSIONS), default="replicated", show_default=True,
+            help="How they share what they see.",
+        ),
+        click.option(
+            "--max-time", type=Positive("s"),
+            help="Simulated time limit [s].  [default: the scenario's duration]",
+        ),
+    )  # fmt: skip
+
+
+def command_of(declared: Declared) -> click.Command:
+    """Return ``vedette NAME``."""
+
+    def run(scenario_path: Path | None, output: Output, no_compare: bool, **options: Any) -> None:
+        domain = declared.load()
+        mission = DomainMission(domain, scenario_path, **options)
+        beside = (lambda report, say: report) if no_compare else mission.compared
+        simulate(kind_of(domain), mission, mission.scene, output, beside)
+
+    options = output_options(
+        with_options(
+            run, click.option("--no-compare", is_flag=True, help="Leave out the other ways of coordination.")
+        )
+    )
+    about = f"{declared.about}\n\n{STATUS}"
+    return click.command(declared.name, help=about)(domain_options(declared)(fault_options(options)))

@@ -1,0 +1,141 @@
+"""What domains of vehicles that plan by a common clock share: a case, options, a team."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Generic, Protocol, TypeVar
+
+from msgspec import Struct
+
+from vedette.agent import Agent, FlightBehaviour, Pace
+from vedette.agent.mission import FlightMission
+from vedette.agent.terms import Terms, flat
+from vedette.missions.flying import RoundTimes
+from vedette.missions.pairs import SCHEME
+
+COORDINATIONS = ("none", "shared", "negotiated")
+FUSIONS = ("replicated", "sums")
+
+
+class FlightOptions(Struct, forbid_unknown_fields=True, frozen=True):
+    """How a team works, as its files and commands say it; the same for the whole team."""
+
+    coordination: str = "negotiated"
+    scheme: str | None = None  # of negotiation; None: token
+    fusion: str = "replicated"  # of FUSIONS
+
+    @property
+    def negotiates_by(self) -> str:
+        """The scheme."""
+        return self.scheme or SCHEME
+
+    @property
+    def told(self) -> dict[str, str]:
+        """What files and summaries say of it."""
+        return {"coordination": self.coordination, "scheme": self.negotiates_by, "fusion": self.fusion}
+
+
+class FlightVehicle(Protocol):
+    """A vehicle as its scenario describes it; ``vedette.agent.body.Hull``."""
+
+    @property
+    def pose(self) -> tuple[float, float, float]:
+        """Where it starts: x, y, heading [m, m, rad], team frame."""
+
+    @property
+    def speed(self) -> float:
+        """At most [m/s]."""
+
+    @property
+    def turn_rate(self) -> float | None:
+        """At most [rad/s], at constant speed; None: it turns at once, and may stand."""
+
+    @property
+    def radius(self) -> float:
+        """Of its body [m]."""
+
+
+class FlightCase(Protocol):
+    """What a scenario comes to, once it is known to make sense."""
+
+    @property
+    def name(self) -> str:
+        """Of the scenario."""
+
+    @property
+    def names(self) -> Sequence[str]:
+        """Of the vehicles."""
+
+    @property
+    def scenario(self) -> Any:
+        """All that the team has to agree on."""
+
+    @property
+    def vehicles(self) -> Sequence[FlightVehicle]:
+        """In the order of their names."""
+
+    @property
+    def step(self) -> float:
+        """Of looking and planning [s]."""
+
+    @property
+    def replan(self) -> int:
+        """A round each so many steps."""
+
+    @property
+    def duration(self) -> float:
+        """Of the mission [s]."""
+
+    @property
+    def files(self) -> Sequence[Path]:
+        """That it has been read from, beside the scenario."""
+
+
+CaseT = TypeVar("CaseT", bound=FlightCase)
+
+
+@dataclass(frozen=True, eq=False)
+class FlightTeam(ABC, Generic[CaseT]):
+    """What all vehicles of a team know beforehand."""
+
+    case: CaseT
+    options: FlightOptions
+    times: RoundTimes
+
+    @property
+    @abstractmethod
+    def domain(self) -> str:
+        """By name."""
+
+    @abstractmethod
+    def mission(self, robot: int, boot: int) -> FlightMission[Any, Any, Any]:
+        """Return a vehicle's share, by its number from 0; ``boot`` grows from start to start."""
+
+    @property
+    def size(self) -> int:
+        """How many vehicles plan together: without coordination each is a team of one."""
+        return 1 if self.options.coordination == "none" else len(self.case.names)
+
+    @property
+    def lead(self) -> float:
+        """From freezing a round to the start of its plans, at least [s]."""
+        return self.times.lead(self.size)
+
+    @property
+    def terms(self) -> Terms:
+        """What all of the team have to agree on."""
+        return {
+            "mission": self.domain,
+            **self.options.told,
+            **dict(flat("scenario", self.case.scenario)),
+        }
+
+    def assemble(self, robot: int, boot: int) -> Agent:
+        """Return a fresh agent for a vehicle, by its number from 0."""
+        vehicle = self.case.vehicles[robot]
+        behaviour = FlightBehaviour(self.mission(robot, boot), vehicle.speed, vehicle.turn_rate)
+        pace = Pace.each(self.case.replan * self.case.step)
+        return Agent(robot, boot, vehicle, behaviour, self.options.negotiates_by, pace, forks=True)

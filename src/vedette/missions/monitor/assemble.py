@@ -1,0 +1,93 @@
+"""A monitoring vehicle's mission, put together: what it measures, how it moves, what it may spend."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, partial
+from math import ceil
+
+import numpy as np
+
+from vedette.domains.monitoring.impact import units_of
+from vedette.domains.monitoring.patrols import at_random, strip
+from vedette.domains.monitoring.planning import Outlook
+from vedette.domains.monitoring.platform import MonitoringPlatform
+from vedette.domains.monitoring.ways import Place, Way
+from vedette.domains.monitoring.worth import Patrol
+from vedette.errors import InputError
+from vedette.fusion.steps import ReplicatedSteps, Sparse, SparseIntegers, StepEvidence, StepSums
+from vedette.missions.flights import FlightTeam
+from vedette.missions.monitor.case import MonitorCase, way_of
+from vedette.missions.monitor.monitoring import Monitoring, MonitorPlan
+from vedette.number import many
+
+_WINDOW = 30.0  # steps stay open for late evidence, with sums [s]
+_FINE = 4.0  # units of the weakest sensor's measurement
+
+
+@dataclass(frozen=True, eq=False)
+class MonitorTeam(FlightTeam[MonitorCase]):
+    """What all vehicles of a team know beforehand."""
+
+    domain = "monitor"
+
+    def __post_init__(self) -> None:
+        """Raise InputError where rounds take longer than plans reach ahead."""
+        scenario = self.case.scenario
+        taken = ceil(self.lead / scenario.step) + 1
+        if taken >= scenario.horizon:
+            raise InputError(
+                f"horizon: a round of {many(self.size, 'vehicle')} takes {self.lead:.1f} s where links delay "
+                f"by {self.times.link_delay:g} s; plan more than {many(taken, 'step')} of {scenario.step:g} s"
+            )
+
+    @cached_property
+    def plan(self) -> MonitorPlan:
+        """What they have agreed on."""
+        case, scenario = self.case, self.case.scenario
+        outlook = Outlook(case.model, case.spots)
+        variances = [outlook.sensor(case.sensor(i)).variance for i in range(len(case.vehicles))]
+        unit = 1.0 / (_FINE * max(variances))
+        return MonitorPlan(
+            case.packing,
+            Patrol(scenario.horizon * scenario.step, scenario.layers, scenario.gamma),
+            scenario.step,
+            self.lead,
+            unit,
+            max(units_of(variance, unit) for variance in variances),
+        )
+
+    def mission(self, robot: int, boot: int) -> Monitoring:
+        """Return a vehicle's share, by its number from 0."""
+        case, vehicle = self.case, self.case.vehicles[robot]
+        platform = MonitoringPlatform(
+            vehicle.speed,
+            self.plan.outlook.sensor(case.sensor(robot)),
+            None if vehicle.flies else case.blocked,
+            case.scenario.frame,
+            bearings=case.scenario.bearings,
+        )
+        coordination = self.options.coordination
+        return Monitoring(
+            platform,
+            case.sensor(robot),
+            self.plan,
+            self._fusion(robot, boot),
+            vehicle.budget,
+            coordination != "shared",
+            partial(self._route, robot) if coordination in ("lawnmower", "random") else None,
+        )
+
+    def _route(self, robot: int, here: Place) -> Way:
+        """Return the patrol of one that follows a fixed one."""
+        case, vehicle = self.case, self.case.vehicles[robot]
+        length = min(way_of(vehicle.budget), vehicle.speed * case.duration)
+        if self.options.coordination == "random":
+            return at_random(case.scenario.frame, here, length, np.random.default_rng([robot, 7]))
+        return strip(case.scenario.frame, here, robot, len(case.vehicles), length)
+
+    def _fusion(self, robot: int, boot: int) -> StepEvidence[Sparse]:
+        elements = SparseIntegers(self.case.packing.size)
+        if self.options.fusion == "sums":
+            return StepSums(robot, boot, elements, window=ceil(_WINDOW / self.case.step))
+        return ReplicatedSteps(robot, boot, elements)

@@ -1,0 +1,212 @@
+"""Monitoring made ready from its scenario: read, checked, and its parts made."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from importlib import resources
+from math import inf
+from pathlib import Path
+
+import numpy as np
+import yaml
+from numpy.typing import NDArray
+
+from vedette.agent.body import TICK
+from vedette.domains.monitoring.evidence import FieldPacking
+from vedette.domains.monitoring.field import FieldModel
+from vedette.domains.monitoring.platform import FieldSensor
+from vedette.domains.monitoring.scenario import Budget, FieldFile, MonitorScenario, MonitorVehicle, Plume
+from vedette.domains.monitoring.spots import Spots
+from vedette.domains.monitoring.survey import model_of
+from vedette.domains.monitoring.truth import Floats, TrueField, drawn, plume, read_field, still
+from vedette.errors import InputError
+from vedette.maps import GridFrame
+from vedette.maps.area import Area
+from vedette.scenario import as_scenario, load_scenario
+
+DEFAULT = "monitor.yaml"
+
+
+@dataclass(frozen=True, eq=False)
+class MonitorCase:
+    """Monitoring that is known to make sense; ``vedette.missions.flights.FlightCase``."""
+
+    name: str
+    scenario: MonitorScenario
+    model: FieldModel
+    numbers: Floats | None  # (R, C) of the field that stays as it is; None: it is generated
+    blocked: NDArray[np.bool_]  # (R, C) where robots on the ground must not go
+    files: tuple[Path, ...] = ()
+
+    @property
+    def names(self) -> list[str]:
+        """Of the vehicles."""
+        return self.scenario.vehicle_names
+
+    @property
+    def vehicles(self) -> tuple[MonitorVehicle, ...]:
+        """In the order of their names."""
+        return self.scenario.vehicles
+
+    @property
+    def step(self) -> float:
+        """Of measuring and planning [s]."""
+        return self.scenario.step
+
+    @property
+    def replan(self) -> int:
+        """A round each so many steps."""
+        return self.scenario.replan
+
+    @property
+    def duration(self) -> float:
+        """Of the mission [s]."""
+        return self.scenario.duration
+
+    @cached_property
+    def spots(self) -> Spots:
+        """What the team's sensors measure."""
+        sides = sorted({self.scenario.sensor_of(i).side for i in range(len(self.vehicles))})
+        return Spots(self.scenario.frame, tuple(sides))
+
+    def sensor(self, i: int) -> FieldSensor:
+        """Return vehicle i's."""
+        sensor = self.scenario.sensor_of(i)
+        return FieldSensor(sensor.noise**2, sensor.side, self.step)
+
+    @cached_property
+    def packing(self) -> FieldPacking:
+        """How evidence adds up."""
+        least = min(self.sensor(i).variance for i in range(len(self.vehicles)))
+        return FieldPacking(self.model, self.spots, least)
+
+    def truth(self, seed: int) -> TrueField:
+        """Return the field as it truly is."""
+        rng = np.random.default_rng([seed, 3])
+        if self.numbers is not None:
+            return still(self.numbers)
+        if isinstance(self.scenario.field, Plume):
+            return plume(self.scenario.frame, self.scenario.field, self.step, rng)
+        return drawn(self.model, self.step, rng)
+
+
+def default_case() -> MonitorCase:
+    """Return what ``vedette monitor`` does without a file; also ``examples/scenarios/monitor.yaml``."""
+    text = resources.files("vedette.missions").joinpath("scenarios", DEFAULT).read_text(encoding="utf-8")
+    return made(as_scenario(yaml.safe_load(text), MonitorScenario, DEFAULT), Path(DEFAULT))
+
+
+def read_case(path: Path) -> MonitorCase:
+    """Read and check a scenario file; the field's lies beside it.
+
+    Raises:
+        InputError: as ``vedette.scenario.load_scenario`` and `made`.
+    """
+    return made(load_scenario(path, MonitorScenario, "monitoring scenario"), path)
+
+
+def made(scenario: MonitorScenario, path: Path) -> MonitorCase:
+    """Return what a scenario describes.
+
+    Raises:
+        InputError: an area without inside, a step that the simulator cannot make, a name used twice, a start
+            outside or where a robot must not be, a sensor, a budget, a model or a field that is none;
+            the line names file and field.
+    """
+    try:
+        _check_area(scenario)
+        _check_step(scenario)
+        blocked = _blocked(scenario)
+        _check_vehicles(scenario, blocked)
+        numbers = read_field(scenario, path.parent)
+        files = (path.parent / scenario.field.file,) if isinstance(scenario.field, FieldFile) else ()
+        seen = numbers
+        if isinstance(scenario.field, Plume):
+            seen = plume(scenario.frame, scenario.field, scenario.step, np.random.default_rng([0, 3])).first
+        return MonitorCase(path.stem, scenario, model_of(scenario, seen), numbers, blocked, files)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
+
+
+def _check_area(scenario: MonitorScenario) -> None:
+    x0, y0, x1, y1 = scenario.area
+    if not (x1 - x0 >= 2 * scenario.cell and y1 - y0 >= 2 * scenario.cell):
+        raise InputError(
+            "area: must be lowest x, lowest y, highest x, highest y, at least two cells of "
+            f"{scenario.cell:g} m a side; got {list(scenario.area)}"
+        )
+    if scenario.frame.size > MOST_CELLS:
+        raise InputError(
+            f"cell: the area has {scenario.frame.size} cells of {scenario.cell:g} m, at most {MOST_CELLS}; "
+            "take larger ones"
+        )
+
+
+MOST_CELLS = 100_000
+
+
+def _check_step(scenario: MonitorScenario) -> None:
+    ticks = scenario.step / TICK
+    if abs(ticks - round(ticks)) > 1e-6:
+        raise InputError(
+            f"step: must be a multiple of the simulator's tick of {TICK:g} s; got {scenario.step}"
+        )
+    if scenario.duration < scenario.step:
+        raise InputError(f"duration: must be at least a step of {scenario.step} s; got {scenario.duration}")
+    if scenario.layers > scenario.horizon:
+        raise InputError(
+            f"layers: at most one a step of the horizon, {scenario.horizon}; got {scenario.layers}"
+        )
+
+
+def _blocked(scenario: MonitorScenario) -> NDArray[np.bool_]:
+    blocked = np.zeros(scenario.frame.shape, np.bool_)
+    for k, corners in enumerate(scenario.no_go):
+        try:
+            blocked |= Area.of(corners).holds(scenario.frame)
+        except InputError as error:
+            raise InputError(f"no_go[{k}]: {str(error).removeprefix('area: ')}") from error
+    return blocked
+
+
+def _check_vehicles(scenario: MonitorScenario, blocked: NDArray[np.bool_]) -> None:
+    names, frame = scenario.vehicle_names, scenario.frame
+    for i, vehicle in enumerate(scenario.vehicles):
+        where, (x, y) = f"vehicles[{i}]", vehicle.start
+        if names[i] in names[:i]:
+            raise InputError(f"{where}.name: {names[i]!r} is used twice")
+        if not frame.contains(x, y):
+            x0, x1, y0, y1 = frame.extent
+            raise InputError(
+                f"{where}.start: {x:.10g}, {y:.10g} is outside the area; "
+                f"x is {x0:.10g} to {x1:.10g} m, y is {y0:.10g} to {y1:.10g} m"
+            )
+        if not vehicle.flies and blocked[frame.cell(x, y)]:
+            raise InputError(f"{where}.start: {x:.10g}, {y:.10g} is in no_go; start elsewhere, or let it fly")
+        side = scenario.sensor_of(i).side
+        if side % 2 == 0 or side > min(frame.shape):
+            own = f"{where}.sensor" if vehicle.sensor is not None else "sensor"
+            raise InputError(f"{own}.side: must be odd and fit into the area; got {side} cells")
+        _check_budget(f"{where}.budget", vehicle.budget, frame)
+
+
+def _check_budget(where: str, budget: Budget, frame: GridFrame) -> None:
+    if budget.path is not None and budget.energy is not None:
+        raise InputError(f"{where}.energy: give a path or energy, not both")
+    if budget.energy is not None and budget.per_metre == budget.per_second == 0.0:
+        raise InputError(
+            f"{where}.per_metre: energy is never spent where both per_metre and per_second are 0"
+        )
+    if (reach := way_of(budget)) < frame.resolution:
+        raise InputError(
+            f"{where}: it lasts for {reach:.3g} m, less than to the next cell at {frame.resolution:g} m; "
+            "give more, or leave the vehicle out"
+        )
+
+
+def way_of(budget: Budget) -> float:
+    """Return the way that a budget allows for if nothing else is spent [m]."""
+    if budget.energy is not None:
+        return budget.energy / budget.per_metre if budget.per_metre > 0.0 else inf
+    return inf if budget.path is None else budget.path

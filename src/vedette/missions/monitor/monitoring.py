@@ -1,0 +1,229 @@
+"""Monitoring as a mission: the domain of monitoring and step evidence, put together for the agent."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import hypot, inf
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.agent.events import Pose, Sensed
+from vedette.agent.flight import MovePlan, start_step, step_of
+from vedette.agent.mates import Mate
+from vedette.agent.mission import RoundPlatform
+from vedette.domains.monitoring.belief import FieldBelief
+from vedette.domains.monitoring.evidence import FieldPacking
+from vedette.domains.monitoring.impact import FieldImpactCodec, Impact, check_claim
+from vedette.domains.monitoring.objective import MonitoringBelief, MonitoringObjective
+from vedette.domains.monitoring.planning import Outlook
+from vedette.domains.monitoring.platform import FieldSensor, MonitoringPlatform
+from vedette.domains.monitoring.scenario import Budget
+from vedette.domains.monitoring.ways import Place, Way
+from vedette.domains.monitoring.worth import Patrol
+from vedette.fusion.steps import Refilter, Sparse, SparseIntegers, StepEvidence
+from vedette.missions.flying import FlyingMission, SharedBelief
+from vedette.problem import Reach
+
+
+@dataclass(frozen=True, eq=False)
+class MonitorPlan:
+    """What a team agrees on beforehand."""
+
+    packing: FieldPacking
+    patrol: Patrol
+    dt: float  # length of a step [s]
+    lead: float  # from freezing a round to the start of its plans, at least [s]
+    unit: float  # of information in impacts [1 / unit^2]
+    most: int  # units that a measurement of the team's best sensor has
+
+    @cached_property
+    def outlook(self) -> Outlook:
+        """The field as plans see it."""
+        return Outlook(self.packing.model, self.packing.spots)
+
+    @property
+    def prior(self) -> FieldBelief:
+        """What is known at step 0."""
+        return FieldBelief.prior(self.packing.model, self.packing.spots, self.dt)
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """What a vehicle's sensor tells at the end of a step."""
+
+    cell: int  # flat, about which it measured
+    value: float  # [unit]
+
+
+@dataclass(frozen=True, eq=False)
+class Pilot:
+    """Whoever follows a fixed patrol, and negotiates nothing; ``vedette.agent.mission.RoundPlatform``."""
+
+    def impact(self, belief: MonitoringBelief, strategy: Way) -> Impact:
+        """Tell nothing."""
+        return MonitoringObjective().nothing(belief)
+
+    def reply(self, belief: MonitoringBelief, others: Impact, current: Way) -> Way:
+        """Go on."""
+        return current
+
+    def slack(self, belief: MonitoringBelief, base: Impact) -> float:
+        """Promise nothing of what the team could gain."""
+        return inf
+
+
+@dataclass(eq=False)
+class Monitoring(FlyingMission):
+    """One vehicle's share; ``vedette.agent.mission.FlightMission``.
+
+    Evidence waits to be published: a round's must not change while it lasts.
+    """
+
+    vehicle: MonitoringPlatform  # its sensor as plans see it
+    sensor: FieldSensor  # as it is
+    team: MonitorPlan
+    fusion: StepEvidence[Sparse]
+    budget: Budget
+    shares_plans: bool = True  # False: the team shares beliefs alone
+    route: Callable[[Place], Way] | None = None  # a fixed patrol from a place; None: it plans
+    strategy: Way = field(default_factory=lambda: Way(((0.0, 0.0),)))
+    objective: MonitoringObjective = field(default_factory=MonitoringObjective)
+    codec: FieldImpactCodec = field(init=False)
+    platform: RoundPlatform[MonitoringBelief, Way, Impact] = field(init=False)
+    _elements: SparseIntegers = field(init=False)
+    _filter: Refilter[FieldBelief, Sparse] = field(init=False)
+    _waiting: list[tuple[int, Measured]] = field(default_factory=list)
+    _planned: bool = False  # the strategy is a way, since a round has been
+    _seen: tuple[Place, float] | None = None  # where it was last, and when [s]
+    _gone: float = 0.0  # way so far [m]
+
+    def __post_init__(self) -> None:
+        outlook, size = self.team.outlook, self.team.packing.size
+        self.codec = FieldImpactCodec(outlook.large.count, self.team.patrol.layers)
+        self.platform = self.vehicle if self.shares_plans else SharedBelief(self.vehicle, self.objective)
+        if self.route is not None:
+            self.platform = Pilot()
+        self._elements = SparseIntegers(size)
+        self._filter = Refilter(self.fusion, self.team.prior, 0, predict=_moved, update=self._observed)
+
+    def _observed(self, belief: FieldBelief, step: int, total: Sparse) -> FieldBelief:
+        return self.team.packing.add(belief, total.index, total.value) if len(total.index) else belief
+
+    # -- evidence -----------------------------------------------------------------------------------
+
+    def observe(self, seen: Sensed, pose: Pose, mates: Sequence[Mate], now: float) -> None:
+        """Keep a measurement until it is published, unless there is no energy left to make one with."""
+        assert isinstance(seen.data, Measured)
+        here = (pose.x, pose.y)
+        if self._seen is not None:
+            self._gone += hypot(here[0] - self._seen[0][0], here[1] - self._seen[0][1])
+        self._seen = here, now
+        if self.awake(now) > 0.0:
+            self._waiting.append((step_of(seen.time, self.team.dt), seen.data))
+
+    def publish(self, now: float) -> None:
+        """Hand the evidence that waits to fusion."""
+        waiting, self._waiting = self._waiting, []
+        sensor, packing = self.sensor, self.team.packing
+        for step, told in waiting:
+            spots = packing.spots.of(sensor.side, np.array([told.cell]))
+            places, numbers = packing.pack(spots, np.array([told.value]), np.array([sensor.variance]))
+            self.fusion.publish(step, self._elements.of(places, numbers))
+
+    @property
+    def first_step(self) -> int:
+        """The first step whose belief can still be had."""
+        return self._filter.first
+
+    def known(self, step: int) -> FieldBelief:
+        """Return what is known of the field at a step, by all that this vehicle has published and heard."""
+        return self._filter.at(max(step, self.first_step))
+
+    # -- what it can spend --------------------------------------------------------------------------
+
+    def awake(self, now: float) -> float:
+        """Return how long it measures yet if it stays where it is [s]."""
+        budget = self.budget
+        if budget.energy is None:
+            return inf
+        left = budget.energy - budget.per_metre * self._gone - budget.per_second * now
+        if left <= 0.0:
+            return 0.0
+        return left / budget.per_second if budget.per_second > 0.0 else inf
+
+    def left(self, now: float) -> float:
+        """Return the way that it may still go within a horizon from now on [m]."""
+        budget = self.budget
+        if budget.energy is None:
+            return inf if budget.path is None else max(0.0, budget.path - self._gone)
+        if budget.per_metre == 0.0:
+            return inf if self.awake(now) > 0.0 else 0.0
+        ahead = budget.per_second * min(self.awake(now), self.team.patrol.horizon)
+        left = budget.energy - budget.per_metre * self._gone - budget.per_second * now
+        return max(0.0, (left - ahead) / budget.per_metre)
+
+    # -- planning -----------------------------------------------------------------------------------
+
+    def freeze(self, t0: float) -> MonitoringBelief:
+        """Snapshot what is known, as of the first step for which all can make plans."""
+        step = max(step_of(t0, self.team.dt), self.first_step)
+        start = max(step, start_step(t0, self.team.lead, self.team.dt))
+        known = self._filter.at(step).predict(start - step)
+        return MonitoringBelief(self.team.outlook.of(known), self.team.patrol, self.team.unit)
+
+    def prepare(
+        self, belief: MonitoringBelief, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float
+    ) -> None:
+        """List the ways from where the vehicle will be, and restate the present one."""
+        start, here = belief.field.step, self._inside(pose)
+        present = None
+        if self._planned:
+            present = self.strategy.after(self.vehicle.speed * self.team.dt * (start - self.strategy.step))
+        elif self.route is not None:
+            present = self.route(here)
+        self.vehicle.awake = max(0.0, self.awake(start * self.team.dt))
+        self.vehicle.place(*here, self.left(start * self.team.dt), present)
+        if self.route is None:
+            self.vehicle.prepare(belief)
+            self.strategy = self.vehicle.ways[0]
+        else:
+            self.strategy = self.vehicle.restated(belief)
+        self._planned = True
+
+    def _inside(self, pose: Pose) -> Place:
+        """Return the nearest place within the area: rounding may have it a hair beyond."""
+        x0, x1, y0, y1 = self.team.packing.model.frame.extent
+        margin = 1e-6 * self.team.packing.model.frame.resolution
+        x, y = np.clip((pose.x, pose.y), (x0, y0), (x1 - margin, y1 - margin)).tolist()
+        return x, y
+
+    def reach(self, now: float) -> Reach | None:
+        """Gains depend on measurements anywhere, though little on those far away: no bounds."""
+        return None
+
+    def admit(self, belief: MonitoringBelief, impact: Impact, robots: int) -> None:
+        """Refuse more than so many of the team's best sensors measure."""
+        steps = round(self.team.patrol.horizon / self.team.dt)
+        check_claim(impact, robots * steps * self.team.most, robots)
+
+    # -- moving -------------------------------------------------------------------------------------
+
+    def start(self, belief: MonitoringBelief) -> float:
+        """Return when ways planned on this belief begin [s]."""
+        return belief.field.step * belief.field.dt
+
+    def plan(self) -> MovePlan | None:
+        """Return the way decided on, as velocities; None before the first round."""
+        if not self._planned:
+            return None
+        dt, steps = self.team.dt, round(self.team.patrol.horizon / self.team.dt)
+        places = self.strategy.at(self.vehicle.speed * dt * np.arange(steps + 1.0, dtype=np.float64))
+        velocities: NDArray[np.float64] = np.diff(places, axis=0) / dt
+        return MovePlan(self.strategy.step * dt, dt, velocities)
+
+
+def _moved(belief: FieldBelief, step: int) -> FieldBelief:
+    return belief.predict()

@@ -1,0 +1,1 @@
+"""What monitoring leaves: its log, figures, record, pictures and live view."""

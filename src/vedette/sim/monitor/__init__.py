@@ -1,0 +1,1 @@
+"""Monitoring, simulated: the true field and those who measure it."""

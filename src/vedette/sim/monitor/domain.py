@@ -1,0 +1,99 @@
+"""Monitoring as a domain: where its parts are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager
+from pathlib import Path
+from typing import Any, cast
+
+from vedette.agent.mission import FlightMission
+from vedette.domains.monitoring.scenario import MonitorScenario
+from vedette.missions.flights import FlightOptions, FlightTeam
+from vedette.missions.flying import RoundTimes
+from vedette.missions.monitor.assemble import MonitorTeam
+from vedette.missions.monitor.case import MonitorCase, default_case, made, read_case
+from vedette.missions.monitor.monitoring import Monitoring
+from vedette.outcome import Outcome
+from vedette.record.display import Display
+from vedette.record.folder import OutputFolder
+from vedette.record.log import Sink
+from vedette.record.mcap import Place
+from vedette.record.monitor.content import FieldContent, check_content, content_of
+from vedette.record.monitor.live import monitor_display
+from vedette.record.monitor.log import MonitorScene, MonitorSnapshot
+from vedette.record.monitor.mcap import MonitorMcapWriter
+from vedette.record.monitor.observer import MonitorObserver, MonitorReport, compared
+from vedette.record.monitor.summary import MonitorSummary, closing
+from vedette.record.summary import Setting
+from vedette.scenario import as_scenario
+from vedette.sim.domain import Domain
+from vedette.sim.monitor.world import measurers
+from vedette.sim.vehicles import Vehicles
+
+
+class Monitor(Domain[MonitorCase, FieldContent, MonitorScene, MonitorSnapshot, MonitorReport]):
+    """A team keeps a field known."""
+
+    content = FieldContent
+    leaves = ("run.mcap", "summary.json", "timing.json", "field.png", "curves.png")
+
+    def case(self, scenario: Path | Mapping[str, Any] | None) -> MonitorCase:
+        """Return what a scenario comes to."""
+        match scenario:
+            case None:
+                return default_case()
+            case Path():
+                return read_case(scenario)
+            case _:
+                return made(as_scenario(scenario, MonitorScenario, "scenario"), Path("scenario"))
+
+    def team(self, case: MonitorCase, options: FlightOptions, times: RoundTimes) -> FlightTeam[MonitorCase]:
+        """Return what all vehicles know beforehand."""
+        return MonitorTeam(case, options, times)
+
+    def vehicles(self, case: MonitorCase, seed: int, over: Callable[[float], Outcome | None]) -> Vehicles:
+        """Return the vehicles at their starts."""
+        return measurers(case, seed, over)
+
+    def tell(self, mission: FlightMission[Any, Any, Any], step: int) -> FieldContent:
+        """Return what is known of the field."""
+        return content_of(cast(Monitoring, mission).known(step))
+
+    def check(self, content: FieldContent, case: MonitorCase) -> None:
+        """Raise ValueError for what is no evidence of this field."""
+        check_content(content, case.spots.count)
+
+    def scene(self, case: MonitorCase) -> MonitorScene:
+        """Return what stays the same."""
+        return MonitorScene.of(case)
+
+    def observer(
+        self, team: FlightTeam[MonitorCase], setting: Setting, sinks: Sequence[Sink[MonitorSnapshot]]
+    ) -> MonitorObserver:
+        """Return who measures a mission against the truth."""
+        return MonitorObserver(team, setting, sinks)
+
+    def display(self, scene: MonitorScene, quiet: bool) -> Display[MonitorSnapshot]:
+        """Return the live view."""
+        return monitor_display(scene, quiet)
+
+    def recorder(self, place: Place, scene: MonitorScene) -> AbstractContextManager[Sink[MonitorSnapshot]]:
+        """Open the run record."""
+        return MonitorMcapWriter(place, scene)
+
+    def write(self, report: MonitorReport, folder: OutputFolder, animate: bool) -> None:
+        """Write figures and pictures."""
+        from vedette.record.monitor.outputs import write_outputs  # draws: takes a second to import
+
+        write_outputs(report, folder, animate)
+
+    def closing(self, summary: MonitorSummary, folder: Path) -> list[str]:
+        """Say how it went."""
+        return closing(summary, folder)
+
+    def compared(
+        self, report: MonitorReport, others: Mapping[str, MonitorReport], outcome: Outcome
+    ) -> MonitorReport:
+        """Return the report with the others beside it."""
+        return compared(report, others, outcome)
