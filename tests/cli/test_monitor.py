@@ -118,7 +118,6 @@ VEHICLE = SMALL["vehicles"][0]
         ),
         ({"vehicles": [VEHICLE | {"budget": {"path": 5, "energy": 5}}]}, ("vehicles[0].budget.energy",)),
         ({"step": 0.25}, ("step: must be a multiple",)),
-        ({"horizon": 3}, ("horizon: a round of 2 vehicles takes",)),
         ({"layers": 9}, ("layers: at most one a step",)),
         ({"gama": 0.5}, ("unknown field 'gama'", "gamma")),
     ],
@@ -129,11 +128,19 @@ def test_a_scenario_that_cannot_be_is_refused_in_a_line(
     refused(vedette(scenario(**changes)), "small.yaml", *words)
 
 
+def test_a_horizon_that_a_round_does_not_leave_time_for_is_refused_in_a_line(vedette: Command) -> None:
+    refused(vedette(scenario(horizon=2)), "horizon: a round of 2 vehicles takes")
+
+
 def test_a_field_that_cannot_be_measured_is_refused_in_a_line(vedette: Command) -> None:
     np.save("flat.npy", np.ones((5, 5)))
     refused(
         vedette(scenario(field={"type": "file", "file": "flat.npy"}, model={}, sensor={"noise": 1e-12})),
-        "small.yaml",
+        "small.yaml: sensor.noise: 1 of heron is more than 100 times the field's deviation",
+    )
+    refused(
+        vedette(scenario(field={"type": "jacksboro"}, model={"mean": 0, "deviation": 1, "length": 5})),
+        "small.yaml: model.deviation: the field is up to",
     )
     holes = np.ones((4, 4))
     holes[1, 1] = np.nan

@@ -124,7 +124,9 @@ def made(scenario: MonitorScenario, path: Path) -> MonitorCase:
         seen = numbers
         if isinstance(scenario.field, Plume):
             seen = plume(scenario.frame, scenario.field, scenario.step, np.random.default_rng([0, 3])).first
-        return MonitorCase(path.stem, scenario, model_of(scenario, seen), numbers, blocked, files)
+        model = model_of(scenario, seen)
+        _check_numbers(scenario, model, seen)
+        return MonitorCase(path.stem, scenario, model, numbers, blocked, files)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
 
@@ -168,6 +170,25 @@ def _blocked(scenario: MonitorScenario) -> NDArray[np.bool_]:
         except InputError as error:
             raise InputError(f"no_go[{k}]: {str(error).removeprefix('area: ')}") from error
     return blocked
+
+
+def _check_numbers(scenario: MonitorScenario, model: FieldModel, seen: Floats | None) -> None:
+    """Refuse a field that the model has next to nothing to do with, and sensors that say next to nothing."""
+    if seen is not None and (away := float(np.abs(seen - model.mean).max())) > _FARTHEST * model.deviation:
+        raise InputError(
+            f"model.deviation: the field is up to {away:.3g} off its mean, more than {_FARTHEST} times the "
+            f"deviation of {model.deviation:.3g}; give a larger one"
+        )
+    for i, name in enumerate(scenario.vehicle_names):
+        noise = scenario.sensor_of(i).noise
+        if noise > _NOISIEST * model.deviation:
+            raise InputError(
+                f"sensor.noise: {noise:.3g} of {name} is more than {_NOISIEST} times the field's deviation "
+                f"of {model.deviation:.3g}, so that it says nothing; leave it out, or give model.deviation"
+            )
+
+
+_FARTHEST, _NOISIEST = 100, 100  # deviations
 
 
 def _check_vehicles(scenario: MonitorScenario, blocked: NDArray[np.bool_]) -> None:
