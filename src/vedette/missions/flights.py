@@ -33,7 +33,7 @@ class FlightOptions(Struct, forbid_unknown_fields=True, frozen=True):
         return self.scheme or SCHEME
 
     @property
-    def told(self) -> dict[str, str]:
+    def told(self) -> dict[str, Any]:
         """What files and summaries say of it."""
         return {"coordination": self.coordination, "scheme": self.negotiates_by, "fusion": self.fusion}
 

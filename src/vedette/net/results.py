@@ -1,4 +1,4 @@
-"""What a robot has found out, as files: its map, its tracks or its pdf, and ``summary.json``."""
+"""What a robot has found out, as files: its map, its tracks, its pdf or what its domain tells, and ``summary.json``."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from vedette.record.explore.summary import LeftOut
 from vedette.record.files import atomic_path
 from vedette.record.summary import Figures
 
-MAP, TRACKS, PDF = "map", "tracks.json", "pdf.npy"
+MAP, TRACKS, PDF, TOLD = "map", "tracks.json", "pdf.npy", "told.msgpack"
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class RobotSummary(Figures):
     """``summary.json`` beside what one robot has found out."""
 
     team: str
-    mission: str  # explore, track or search
+    mission: str  # explore, track, search or domain
     robot: str
     outcome: Outcome | None  # how the mission ended for it; None: it goes on
     time_s: float  # of the mission
@@ -145,6 +145,12 @@ def _write_pdf(report: Report, folder: Path) -> Found:
     return Found(pdf=PdfFound(_extent(pdfs.frame_of(pdf)), pdf.outside, declared))
 
 
+def _write_told(report: Report, folder: Path) -> Found:
+    with atomic_path(folder / TOLD) as part:
+        part.write_bytes(report.content)
+    return Found()
+
+
 def _extent(frame: GridFrame) -> tuple[float, float, float, float]:
     x_min, x_max, y_min, y_max = frame.extent
     return x_min, y_min, x_max, y_max
@@ -154,4 +160,5 @@ WRITERS: Mapping[str, Callable[[Report, Path], Found]] = {
     "explore": _write_map,
     "track": _write_tracks,
     "search": _write_pdf,
+    "domain": _write_told,
 }
