@@ -1,4 +1,4 @@
-"""What a robot has found out, as files: its map, its tracks, its pdf or what its domain tells, and ``summary.json``."""
+"""What a robot has found out, as files: its map, tracks, pdf or what else it tells, and ``summary.json``."""
 
 from __future__ import annotations
 
