@@ -16,7 +16,7 @@ from vedette.cli.pipes import readers_may_leave
 from vedette.errors import InputError, InputWarning, check_word
 from vedette.interrupt import ending_on_any_signal
 from vedette.outcome import Outcome
-from vedette.sim.domains import DOMAINS, Declared
+from vedette.sim.domains import DOMAINS, DomainEntry
 
 BAD_INPUT = 2
 
@@ -63,7 +63,9 @@ class _Commands(click.Group):
         if cmd_name not in COMMANDS:
             return None
         if cmd_name in DOMAINS:
-            command_of: Callable[[Declared], click.Command] = import_module("vedette.cli.domain").command_of
+            command_of: Callable[[DomainEntry], click.Command] = import_module(
+                "vedette.cli.domain"
+            ).command_of
             return command_of(DOMAINS[cmd_name])
         module = import_module(f"vedette.cli.{cmd_name}")
         command: click.Command = getattr(module, _FUNCTIONS.get(cmd_name, cmd_name))

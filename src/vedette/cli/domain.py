@@ -24,7 +24,7 @@ from vedette.missions.pairs import SCHEME
 from vedette.negotiation import SCHEMES
 from vedette.run.domain import DomainMission
 from vedette.sim.domain import Domain
-from vedette.sim.domains import Declared
+from vedette.sim.domains import DomainEntry
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 STATUS = "Exit status: 0 complete, 1 incomplete, 2 bad input, 130 interrupted."
@@ -35,7 +35,7 @@ def kind_of(domain: Domain[Any, Any, Any, Any, Any]) -> Kind[Any, Any, Any]:
     return Kind(domain.display, domain.recorder, domain.write, domain.closing, tuple(domain.leaves))
 
 
-def domain_options(domain: Declared) -> Callable[[CommandT], CommandT]:
+def domain_options(domain: DomainEntry) -> Callable[[CommandT], CommandT]:
     """``SCENARIO`` and what says how its vehicles work together."""
     return lambda command: with_options(
         command,
@@ -57,7 +57,7 @@ def domain_options(domain: Declared) -> Callable[[CommandT], CommandT]:
     )  # fmt: skip
 
 
-def command_of(declared: Declared) -> click.Command:
+def command_of(declared: DomainEntry) -> click.Command:
     """Return ``vedette NAME``."""
 
     def run(scenario_path: Path | None, output: Output, no_compare: bool, **options: Any) -> None:

@@ -51,7 +51,7 @@ from vedette.record.track.log import TrackScene
 from vedette.run.inputs import files_of, schedule_of, world_of
 from vedette.run.searching import case_of, heat_maps
 from vedette.run.tracking import scenario_of
-from vedette.sim.domains import DOMAINS, Declared
+from vedette.sim.domains import DOMAINS, DomainEntry
 from vedette.sim.faults import Schedule, faults_text
 from vedette.sim.search.hidden import Hidden
 from vedette.sim.starts import choose_starts
@@ -237,7 +237,7 @@ def search(
     )
 
 
-def _domain_command(declared: Declared) -> click.Command:
+def _domain_command(declared: DomainEntry) -> click.Command:
     """Return ``vedette team NAME`` of a domain that is declared as one object."""
 
     def run(

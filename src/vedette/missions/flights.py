@@ -20,7 +20,7 @@ COORDINATIONS = ("none", "shared", "negotiated")
 FUSIONS = ("replicated", "sums")
 
 
-class FlightOptions(Struct, forbid_unknown_fields=True, frozen=True):
+class TeamOptions(Struct, forbid_unknown_fields=True, frozen=True):
     """How a team works, as its files and commands say it; the same for the whole team."""
 
     coordination: str = "negotiated"
@@ -102,7 +102,7 @@ class FlightTeam(ABC, Generic[CaseT]):
     """What all vehicles of a team know beforehand."""
 
     case: CaseT
-    options: FlightOptions
+    options: TeamOptions
     times: RoundTimes
 
     @property

@@ -17,7 +17,7 @@ from vedette.fusion.gaussian import WAYS
 from vedette.maps.area import Area
 from vedette.missions.explore.assemble import FUSIONS
 from vedette.missions.explore.options import ExploreOptions
-from vedette.missions.flights import COORDINATIONS, FlightOptions
+from vedette.missions.flights import COORDINATIONS, TeamOptions
 from vedette.missions.flights import FUSIONS as STEP_FUSIONS
 from vedette.missions.search.options import SearchOptions
 from vedette.missions.track import options as track_options
@@ -97,7 +97,7 @@ class BestOfTeam(Struct, forbid_unknown_fields=True, frozen=True):
     speed: Annotated[float, Meta(gt=0.0)]  # [m/s]
 
 
-class DomainOptions(FlightOptions, forbid_unknown_fields=True, frozen=True, kw_only=True):
+class DomainOptions(TeamOptions, forbid_unknown_fields=True, frozen=True, kw_only=True):
     """The domain of a vehicle, if it is neither of the others; ``vedette.sim.domains`` knows of it."""
 
     name: str
@@ -127,7 +127,7 @@ class AgentConfig(Struct, forbid_unknown_fields=True, frozen=True):
         return next((name for name in MISSIONS if getattr(self, name) is not None), MISSIONS[0])
 
     @property
-    def flies(self) -> TrackOptions | FlightOptions | None:
+    def flies(self) -> TrackOptions | TeamOptions | None:
         """How it is one of a team of vehicles, by a scenario; None: it explores."""
         return self.track or self.search or self.domain
 

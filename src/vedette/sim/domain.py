@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Generic, TypeVar
 from msgspec import Struct
 
 from vedette.agent.mission import FlightMission
-from vedette.missions.flights import CaseT, FlightOptions, FlightTeam
+from vedette.missions.flights import CaseT, FlightTeam, TeamOptions
 from vedette.missions.flying import RoundTimes
 from vedette.outcome import Outcome
 from vedette.record.display import Display
@@ -20,7 +20,7 @@ from vedette.record.folder import OutputFolder
 from vedette.record.log import Sink
 from vedette.record.mcap import Place
 from vedette.record.summary import Setting
-from vedette.sim.domains import Declared
+from vedette.sim.domains import DomainEntry
 from vedette.sim.vehicles import Vehicles
 
 ContentT = TypeVar("ContentT", bound=Struct)
@@ -38,7 +38,7 @@ class Domain(ABC, Generic[CaseT, ContentT, SceneT, SnapshotT, ReportT]):
     content: ClassVar[type[Any]]  # a ``msgspec.Struct``: what a vehicle tells of its mission
     leaves: ClassVar[Sequence[str]]  # names of the files that a mission leaves
 
-    def __init__(self, declared: Declared) -> None:
+    def __init__(self, declared: DomainEntry) -> None:
         """Take its name, and the ways of coordination that it knows."""
         self.name, self.coordinations = declared.name, declared.coordinations
 
@@ -53,7 +53,7 @@ class Domain(ABC, Generic[CaseT, ContentT, SceneT, SnapshotT, ReportT]):
         """
 
     @abstractmethod
-    def team(self, case: CaseT, options: FlightOptions, times: RoundTimes) -> FlightTeam[CaseT]:
+    def team(self, case: CaseT, options: TeamOptions, times: RoundTimes) -> FlightTeam[CaseT]:
         """Return what all vehicles know beforehand, and how their agents are made.
 
         Raises:

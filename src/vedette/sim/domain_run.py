@@ -10,7 +10,7 @@ import numpy as np
 
 from vedette.agent.mission import FlightMission
 from vedette.errors import check_word
-from vedette.missions.flights import FUSIONS, CaseT, FlightOptions
+from vedette.missions.flights import FUSIONS, CaseT, TeamOptions
 from vedette.outcome import Outcome
 from vedette.record.flights import FlightView
 from vedette.record.log import Floats, Sink, VehicleSample
@@ -32,9 +32,9 @@ class DomainSetup(FlightSetup):
         check_word("fusion", self.fusion, FUSIONS)
 
     @property
-    def options(self) -> FlightOptions:
+    def options(self) -> TeamOptions:
         """How the team works."""
-        return FlightOptions(self.coordination, self.scheme, self.fusion)
+        return TeamOptions(self.coordination, self.scheme, self.fusion)
 
 
 class DomainSimulation(Simulation, Generic[CaseT]):

@@ -14,7 +14,7 @@ if TYPE_CHECKING:  # whoever asks for help does not wait for the domain itself
 
 
 @dataclass(frozen=True)
-class Declared:
+class DomainEntry:
     """A domain, as far as a command's help needs it."""
 
     name: str  # of its command, and in robots' files
@@ -32,7 +32,7 @@ class Declared:
 
 
 _ALL = (
-    Declared(
+    DomainEntry(
         "monitor",
         "Let a team of robots and flyers keep a field known in simulation.",
         "Let a team of robots and flyers keep a field known in simulation: every one runs its own agent.\n\n"
@@ -43,7 +43,7 @@ _ALL = (
         ("none", "shared", "negotiated", "lawnmower", "random"),
     ),
 )
-DOMAINS: Mapping[str, Declared] = {each.name: each for each in _ALL}
+DOMAINS: Mapping[str, DomainEntry] = {each.name: each for each in _ALL}
 
 
 def domain_of(name: str) -> Domain[Any, Any, Any, Any, Any]:

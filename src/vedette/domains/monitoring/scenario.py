@@ -53,7 +53,7 @@ class Age(Struct, forbid_unknown_fields=True, frozen=True, tag_field="type", tag
 Source: TypeAlias = Jacksboro | Topobathy | FieldFile | Drawn | Plume | Age
 
 
-class Known(Struct, forbid_unknown_fields=True, frozen=True, kw_only=True):
+class KnownField(Struct, forbid_unknown_fields=True, frozen=True, kw_only=True):
     """What is known of the field beforehand; without a number it is learned from a survey."""
 
     mean: float | None = None  # [unit]
@@ -64,7 +64,7 @@ class Known(Struct, forbid_unknown_fields=True, frozen=True, kw_only=True):
     survey: Annotated[int, Meta(ge=10, le=10_000)] = 80  # places measured beforehand to learn from
 
 
-class Sensor(Struct, forbid_unknown_fields=True, frozen=True):
+class SensorSettings(Struct, forbid_unknown_fields=True, frozen=True):
     """Measures the mean over a block of cells about the vehicle at each step's end."""
 
     noise: Positive = 1.0  # standard deviation [unit]
@@ -87,7 +87,7 @@ class MonitorVehicle(Struct, forbid_unknown_fields=True, frozen=True):
     name: Name = ""
     speed: Annotated[float, Meta(gt=0.0, le=300.0)] = 1.0  # [m/s]
     flies: bool = False  # over what robots on the ground must not enter
-    sensor: Sensor | None = None  # without it the scenario's
+    sensor: SensorSettings | None = None  # without it the scenario's
     budget: Budget = Budget()
 
     @property
@@ -112,8 +112,8 @@ class MonitorScenario(Struct, forbid_unknown_fields=True, frozen=True, kw_only=T
     area: tuple[Metre, Metre, Metre, Metre]  # lowest x, lowest y, highest x, highest y [m]
     cell: Positive = 1.0  # side of a cell [m]
     field: Source
-    model: Known = Known()
-    sensor: Sensor = Sensor()  # of vehicles without one of their own
+    model: KnownField = KnownField()
+    sensor: SensorSettings = SensorSettings()  # of vehicles without one of their own
     vehicles: Annotated[tuple[MonitorVehicle, ...], Meta(min_length=1, max_length=MOST_VEHICLES)]
     no_go: Annotated[
         tuple[Corners, ...], Meta(max_length=1000)
@@ -138,7 +138,7 @@ class MonitorScenario(Struct, forbid_unknown_fields=True, frozen=True, kw_only=T
         rows, cols = (max(1, ceil((high - low) / self.cell - 1e-9)) for low, high in ((y0, y1), (x0, x1)))
         return GridFrame(self.cell, rows, cols, x0, y0)
 
-    def sensor_of(self, i: int) -> Sensor:
+    def sensor_of(self, i: int) -> SensorSettings:
         """Return vehicle i's."""
         return self.vehicles[i].sensor or self.sensor
 

@@ -51,7 +51,7 @@ class MonitorPlan:
 
 
 @dataclass(frozen=True, eq=False)
-class Measured:
+class FieldLook:
     """What a vehicle's sensor tells at the end of a step."""
 
     cell: int  # flat, about which it measured
@@ -95,7 +95,7 @@ class Monitoring(FlyingMission):
     platform: RoundPlatform[MonitoringBelief, Way, Impact] = field(init=False)
     _elements: SparseIntegers = field(init=False)
     _filter: Refilter[FieldBelief, Sparse] = field(init=False)
-    _waiting: list[tuple[int, Measured]] = field(default_factory=list)
+    _waiting: list[tuple[int, FieldLook]] = field(default_factory=list)
     _planned: bool = False  # the strategy is a way, since a round has been
     _seen: tuple[Place, float] | None = None  # where it was last, and when [s]
     _gone: float = 0.0  # way so far [m]
@@ -116,7 +116,7 @@ class Monitoring(FlyingMission):
 
     def observe(self, seen: Sensed, pose: Pose, mates: Sequence[Mate], now: float) -> None:
         """Keep a measurement until it is published, unless there is no energy left to make one with."""
-        assert isinstance(seen.data, Measured)
+        assert isinstance(seen.data, FieldLook)
         here = (pose.x, pose.y)
         if self._seen is not None:
             self._gone += hypot(here[0] - self._seen[0][0], here[1] - self._seen[0][1])

@@ -9,7 +9,7 @@ from typing import Any, cast
 
 from vedette.agent.mission import FlightMission
 from vedette.domains.monitoring.scenario import MonitorScenario
-from vedette.missions.flights import FlightOptions, FlightTeam
+from vedette.missions.flights import FlightTeam, TeamOptions
 from vedette.missions.flying import RoundTimes
 from vedette.missions.monitor.assemble import MonitorTeam
 from vedette.missions.monitor.case import MonitorCase, default_case, made, read_case
@@ -48,7 +48,7 @@ class Monitor(Domain[MonitorCase, FieldContent, MonitorScene, MonitorSnapshot, M
             case _:
                 return made(as_scenario(scenario, MonitorScenario, "scenario"), Path("scenario"))
 
-    def team(self, case: MonitorCase, options: FlightOptions, times: RoundTimes) -> FlightTeam[MonitorCase]:
+    def team(self, case: MonitorCase, options: TeamOptions, times: RoundTimes) -> FlightTeam[MonitorCase]:
         """Return what all vehicles know beforehand."""
         return MonitorTeam(case, options, times)
 

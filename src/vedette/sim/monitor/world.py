@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.missions.monitor.case import MonitorCase
-from vedette.missions.monitor.monitoring import Measured
+from vedette.missions.monitor.monitoring import FieldLook
 from vedette.outcome import Outcome
 from vedette.sim.simulation import random_streams
 from vedette.sim.vehicles import Vehicles
@@ -24,7 +24,7 @@ def measurers(case: MonitorCase, seed: int, over: Callable[[float], Outcome | No
     streams = random_streams(seed, len(case.vehicles))
     rows = case.spots.weights
 
-    def look(i: int, pose: NDArray[np.float64], now: float) -> Measured:
+    def look(i: int, pose: NDArray[np.float64], now: float) -> FieldLook:
         x0, x1, y0, y1 = frame.extent
         margin = 1e-6 * frame.resolution
         x, y = np.clip(pose[:2], (x0, y0), (x1 - margin, y1 - margin)).tolist()
@@ -32,7 +32,7 @@ def measurers(case: MonitorCase, seed: int, over: Callable[[float], Outcome | No
         spot = case.spots.of(sensor.side, np.array([cell]))
         field = truth.at(round(now / case.step)).ravel()
         noise = np.sqrt(sensor.variance) * streams[i].normal()
-        return Measured(cell, float((rows[spot] @ field)[0] + noise))
+        return FieldLook(cell, float((rows[spot] @ field)[0] + noise))
 
     return Vehicles(
         [vehicle.pose for vehicle in case.vehicles],
