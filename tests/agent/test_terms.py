@@ -9,8 +9,10 @@ import pytest
 from tests.support.agent_team import toy_team
 from vedette import Tree
 from vedette.agent import NetworkedAgent
+from vedette.agent.acquaintance import Acquaintance
 from vedette.agent.networked import HELLO, Datagram
-from vedette.agent.terms import Terms, difference, fingerprint_of, flat
+from vedette.agent.terms import Introduction, Terms, difference, encode, fingerprint_of, flat
+from vedette.fusion.trust import APART
 from vedette.maps import GridFrame
 from vedette.maps.area import MOST_CORNERS, Area
 from vedette.maps.lattice import Lattice
@@ -108,6 +110,14 @@ def test_clocks_that_are_apart_are_told_and_do_no_harm() -> None:
     assert here.complaints == {1: "its clock is +3.0 s from this robot's"}
     assert there.complaints == {0: "its clock is -3.0 s from this robot's"}
     assert pair(TERMS, apart=0.9)[0].complaints == {}
+
+
+def test_clocks_more_than_a_minute_apart_are_told_to_keep_evidence_from_being_compared() -> None:
+    """A minute of the mission's time: at five times real time, twelve seconds of the clocks'."""
+    for tempo, apart, much in ((1.0, 59.0, False), (1.0, 61.0, True), (5.0, 11.0, False), (5.0, 13.0, True)):
+        known = Acquaintance(TERMS, lambda now: now, APART / 10.0 / tempo)
+        known.hear(1, encode(Introduction(7, False, round(1000.0 * apart), dict(TERMS))), 5, 0.0)
+        assert ("compared with nobody's" in known.warnings[1]) == much
 
 
 def test_an_older_version_is_told_in_one_line() -> None:

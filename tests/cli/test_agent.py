@@ -160,7 +160,8 @@ def test_a_robot_without_neighbours_explores_alone_over_plain_tcp_with_a_warning
         finally:
             agent.kill()  # else a failure waits for an agent that nobody ends
     assert agent.returncode == 0
-    assert err == "vedette: links are plain TCP: whoever reaches the port can read and write\n"
+    warning = "links are plain TCP: whoever reaches the port can read and write, and nothing is signed"
+    assert err == f"vedette: {warning}\n"
     assert out.startswith("robot 1 of team office: listens on tcp/127.0.0.1:")
     assert out.endswith("robot 1: stopped\n")
 

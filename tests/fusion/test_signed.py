@@ -144,7 +144,7 @@ def test_whoever_changes_what_it_passes_on_is_caught_and_changes_nothing(
         pass_on(team, 1, 0, float(k))
         pass_on(team, 2, 1, float(k))
         pass_on(team, 1, 2, float(k), change)
-    assert 1 in team[2].forgers
+    assert 1 in team[2].standing.forgers
     assert "robot-1" in team[2].complaints[1]
     assert team[2].contributors() == 0
     assert not team[2].classes.window().any()
@@ -175,8 +175,8 @@ def test_a_contributor_that_signs_one_version_twice_harms_nobody_who_passes_it_o
     exchange({i: team[i] for i in (0, 1)}, [(0, 1)], 4)
     exchange({i: team[i] for i in (1, 2)}, [(1, 2)], 8)
     assert team[2].digest == team[1].digest == team[0].digest
-    assert not team[2].forgers
-    assert not team[1].forgers
+    assert not team[2].standing.forgers
+    assert not team[1].standing.forgers
 
 
 def test_a_tile_farther_than_its_maker_can_have_driven_is_refused_by_all_alike(clock: Clock) -> None:
@@ -221,3 +221,40 @@ def test_who_says_to_have_visited_two_places_at_once_is_not_heard(seconds: float
     exchange(team, [(0, 1)])
     assert (len(team[1].notes()[0]) == 2) == (seconds > 10.0)
     assert (0 in team[1].complaints) == (seconds < 10.0)
+
+
+def test_nothing_counts_that_a_revoked_robot_has_signed_before_or_after(clock: Clock) -> None:
+    rng, team = np.random.default_rng(7), {i: holder(i, clock) for i in range(3)}
+    grids = [random_grid(rng) for _ in team]
+    for i in team:
+        saw(team[i], grids[i], 1)
+    exchange(team, [(0, 1), (1, 2)])
+    before = team[0].contributors()
+    for i in (0, 1):
+        assert team[i].standing.revoke(frozenset({2}))
+        team[i].heed()
+    saw(team[2], random_grid(rng), 2)
+    exchange(team, [(0, 1), (1, 2)])
+    rest = {i: holder(i, clock) for i in range(2)}
+    for i in rest:
+        saw(rest[i], grids[i], 1)
+    exchange(rest, [(0, 1)])
+    for i in rest:
+        assert np.array_equal(team[i].classes.window(), rest[i].classes.window())
+        assert np.array_equal(team[i].counts, rest[i].counts)
+        assert set(team[i].complaints) == {2}
+        assert not team[i].standing.forgers
+        assert team[i].contributors() == before
+    assert team[0].digest == team[1].digest != rest[0].digest
+
+
+def test_a_revoked_robot_is_nobodys_errand_any_more(clock: Clock) -> None:
+    team = {i: holder(i, clock) for i in range(3)}
+    for i in team:
+        saw(team[i], random_grid(np.random.default_rng(i)))
+    exchange({i: team[i] for i in (0, 1)}, [(0, 1)])
+    team[1].standing.revoke(frozenset({0}))
+    team[1].heed()
+    exchange({i: team[i] for i in (1, 2)}, [(1, 2)])
+    assert team[2].contributors() == 2
+    assert not team[2].complaints

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -24,16 +25,21 @@ Grid = NDArray[np.int8]
 class Team:
     """Robots that all hear what any of them publishes, at a time that the test sets [s]."""
 
-    def __init__(self, robots: int) -> None:
-        self.now = 1000.0
+    def __init__(self, robots: int, ahead: tuple[float, ...] = ()) -> None:
+        """``ahead``: by how much clocks of the first ones are [s]."""
+        self.now = 10_000.0
+        clocks = [partial(self._clock, sum(ahead[i : i + 1])) for i in range(robots)]
         self.fusions = [
-            SignedEvidence(i, 1, SHAPE, 1, notary=PlainNotary(i, lambda: self.now), limits=LIMITS)
-            for i in range(robots)
+            SignedEvidence(i, 1, SHAPE, 1, notary=PlainNotary(i, clock), limits=LIMITS)
+            for i, clock in enumerate(clocks)
         ]
         self._sent = 0.0
         for i, fusion in enumerate(self.fusions):
             fusion.set_out(45, 60)
             fusion.set_neighbours([k for k in range(robots) if k != i])
+
+    def _clock(self, ahead: float) -> float:
+        return self.now + ahead
 
     def sees(self, robot: int, grid: Grid) -> None:
         """Let a robot publish what it has seen by now."""
@@ -153,6 +159,34 @@ def test_what_is_less_than_the_pose_error_apart_contradicts_nothing() -> None:
     team, truth = Team(3), hall()
     assert team.stands([truth, shifted(truth, 4, 0), shifted(truth, 0, 4)], 15.0) == frozenset()
     assert all(tally.against == 0 for tally in team.fusions[0].contradictions(1 << 40).values())
+
+
+@pytest.mark.parametrize("ahead", [(61.0,), (-61.0,), (3600.0,), (-3600.0,), (3600.0, -3600.0)])
+def test_clocks_more_than_a_minute_apart_expel_nobody_and_lose_no_evidence(ahead: tuple[float, ...]) -> None:
+    """Also where the world changes meanwhile, which clocks that agree would tell from a lie."""
+    team, before = Team(3, ahead), hall()
+    after = with_block(before, slice(20, 45), slice(70, 95))
+    assert team.stands([before] * 3, 15.0) == frozenset()
+    assert team.stands([after, after, before], 15.0) == frozenset()
+    assert team.stands([after] * 3, 5.0) == frozenset()
+    shown = team.fusions[0].classes.window()
+    assert np.array_equal(shown == 2, after > 0)
+
+
+@pytest.mark.parametrize("ahead", [50.0, -50.0])
+def test_a_clock_less_than_a_minute_off_hides_no_liar(ahead: float) -> None:
+    """One that is ahead is judged so much later."""
+    team, truth = Team(3, (0.0, ahead)), hall()
+    team.stands([truth, np.full(SHAPE, OPEN, np.int8), truth], 12.0 + max(ahead, 0.0))
+    assert team.tell() == {1}
+
+
+def test_who_is_revoked_accuses_nobody() -> None:
+    team, truth, lie = Team(4), hall(), np.full(SHAPE, OPEN, np.int8)
+    for fusion in team.fusions:
+        fusion.standing.revoke(frozenset({2, 3}))
+        fusion.heed()
+    assert team.stands([truth, truth, lie, lie], 15.0) == {2, 3}
 
 
 def test_whoever_explains_the_most_goes_and_of_equals_nobody() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from math import inf
 
 from vedette.agent import terms as wire
 from vedette.agent.terms import Introduction, Terms, difference
@@ -21,6 +22,7 @@ class Acquaintance:
 
     terms: Terms
     time_of_day: Callable[[float], float]  # when the transport's clock shows ``now`` [s]
+    far: float = inf  # clocks so far apart [s] keep what robots see from being compared
     complaints: dict[int, str] = field(default_factory=dict)  # by neighbour
     warnings: dict[int, str] = field(default_factory=dict)  # by neighbour: clocks
     _met: dict[int, int] = field(default_factory=dict)  # boots of those that have told
@@ -52,7 +54,8 @@ class Acquaintance:
             self.complaints[robot] = f"its link is refused: {unlike}"
         apart = told.clock / 1000.0 - self.time_of_day(now)
         if abs(apart) > CLOCKS_APART:
-            self.warnings[robot] = f"its clock is {apart:+.1f} s from this robot's"
+            much = ", so that what it sees is compared with nobody's" if abs(apart) > self.far else ""
+            self.warnings[robot] = f"its clock is {apart:+.1f} s from this robot's{much}"
 
     def _tell(self, own_boot: int, asks: bool, now: float) -> bytes:
         clock = round(1000.0 * self.time_of_day(now))

@@ -11,7 +11,18 @@ from functools import partial
 
 from vedette.agent import beacons, messages
 from vedette.agent.effects import Effect, Send, Shun, TrafficKind
-from vedette.agent.events import Arrived, Event, JobDone, Message, Pose, Scan, Sensed, Stuck, TreeChanged
+from vedette.agent.events import (
+    Arrived,
+    Event,
+    JobDone,
+    Message,
+    Pose,
+    Revoked,
+    Scan,
+    Sensed,
+    Stuck,
+    TreeChanged,
+)
 from vedette.agent.messages import Beacon, Beacons, Vouched
 from vedette.agent.state import Agent
 
@@ -47,6 +58,8 @@ def _take(agent: Agent, event: Event, now: float) -> list[Effect]:
                 agent.quiet = 0  # who is new may know of something left to do
             agent.rounds.join(event, now)
             agent.mission.fusion.set_neighbours(event.neighbours)
+        case Revoked(robots) if agent.signed is not None and agent.signed.standing.revoke(robots):
+            agent.signed.heed()
     return []
 
 
@@ -102,9 +115,9 @@ def _hear(agent: Agent, sender: int, payload: bytes, now: float) -> list[Effect]
 
 def _without_forger(agent: Agent, sender: int) -> list[Effect]:
     """Do without the link to a neighbour that has changed what it passes on."""
-    if agent.signed is None or sender not in agent.signed.forgers:
+    if agent.signed is None or sender not in agent.signed.standing.forgers:
         return []
-    agent.signed.forgers.discard(sender)
+    agent.signed.standing.forgers.discard(sender)
     return [Shun(sender)]
 
 

@@ -18,7 +18,7 @@ from vedette.agent.effects import Effect, Send, TrafficKind
 from vedette.agent.messages import Account, Audit, encode
 from vedette.agent.mission import Mission, Promising
 from vedette.agent.promises import LEAST, Suspicion
-from vedette.fusion.seals import Notary
+from vedette.fusion.standing import Standing
 
 EVERY = 5.0  # audits are at least so far apart [s]
 WANTED = 60.0  # and go on for so long after the last cause [s]
@@ -48,7 +48,7 @@ class Auditor:
     robot: int
     boot: int
     mission: Mission[Any, Any, Any]
-    notary: Notary
+    standing: Standing
     caught: dict[int, str] = field(default_factory=dict)  # by robot: at what
     _until: dict[int, float] = field(default_factory=dict)  # planned without until [s]
     _times: Counter[int] = field(default_factory=Counter)  # that each was caught
@@ -90,7 +90,7 @@ class Auditor:
         impact = self.mission.codec.encode(claimed.own)
         links = tuple(sorted(claimed.halvings.items()))
         account = Account(self.robot, self.boot, *claimed.stamp, impact, links)
-        return structs.replace(account, signature=self.notary.sign(ACCOUNT, encode(account)))
+        return structs.replace(account, signature=self.standing.notary.sign(ACCOUNT, encode(account)))
 
     def hear(self, sender: int, account: Account, neighbours: tuple[int, ...]) -> list[Effect]:
         """Keep an account and hand it on; ValueError if it is not by whom it says."""
@@ -100,7 +100,7 @@ class Auditor:
             return []
         if account.robot != self.robot:
             unsigned = encode(structs.replace(account, signature=b""))
-            self.notary.check(account.robot, account.signature, ACCOUNT, unsigned)
+            self.standing.notary.check(account.robot, account.signature, ACCOUNT, unsigned)
         self._accounts = {stamp: held | {account.robot: account}}
         return _to([k for k in neighbours if k != sender], account)
 

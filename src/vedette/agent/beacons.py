@@ -37,7 +37,7 @@ def tell(agent: Agent, pose: Pose) -> bytes:
     data = messages.encode(beacon)
     if agent.signed is None or (agent.beacons % SIGNED and agent.beacons > SIGNED):
         return data
-    notary = agent.signed.notary
+    notary = agent.signed.standing.notary
     certificate = notary.certificate if agent.beacons <= INTRODUCES else b""
     return messages.encode(Vouched(data, notary.sign(BEACON, data), certificate))
 
@@ -67,15 +67,16 @@ def _hear_vouched(agent: Agent, sender: int, message: Vouched, told: bytes, now:
     beacon = messages.decode_beacon(message.beacon)
     if agent.signed is None:
         raise ValueError("a signed beacon, where nobody signs")
-    notary = agent.signed.notary
-    if beacon.robot == agent.robot or not (message.certificate or notary.knows(beacon.robot)):
-        return []  # its certificate comes with its evidence
+    notary, gone = agent.signed.standing.notary, agent.signed.standing.gone
+    if beacon.robot in (agent.robot, *gone) or not (message.certificate or notary.knows(beacon.robot)):
+        return []  # nothing of it counts, or its certificate comes with its evidence
     try:
         if message.certificate:
             notary.admit(beacon.robot, message.certificate)
         notary.check(beacon.robot, message.signature, BEACON, message.beacon)
     except ValueError as error:
-        agent.signed.accuse(sender, f"a beacon of robot-{beacon.robot + 1} is not that robot's: {error}")
+        about = f"a beacon of robot-{beacon.robot + 1} is not that robot's: {error}"
+        agent.signed.standing.complaints[sender] = about
         return [Shun(sender)]
     if agent.mates.hear(beacon, now, sender, signed=True):
         agent.relay.hear(beacon.robot, told, sender, agent.rounds.tree.neighbours, now)

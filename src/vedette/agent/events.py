@@ -76,4 +76,11 @@ class TreeChanged:
     distance: int = 0  # to the root, in links or more
 
 
-Event: TypeAlias = Message | Pose | Scan | Sensed | Arrived | Stuck | JobDone | TreeChanged
+@dataclass(frozen=True)
+class Revoked:
+    """Whose certificates count no more, by a list that the team's authority has signed."""
+
+    robots: frozenset[int]
+
+
+Event: TypeAlias = Message | Pose | Scan | Sensed | Arrived | Stuck | JobDone | TreeChanged | Revoked

@@ -136,15 +136,6 @@ class Promising(Protocol[BeliefT_contra, ImpactT]):
         """Return an impact that is so many times half as likely."""
 
 
-@runtime_checkable
-class Complaining(Protocol):
-    """A mission that finds out who cannot be believed."""
-
-    @property
-    def complaints(self) -> dict[int, str]:
-        """What is wrong with whom, by robot."""
-
-
 class GroundMission(Mission[BeliefT, StrategyT, ImpactT], Protocol[BeliefT, StrategyT, ImpactT]):
     """A mission whose strategies are places to drive to, one after another."""
 

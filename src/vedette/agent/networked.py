@@ -9,15 +9,17 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from math import inf
 from typing import TypeAlias
 
 from vedette.agent.acquaintance import Acquaintance
 from vedette.agent.agent import step
 from vedette.agent.effects import Job, Motion, Send, Shun, TrafficKind
-from vedette.agent.events import Event, Message, TreeChanged
+from vedette.agent.events import Event, Message, Revoked, TreeChanged
 from vedette.agent.mates import MOST_MATES
 from vedette.agent.state import Agent
 from vedette.agent.terms import Terms, fingerprint_of
+from vedette.fusion.trust import APART
 from vedette.overlay import Overlay, Place, ReliableLink
 
 HELLO, PACKET, BEACON, TERMS = b"H", b"P", b"B", b"T"  # a datagram's first byte
@@ -76,7 +78,8 @@ class NetworkedAgent:
         agent.rounds.patience.tempo = tempo
         agent.rounds.admitted = agent.mates.admitted = admitted
         self.overlay = Overlay(agent.robot, agent.boot, now, lease, fingerprint_of(terms or {}))
-        self._acquaintance = Acquaintance(terms or {}, time_of_day)
+        far = inf if agent.signed is None else APART / 10.0 / tempo
+        self._acquaintance = Acquaintance(terms or {}, time_of_day, far)
         self.hold = False
         self.malformed = 0  # datagrams that did not make sense
         self.messages_sent: Counter[TrafficKind] = Counter()
@@ -120,10 +123,14 @@ class NetworkedAgent:
         return self.step((), now)
 
     def exclude(self, robots: Mapping[int, str], now: float) -> list[Output]:
-        """Have nothing to do with these robots from now on, whatever the transport reaches; and why."""
+        """Have nothing to do with robots whose certificates count no more, whatever the transport reaches.
+
+        ``robots``: what is wrong with each.
+        """
         for robot in robots.keys() - self._excluded.keys():
             self.overlay.lost(robot, now)
         self._excluded = dict(robots)
+        self._waiting.append(Revoked(frozenset(robots)))
         return self.peers(self._reached, now)
 
     def lost(self, robot: int, now: float) -> list[Output]:
@@ -162,7 +169,7 @@ class NetworkedAgent:
             effects += self._agree(happened, now)
         if len(self._waiting) > MOST_WAITING:
             old, self._waiting = self._waiting[:-MOST_WAITING], self._waiting[-MOST_WAITING:]
-            self._waiting[:0] = [event for event in old if isinstance(event, TreeChanged)]
+            self._waiting[:0] = [event for event in old if isinstance(event, TreeChanged | Revoked)]
         return effects + self._poll(now)
 
     def leave(self, now: float) -> list[Datagram]:

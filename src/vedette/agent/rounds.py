@@ -26,7 +26,7 @@ from vedette.agent.pace import Pace
 from vedette.agent.patience import TeamPatience
 from vedette.agent.promises import Suspicion
 from vedette.agent.round import Round, say, send_news
-from vedette.fusion.signed import signed_by
+from vedette.fusion.standing import signed_by
 from vedette.number import many
 
 CALL_AGAIN = 1.0  # a call not answered is repeated after so long [s]

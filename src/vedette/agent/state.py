@@ -16,11 +16,11 @@ from vedette.agent.body import Hull
 from vedette.agent.effects import Effect
 from vedette.agent.events import Arrived, Pose, Scan, Sensed, Stuck
 from vedette.agent.mates import Mates
-from vedette.agent.mission import Complaining, Mission
+from vedette.agent.mission import Mission
 from vedette.agent.pace import Pace
 from vedette.agent.relay import Relay
 from vedette.agent.rounds import Decision, Rounds
-from vedette.fusion.signed import SignedEvidence, signed_by
+from vedette.fusion.standing import Signed, signed_by
 from vedette.outcome import Outcome
 
 QUIET_ROUNDS = 2  # so many rounds in a row with nothing to gain for anybody end the mission
@@ -106,7 +106,7 @@ class Agent:
         self.rounds = Rounds(self.mission, self.scheme, self._decided, self.pace, forks=self.forks)
         self.rounds.anybody_moves = self.mates.anybody_moves
         if self.signed is not None:
-            self.rounds.auditor = Auditor(self.robot, self.boot, self.mission, self.signed.notary)
+            self.rounds.auditor = Auditor(self.robot, self.boot, self.mission, self.signed.standing)
 
     @property
     def mission(self) -> Mission[Any, Any, Any]:
@@ -114,7 +114,7 @@ class Agent:
         return self.behaviour.mission
 
     @property
-    def signed(self) -> SignedEvidence | None:
+    def signed(self) -> Signed | None:
         """The team's evidence, where it is signed."""
         return signed_by(self.mission.fusion)
 
@@ -122,9 +122,9 @@ class Agent:
     def complaints(self) -> dict[int, str]:
         """What is wrong with whom, by robot."""
         absent = dict.fromkeys(self.rounds.absent, "rounds go on without it: it does not answer")
-        mission = self.mission.complaints if isinstance(self.mission, Complaining) else {}
+        signed = {} if self.signed is None else self.signed.complaints
         caught = {} if self.rounds.auditor is None else self.rounds.auditor.caught
-        return absent | self.rounds.suspicion.complaints | mission | caught
+        return absent | self.rounds.suspicion.complaints | caught | signed
 
     @property
     def state(self) -> State:

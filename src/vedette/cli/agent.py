@@ -17,9 +17,11 @@ from msgspec.structs import replace
 
 from vedette.cli.options import FILE, Positive
 from vedette.errors import InputError, InputWarning, brief
+from vedette.fusion.standing import signed_by
 from vedette.interrupt import ENDINGS
 from vedette.net.config import AgentConfig, load_config
 from vedette.net.keeping import Keeper, folder_of_a_start
+from vedette.net.process import AgentProcess
 from vedette.net.start import agent_process
 from vedette.ros2.settings import Ros2Settings
 
@@ -74,8 +76,9 @@ def agent(
             signal.signal(number, lambda *_: process.stop())
     if starter is not None:
         threading.Thread(target=_outlive, args=(starter, process.stop), daemon=True).start()
-    if config.links.insecure:
-        _tell("vedette: links are plain TCP: whoever reaches the port can read and write", err=True)
+    unsigned = _unsigned(config, process)
+    if unsigned is not None:
+        _tell(f"vedette: {unsigned}", err=True)
     links = config.links
     _tell(
         f"robot {config.robot} of team {config.team}: listens on {', '.join(links.listen) or 'nothing'}, "
@@ -92,6 +95,15 @@ def agent(
 def _say(line: str) -> None:
     """Tell whoever watches the process."""
     _tell(f"vedette: {line}", err=True)
+
+
+def _unsigned(config: AgentConfig, process: AgentProcess) -> str | None:
+    """Return what nobody vouches for; None: robots sign what they see."""
+    if config.links.insecure:
+        return "links are plain TCP: whoever reaches the port can read and write, and nothing is signed"
+    if signed_by(process.node.agent.mission.fusion) is not None:
+        return None
+    return "this way of fusing sends sums of many robots, which nobody can sign: members can change them"
 
 
 def _tell(line: str, err: bool = False) -> None:

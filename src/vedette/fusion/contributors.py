@@ -50,6 +50,9 @@ class Sealing(Protocol[CopyT_contra, NewsT]):
     def with_certificate(self, robot: int, base: int, news: NewsT) -> NewsT:
         """Return news, with the certificate of who has made them for whoever holds nothing of that yet."""
 
+    def is_gone(self, robot: int) -> bool:
+        """Tell whether nobody needs to be told of a robot any more."""
+
     def admits(self, neighbour: int, key: Key, held: CopyT_contra, news: NewsT) -> bool:
         """Tell whether news that came over a link are the contributor's own; old news may be anything."""
 
@@ -97,12 +100,12 @@ class Contributors(Generic[CopyT, NewsT]):
 
     def tell(self, neighbour: int, now: float) -> Payload[NewsT] | None:
         """Return what the neighbour lacks, and what it waits to see acknowledged; None if nothing."""
+        held, told = self.known(), self.copies
         if self._sealing is not None:
             self._sealing.seal(self.key, self.own)
-        streams = ((key, copy.version, partial(self._since, key, copy)) for key, copy in self.copies.items())
-        held = self.known()
-        for key in () if self._sealing is None else self._sealing.doubted:
-            held.pop(key, None)
+            held = {key: version for key, version in held.items() if key not in self._sealing.doubted}
+            told = {key: copy for key, copy in told.items() if not self._sealing.is_gone(key[0])}
+        streams = ((key, copy.version, partial(self._since, key, copy)) for key, copy in told.items())
         return self._links[neighbour].tell(held, streams, now)
 
     def _since(self, key: Key, copy: CopyT, base: int) -> NewsT:

@@ -33,6 +33,10 @@ class SealedSnapshot(Snapshot[np.uint8]):
         self._tree = Merkle(tiling.count + 2)
         self._tried: tuple[Delta[np.uint8], bytes, Nodes] | None = None
 
+    def put_seal(self, seal: Seal) -> None:
+        """As the writer: sign the version that is held."""
+        self.seal = seal
+
     def put(
         self,
         tiles: NDArray[np.int64],

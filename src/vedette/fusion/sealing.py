@@ -2,56 +2,105 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field, replace
-
-import numpy as np
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
 from vedette.fusion.link import Key
-from vedette.fusion.sealed import SealedSnapshot
-from vedette.fusion.seals import EVIDENCE, Notary, Seal
-from vedette.fusion.snapshots import Delta
+from vedette.fusion.seals import Seal
+from vedette.fusion.standing import Standing
 
-Admit = Callable[[Delta[np.uint8], SealedSnapshot], None]
+
+class SealedNews(Protocol):
+    """What turns a version of somebody's evidence into a later one, and who vouches for it."""
+
+    @property
+    def base(self) -> int:
+        """The least version that it can be added to."""
+
+    @property
+    def version(self) -> int:
+        """The later version."""
+
+    @property
+    def seal(self) -> Seal:
+        """The contributor's word for the later version."""
+
+    @property
+    def certificate(self) -> bytes:
+        """The contributor's; empty for who has it."""
+
+    def certified(self, certificate: bytes) -> Any:
+        """Return the same with a certificate."""
+
+
+NewsT = TypeVar("NewsT", bound=SealedNews)
+NewsT_contra = TypeVar("NewsT_contra", bound=SealedNews, contravariant=True)
+
+
+class SealedCopy(Protocol[NewsT_contra]):
+    """One contributor's evidence as of a version that it has signed."""
+
+    root: bytes  # of all of it
+
+    @property
+    def version(self) -> int:
+        """The version."""
+
+    @property
+    def seal(self) -> Seal:
+        """The contributor's word for it; for the writer, of the time alone if it is not signed yet."""
+
+    def put_seal(self, seal: Seal) -> None:
+        """As the writer: sign what there is."""
+
+    def root_after(self, news: NewsT_contra) -> bytes:
+        """Return the root that there would be after news that connect; nothing changes."""
+
+
+CopyT = TypeVar("CopyT", bound=SealedCopy[Any])
 
 
 @dataclass
-class SnapshotSealing:
-    """``vedette.fusion.contributors.Sealing`` of maps."""
+class Sealings(ABC, Generic[CopyT, NewsT]):
+    """``vedette.fusion.contributors.Sealing`` of evidence of one kind."""
 
-    notary: Notary
-    admit: Admit  # ValueError for what the contributor cannot have seen
-    complaints: dict[int, str] = field(default_factory=dict)  # by robot: why its word was not taken
-    forgers: set[int] = field(default_factory=set)  # neighbours that pass on what they have changed
+    kind: ClassVar[str]  # under every signature
+
+    standing: Standing
     doubted: set[Key] = field(default_factory=set)  # contributors whose whole evidence has to come anew
     _certificates: dict[int, bytes] = field(default_factory=dict)  # by robot
     _sealed: int = 0  # version of this robot's own
 
-    def seal(self, key: Key, own: SealedSnapshot) -> None:
+    def seal(self, key: Key, own: CopyT) -> None:
         """Sign the root of what this robot has seen, if it has changed."""
         if own.version == self._sealed:
             return
         self._sealed, time = own.version, own.seal.time
-        signature = self.notary.sign(EVIDENCE, *key, own.version, time, own.root)
-        own.seal = Seal(time, own.root, signature)
-        self._certificates[key[0]] = self.notary.certificate
+        notary = self.standing.notary
+        own.put_seal(Seal(time, own.root, notary.sign(self.kind, *key, own.version, time, own.root)))
+        self._certificates[key[0]] = notary.certificate
 
-    def with_certificate(self, robot: int, base: int, news: Delta[np.uint8]) -> Delta[np.uint8]:
+    def with_certificate(self, robot: int, base: int, news: NewsT) -> NewsT:
         """Give the certificate to who holds nothing of this robot's yet."""
-        assert news.voucher is not None
-        certificate = b"" if base else self._certificates[robot]
-        return replace(news, voucher=news.voucher._replace(certificate=certificate))
+        certified: NewsT = news.certified(b"" if base else self._certificates[robot])
+        return certified
 
-    def admits(self, neighbour: int, key: Key, held: SealedSnapshot, news: Delta[np.uint8]) -> bool:
+    def is_gone(self, robot: int) -> bool:
+        """Tell whether nothing of a robot counts any more, so that nobody needs to be told of it."""
+        return robot in self.standing.gone
+
+    def admits(self, neighbour: int, key: Key, held: CopyT, news: NewsT) -> bool:
         """Check who has signed the news, and that they can be so; else say whose fault it is."""
         if not news.base <= held.version < news.version:
             return True
-        assert news.voucher is not None
-        robot, certificate, seal = key[0], news.voucher.certificate, news.voucher.seal
+        robot, certificate, seal, notary = key[0], news.certificate, news.seal, self.standing.notary
+        if self.is_gone(robot):
+            return False
         try:
             if certificate:
-                self.notary.admit(robot, certificate)
-            self.notary.check(robot, seal.signature, EVIDENCE, *key, news.version, seal.time, seal.root)
+                notary.admit(robot, certificate)
+            notary.check(robot, seal.signature, self.kind, *key, news.version, seal.time, seal.root)
         except ValueError as error:
             return self._refuse(neighbour, robot, f"{error}")
         if held.root_after(news) != seal.root:
@@ -63,12 +112,18 @@ class SnapshotSealing:
         try:
             self.admit(news, held)
         except ValueError as error:
-            self.complaints[robot] = f"its evidence is refused: {error}"
+            self.standing.complaints[robot] = f"its evidence is refused: {error}"
             return False
         return True
 
+    @abstractmethod
+    def admit(self, news: NewsT, held: CopyT) -> None:
+        """Raise ValueError for what the contributor cannot have seen."""
+
     def _refuse(self, neighbour: int, robot: int, why: str) -> bool:
         """Note that a neighbour passes on what it has changed: nobody honest does so without checking it."""
-        self.forgers.add(neighbour)
-        self.complaints[neighbour] = f"what it passes on of robot-{robot + 1} is not that robot's: {why}"
+        self.standing.forgers.add(neighbour)
+        self.standing.complaints[neighbour] = (
+            f"what it passes on of robot-{robot + 1} is not that robot's: {why}"
+        )
         return False

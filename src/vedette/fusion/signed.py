@@ -11,21 +11,43 @@ from numpy.typing import NDArray
 from vedette.fusion import particulars as wire
 from vedette.fusion.codec import EvidenceCodec
 from vedette.fusion.contributors import Contributors
-from vedette.fusion.digest import fingerprint
 from vedette.fusion.link import RESEND_AFTER, Key
 from vedette.fusion.packing import CodePacking
 from vedette.fusion.particulars import Capabilities, Note, Particulars
 from vedette.fusion.replicated import summed
 from vedette.fusion.replicated_map import ReplicatedMap
 from vedette.fusion.sealed import SealedSnapshot
-from vedette.fusion.sealing import SnapshotSealing
-from vedette.fusion.seals import Notary
+from vedette.fusion.sealing import Sealings
+from vedette.fusion.seals import EVIDENCE, Notary
 from vedette.fusion.snapshots import NONE, Change, Delta, tiles_to_publish
+from vedette.fusion.standing import Standing, print_of
 from vedette.fusion.tiles import classes_of, codes_of
 from vedette.fusion.trust import STANDS, Comparison, Trust
 from vedette.kernels.tiles import TiledGrid, Tiling
 
 FIRM_AFTER, RESTATES = 10, 20  # [0.1 s]
+
+
+class MapSealings(Sealings[SealedSnapshot, Delta[np.uint8]]):
+    """Of maps: a robot cannot have seen what is farther than it can have driven."""
+
+    kind = EVIDENCE
+
+    def __init__(self, standing: Standing, tiling: Tiling, limits: Capabilities) -> None:
+        super().__init__(standing)
+        self._tiling, self._limits = tiling, limits
+
+    def admit(self, news: Delta[np.uint8], held: SealedSnapshot) -> None:
+        """Raise ValueError for what its contributor cannot have seen."""
+        assert news.voucher is not None
+        told = news.voucher.particulars
+        now = wire.decode(held.particulars if told is None else told)
+        if held.particulars:
+            then = wire.decode(held.particulars)
+            if (now.row, now.col, now.began) != (then.row, then.col, then.began):
+                raise ValueError("it has set out from two places")
+        self._limits.check_visits(now)
+        self._limits.check(self._tiling, news.tiles, now, news.voucher.seal.time)
 
 
 class SignedEvidence(ReplicatedMap[SealedSnapshot]):
@@ -50,7 +72,8 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
     ) -> None:
         """Start with nothing known; ``boot < 2**38`` must differ from those of the robot's earlier starts."""
         tiling = Tiling(*shape)
-        sealing = SnapshotSealing(notary, self._admit)
+        standing = Standing(notary)
+        sealing = MapSealings(standing, tiling, limits)
         contributors: Contributors[SealedSnapshot, Delta[np.uint8]] = Contributors(
             robot, boot, lambda: SealedSnapshot(tiling, counts_size), resend_after, sealing
         )
@@ -58,32 +81,30 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
         super().__init__(tiling, counts_size, mark, codec, contributors)
         self.out: frozenset[int] = frozenset()  # robots that are not believed
         self.unsettled = False  # time alone may change who is believed
-        self.notary = notary
-        self._limits, self._trust = limits, Trust(tiling, limits.resolution)
-        self._sealing = sealing
+        self.standing = standing
+        self._trust = Trust(tiling, limits.resolution)
         self._again: dict[int, int] = {}  # tiles to look at again, since evidence grows firm: when [0.1 s]
         self._told: Particulars | None = None  # by this robot
 
     @property
+    def signed(self) -> SignedEvidence:
+        """Itself."""
+        return self
+
+    @property
     def digest(self) -> int:
         """64 bits, equal (up to 2^-64) for two robots iff what they show, and whom they believe, is equal."""
-        out = repr(sorted(self.out)).encode() if self.out else b""
-        return super().digest ^ (fingerprint(out, self._tiling.count + 1) if out else 0)
+        return super().digest ^ print_of(self.out, self._tiling.count + 1)
 
     @property
     def complaints(self) -> dict[int, str]:
         """What is wrong with whom, by robot."""
         alone = "its evidence contradicts that of two others or more: the map and the plans leave it out"
-        return self._sealing.complaints | dict.fromkeys(self.out, alone)
+        return dict.fromkeys(self.out, alone) | self.standing.said
 
-    @property
-    def forgers(self) -> set[int]:
-        """Neighbours that pass on what they have changed; whoever reads it may empty it."""
-        return self._sealing.forgers
-
-    def accuse(self, robot: int, of: str) -> None:
-        """Note that a neighbour has passed on what it has changed."""
-        self._sealing.complaints[robot] = of
+    def heed(self) -> None:
+        """Take up that somebody has gone."""
+        self._merge({})
 
     def contradictions(self, now: int) -> dict[tuple[int, int], Comparison]:
         """Return how far pairs of robots contradict each other, of what stands at a time [0.1 s]."""
@@ -93,13 +114,13 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
     def set_out(self, row: int, col: int) -> None:
         """Note the cell at which this robot starts; the first one stands."""
         if self._told is None:
-            self._told = Particulars(row, col, self.notary.now())
+            self._told = Particulars(row, col, self.standing.notary.now())
 
     def tell(self, notes: Iterable[tuple[int, int, int]]) -> None:
         """Put these notes, x, y [cm] and a number, in the place of this robot's earlier ones."""
         if self._told is not None:
             since = {(x, y, number): when for x, y, number, when in self._told.notes}
-            dated = [(*note, since.get(note, self.notary.now())) for note in notes]
+            dated = [(*note, since.get(note, self.standing.notary.now())) for note in notes]
             self._told = structs.replace(self._told, notes=tuple(dated[: wire.MOST_NOTES]))
 
     def publish(
@@ -111,7 +132,7 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
         believe, the time is told even if there is nothing new. Returns the tiles in which the team map
         changed.
         """
-        published, now = self._contributors.own, self.notary.now()
+        published, now = self._contributors.own, self.standing.notary.now()
         fresh = tiles_to_publish(own, changed, published)
         firmer = [tile for tile, due in self._again.items() if due <= now]
         tiles = np.union1d(fresh, np.array(firmer, np.int64))
@@ -158,22 +179,6 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
         # nobody alone makes it late: the time that two robots have told, at least
         now = sorted(said.values())[-2] if len(said) > 1 else 0
         times = {key: copy.times for key, copy in copies.items()}
-        self.out = self._trust.out(times, now)
-        self.unsettled = self.out != self._trust.out(times, now + STANDS)
-
-    def _admit(self, news: Delta[np.uint8], held: SealedSnapshot) -> None:
-        """Raise ValueError for what its contributor cannot have seen."""
-        assert news.voucher is not None
-        told = news.voucher.particulars
-        now = wire.decode(held.particulars if told is None else told)
-        if held.particulars:
-            then = wire.decode(held.particulars)
-            if (now.row, now.col, now.began) != (then.row, then.col, then.began):
-                raise ValueError("it has set out from two places")
-        self._limits.check_visits(now)
-        self._limits.check(self._tiling, news.tiles, now, news.voucher.seal.time)
-
-
-def signed_by(fusion: object) -> SignedEvidence | None:
-    """Return a way of fusing as one whose evidence is signed, if it is."""
-    return fusion if isinstance(fusion, SignedEvidence) else None
+        gone = frozenset(self.standing.gone)
+        self.out = gone | self._trust.out(times, now, gone)
+        self.unsettled = self.out != gone | self._trust.out(times, now + STANDS, gone)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
@@ -46,6 +46,23 @@ class Delta(Generic[ValueT]):
     def size(self) -> int:
         """Bytes, about: half of one a cell."""
         return len(self.tiles) * CELLS // 2
+
+    @property
+    def seal(self) -> Seal:
+        """The writer's word for it, where evidence is signed."""
+        assert self.voucher is not None
+        return self.voucher.seal
+
+    @property
+    def certificate(self) -> bytes:
+        """The writer's; empty for who has it."""
+        assert self.voucher is not None
+        return self.voucher.certificate
+
+    def certified(self, certificate: bytes) -> Delta[ValueT]:
+        """Return the same with a certificate."""
+        assert self.voucher is not None
+        return replace(self, voucher=self.voucher._replace(certificate=certificate))
 
 
 @dataclass(frozen=True, eq=False)

@@ -132,10 +132,11 @@ class Trust:
             pairs[robots] = Comparison.total([*valid, pairs.get(robots, Comparison(0, 0, 0))])
         return pairs
 
-    def out(self, times: TimesOf, now: int) -> frozenset[int]:
-        """Return the robots that are not believed."""
+    def out(self, times: TimesOf, now: int, gone: frozenset[int] = frozenset()) -> frozenset[int]:
+        """Return the robots that are not believed; ``gone``: who counts as no accuser, for other reasons."""
         found = self.contradictions(times, now)
-        return liars({pair: t.against for pair, t in found.items() if self.is_firm(t)})
+        firm = {pair: t.against for pair, t in found.items() if self.is_firm(t)}
+        return liars({pair: cells for pair, cells in firm.items() if gone.isdisjoint(pair)})
 
     def is_firm(self, tally: Comparison) -> bool:
         """Tell whether two robots cannot both be right: of what either says much is so to nobody else."""

@@ -43,7 +43,7 @@ class CertifiedNotary:
         Args:
             credentials: of the robot.
             mission: in everything that is signed, so that it is good for no other.
-            clock: time of day, as fast as the mission goes [s].
+            clock: time of day, as fast as the mission goes; it never goes back [s].
 
         Raises:
             InputError: the files cannot be read.
@@ -122,4 +122,5 @@ def notary_of(config: AgentConfig, folder: Path, terms: Terms, speed: float) -> 
     if config.links.keys is None:
         return None
     own = credentials(folder / config.links.keys, datetime.now(UTC))
-    return CertifiedNotary(own, f"{fingerprint_of(terms):x}", lambda: speed * time.time())
+    begun, at = time.time(), time.monotonic()  # a clock that is set meanwhile goes on here as it was
+    return CertifiedNotary(own, f"{fingerprint_of(terms):x}", lambda: speed * (begun + time.monotonic() - at))

@@ -27,7 +27,7 @@ from vedette.domains.mapping.sightings import BINS
 from vedette.domains.mapping.stops import NEARBY, VIEW_REACH, Disc, around
 from vedette.domains.mapping.views import MOST_STOPS
 from vedette.fusion import Fusion
-from vedette.fusion.signed import SignedEvidence, signed_by
+from vedette.fusion.signed import SignedEvidence
 from vedette.maps import UNKNOWN, GridFrame
 from vedette.maps.bounds import Extent
 from vedette.maps.lattice import Lattice
@@ -93,12 +93,7 @@ class Exploring:
     @property
     def signed(self) -> SignedEvidence | None:
         """The team's evidence, where it is signed."""
-        return signed_by(self.fusion)
-
-    @property
-    def complaints(self) -> dict[int, str]:
-        """Who cannot be believed, by what all have signed."""
-        return {} if self.signed is None else self.signed.complaints
+        return self.fusion if isinstance(self.fusion, SignedEvidence) else None
 
     # -- evidence -----------------------------------------------------------------------------------
 

@@ -1,0 +1,65 @@
+"""Whose word counts, and whose does not any more: of evidence of any kind, beacons and accounts alike."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from vedette.fusion.digest import fingerprint
+from vedette.fusion.seals import Notary
+
+REVOKED = "its certificate has been revoked: the belief and the plans leave out all that it has signed"
+
+
+@dataclass
+class Standing:
+    """What one robot knows of the others' words: one for all that it hears."""
+
+    notary: Notary
+    complaints: dict[int, str] = field(default_factory=dict)  # by robot: why its word was not taken
+    forgers: set[int] = field(default_factory=set)  # neighbours that pass on what they have changed
+    gone: dict[int, str] = field(default_factory=dict)  # robots of whom nothing counts any more, and why
+
+    @property
+    def said(self) -> dict[int, str]:
+        """What is wrong with whom, by robot."""
+        return self.complaints | self.gone
+
+    def revoke(self, robots: frozenset[int]) -> bool:
+        """Let nothing count that these robots have signed; tell whether that is news.
+
+        Not even what they had signed before: whoever has stolen a key can date what it signs as it likes.
+        """
+        news = robots - self.gone.keys()
+        self.gone |= dict.fromkeys(news, REVOKED)
+        return bool(news)
+
+
+class Signed(Protocol):
+    """Evidence that is signed, of any kind, as agents ask of it."""
+
+    @property
+    def standing(self) -> Standing:
+        """Whose word counts."""
+
+    @property
+    def out(self) -> frozenset[int]:
+        """Robots whose evidence is held, and not believed."""
+
+    @property
+    def complaints(self) -> dict[int, str]:
+        """What is wrong with whom, by robot."""
+
+    def heed(self) -> None:
+        """Take up that somebody has gone."""
+
+
+def signed_by(fusion: object) -> Signed | None:
+    """Return a way of fusing as one whose evidence is signed, if it is."""
+    found: Signed | None = getattr(fusion, "signed", None)
+    return found
+
+
+def print_of(out: frozenset[int], part: int) -> int:
+    """Return what the robots that are not believed add to a digest, as its part of this number."""
+    return fingerprint(repr(sorted(out)).encode(), part) if out else 0
