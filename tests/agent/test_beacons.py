@@ -9,7 +9,7 @@ from tests.support.agent_team import FRAME, toy_agent
 from tests.support.notaries import certified
 from vedette.agent import Agent, beacons, messages, step
 from vedette.agent.effects import Send, Shun, TrafficKind
-from vedette.agent.events import Pose, Revoked, TreeChanged
+from vedette.agent.events import CertificatesRevoked, Pose, TreeChanged
 from vedette.agent.messages import Beacon, Vouched
 from vedette.fusion.particulars import Capabilities
 from vedette.fusion.signed import SignedEvidence
@@ -109,7 +109,7 @@ def test_one_beacon_in_four_is_signed_and_a_lie_between_does_not_hide_the_next(
 
 def test_nobody_believes_a_beacon_of_a_robot_that_is_revoked(chain: tuple[Agent, Agent, Agent]) -> None:
     maker, _, hearer = chain
-    step(hearer, [Revoked(frozenset({0}))], 0.5)
+    step(hearer, [CertificatesRevoked(frozenset({0}))], 0.5)
     assert beacons.hear(hearer, 1, told(maker, 3.0), 1.0) == []
     assert place(hearer, 0) is None
     assert set(hearer.complaints) == {0}

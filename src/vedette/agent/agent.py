@@ -13,11 +13,11 @@ from vedette.agent import beacons, messages
 from vedette.agent.effects import Effect, Send, Shun, TrafficKind
 from vedette.agent.events import (
     Arrived,
+    CertificatesRevoked,
     Event,
     JobDone,
     Message,
     Pose,
-    Revoked,
     Scan,
     Sensed,
     Stuck,
@@ -58,7 +58,7 @@ def _take(agent: Agent, event: Event, now: float) -> list[Effect]:
                 agent.quiet = 0  # who is new may know of something left to do
             agent.rounds.join(event, now)
             agent.mission.fusion.set_neighbours(event.neighbours)
-        case Revoked(robots) if agent.signed is not None and agent.signed.standing.revoke(robots):
+        case CertificatesRevoked(robots) if agent.signed is not None and agent.signed.standing.revoke(robots):
             agent.signed.heed()
     return []
 

@@ -77,10 +77,12 @@ class TreeChanged:
 
 
 @dataclass(frozen=True)
-class Revoked:
+class CertificatesRevoked:
     """Whose certificates count no more, by a list that the team's authority has signed."""
 
     robots: frozenset[int]
 
 
-Event: TypeAlias = Message | Pose | Scan | Sensed | Arrived | Stuck | JobDone | TreeChanged | Revoked
+Event: TypeAlias = (
+    Message | Pose | Scan | Sensed | Arrived | Stuck | JobDone | TreeChanged | CertificatesRevoked
+)

@@ -15,7 +15,7 @@ from typing import TypeAlias
 from vedette.agent.acquaintance import Acquaintance
 from vedette.agent.agent import step
 from vedette.agent.effects import Job, Motion, Send, Shun, TrafficKind
-from vedette.agent.events import Event, Message, Revoked, TreeChanged
+from vedette.agent.events import CertificatesRevoked, Event, Message, TreeChanged
 from vedette.agent.mates import MOST_MATES
 from vedette.agent.state import Agent
 from vedette.agent.terms import Terms, fingerprint_of
@@ -130,7 +130,7 @@ class NetworkedAgent:
         for robot in robots.keys() - self._excluded.keys():
             self.overlay.lost(robot, now)
         self._excluded = dict(robots)
-        self._waiting.append(Revoked(frozenset(robots)))
+        self._waiting.append(CertificatesRevoked(frozenset(robots)))
         return self.peers(self._reached, now)
 
     def lost(self, robot: int, now: float) -> list[Output]:
@@ -169,7 +169,9 @@ class NetworkedAgent:
             effects += self._agree(happened, now)
         if len(self._waiting) > MOST_WAITING:
             old, self._waiting = self._waiting[:-MOST_WAITING], self._waiting[-MOST_WAITING:]
-            self._waiting[:0] = [event for event in old if isinstance(event, TreeChanged | Revoked)]
+            self._waiting[:0] = [
+                event for event in old if isinstance(event, TreeChanged | CertificatesRevoked)
+            ]
         return effects + self._poll(now)
 
     def leave(self, now: float) -> list[Datagram]:
