@@ -9,20 +9,34 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.notaries import PlainNotary
 from tests.support.step_network import StepNetwork, chain, random_tree, ring
 from vedette.errors import InputError
-from vedette.fusion.steps import FixedPoint, Refilter, ReplicatedSteps, Sparse, SparseIntegers, StepSums
+from vedette.fusion.steps import (
+    FixedPoint,
+    Refilter,
+    ReplicatedSteps,
+    SignedSteps,
+    Sparse,
+    SparseIntegers,
+    StepSums,
+)
 
 SIZE = 40
 ELEMENTS = SparseIntegers(SIZE)
 WINDOW = 1000  # no step is closed unless a test says so
 Replicated = ReplicatedSteps[Sparse]
 Sums = StepSums[Sparse]
-Evidence = Replicated | Sums
+Signed = SignedSteps[Sparse]
+Evidence = Replicated | Signed | Sums
 
 
 def replicated(robot: int, boot: int = 5) -> Replicated:
     return ReplicatedSteps(robot, boot, ELEMENTS)
+
+
+def signed(robot: int, boot: int = 5) -> Signed:
+    return SignedSteps(robot, boot, ELEMENTS, notary=PlainNotary(robot, lambda: 100.0))
 
 
 def sums(robot: int, boot: int = 5, window: int = WINDOW) -> Sums:
@@ -90,7 +104,7 @@ def test_fixed_point_is_off_by_half_a_unit_and_sums_of_it_do_not_depend_on_the_o
 
 
 @pytest.mark.parametrize("seed", range(4))
-@pytest.mark.parametrize("make", [replicated, sums])
+@pytest.mark.parametrize("make", [replicated, signed, sums])
 def test_on_trees_with_bad_links_totals_equal_brute_force(make: Callable[[int], Evidence], seed: int) -> None:
     rng = np.random.default_rng(seed)
     n = int(rng.integers(2, 8))
@@ -151,7 +165,7 @@ def test_sums_are_exact_again_after_any_changes_of_the_tree(seed: int) -> None:
     assert net.is_quiet()
 
 
-@pytest.mark.parametrize("make", [replicated, sums])
+@pytest.mark.parametrize("make", [replicated, signed, sums])
 def test_one_round_without_loss_gives_everybody_everything(make: Callable[[int], Evidence]) -> None:
     rng = np.random.default_rng(1)
     net = StepNetwork(make, 9, random_tree(9, rng), rng)
@@ -328,7 +342,7 @@ def test_malformed_payloads_raise_value_error_and_change_nothing(data: bytes, wa
         assert robot.digest == digest
 
 
-@pytest.mark.parametrize("make", [replicated, sums])
+@pytest.mark.parametrize("make", [replicated, signed, sums])
 def test_damaged_payloads_do_no_more_than_raise_value_error(make: Callable[[int], Evidence]) -> None:
     rng = np.random.default_rng(5)
     a, b = make(0), make(1)

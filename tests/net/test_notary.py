@@ -19,8 +19,9 @@ def notary(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> CertifiedNotary:
     monkeypatch.setattr(time, "time", lambda: 1_000_000.0)
     monkeypatch.setattr(time, "monotonic", lambda: 50.0)
     config = AgentConfig(TEAM, 1, links=LinkSettings(keys="keys/robot-1"))
-    made = notary_of(config, tmp_path, {}, 2.0)
+    made, terms = notary_of(config, tmp_path, {}, 2.0)
     assert made is not None
+    assert terms == {"signatures": "P-256"}
     return made
 
 
@@ -36,4 +37,4 @@ def test_a_clock_that_is_set_back_meanwhile_takes_back_nothing_that_was_signed(
 
 
 def test_robots_without_keys_have_no_notary(tmp_path: Path) -> None:
-    assert notary_of(AgentConfig(TEAM, 1), tmp_path, {}, 1.0) is None
+    assert notary_of(AgentConfig(TEAM, 1), tmp_path, {}, 1.0) == (None, {"signatures": "none"})

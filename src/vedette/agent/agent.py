@@ -110,6 +110,10 @@ def _hear(agent: Agent, sender: int, payload: bytes, now: float) -> list[Effect]
             return agent.rounds.auditor.ask(sender, message, agent.rounds.tree.neighbours, now)
         case messages.Account() if agent.rounds.auditor is not None:
             return agent.rounds.auditor.hear(sender, message, agent.rounds.tree.neighbours)
+        case messages.Proof() if agent.proofs is not None:
+            return agent.proofs.hear(sender, message, agent.rounds.tree.neighbours)
+        case messages.Proven() if agent.proofs is not None:
+            return agent.proofs.hear_proven(sender, message)
     return []
 
 
@@ -126,6 +130,8 @@ def _go_on(agent: Agent, pose: Pose, now: float) -> list[Effect]:
     agent.awake = agent.behaviour.wake(agent, pose, now)
     takes_part = (agent.awake and not agent.finished) or agent.rounds.busy
     effects = agent.rounds.tick(now) if takes_part else []
+    if agent.proofs is not None:
+        effects += agent.proofs.tick(agent.rounds.tree.neighbours, now)
     news, agent.news = agent.news, False
     effects += agent.behaviour.follow(agent, pose, now, news)
     belief = agent.rounds.frozen

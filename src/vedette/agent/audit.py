@@ -14,10 +14,12 @@ from typing import Any
 import numpy as np
 from msgspec import structs
 
+from vedette.agent.account import Claimed, Stamp, account_of, check, contradicts, words_of
 from vedette.agent.effects import Effect, Send, TrafficKind
 from vedette.agent.messages import Account, Audit, encode
 from vedette.agent.mission import Mission, Promising
-from vedette.agent.promises import LEAST, Suspicion
+from vedette.agent.promises import LEAST, Suspicion, weighed
+from vedette.fusion.contradictions import Accounted, Twice, Word
 from vedette.fusion.standing import Standing
 
 EVERY = 5.0  # audits are at least so far apart [s]
@@ -25,20 +27,6 @@ WANTED = 60.0  # and go on for so long after the last cause [s]
 WAITS = 1.0  # for the accounts of those that can give one [s]
 LEFT_OUT = 60.0  # who is caught is planned without for so long, twice as long each time [s]
 MOST_AWAY = 8  # rounds that an account may be older than the last
-ACCOUNT = "account"
-
-Stamp = tuple[int, int]  # epoch and sequence of a round
-
-
-@dataclass(frozen=True, eq=False)
-class Claimed:
-    """What was claimed in the last round that this robot has decided."""
-
-    stamp: Stamp
-    belief: Any
-    own: Any  # impact
-    told: Mapping[int, Any]  # the sum that came over each link
-    halvings: Mapping[int, int]  # by so many halves each of them counted less
 
 
 @dataclass
@@ -81,26 +69,30 @@ class Auditor:
         stamp = audit.epoch, audit.sequence
         if self._claimed is None or self._claimed.stamp != stamp or stamp in self._answered:
             return []
-        self._answered = {stamp}
+        self._answered.add(
+            stamp
+        )  # for good: of two accounts of one round, whoever has both could prove a lie
         self._asked, self._due = now, (stamp, now + WAITS)
         others = [k for k in neighbours if k != sender]
         return [*_to(others, audit), *self.hear(self.robot, self._own_account(self._claimed), neighbours)]
 
     def _own_account(self, claimed: Claimed) -> Account:
-        impact = self.mission.codec.encode(claimed.own)
-        links = tuple(sorted(claimed.halvings.items()))
-        account = Account(self.robot, self.boot, *claimed.stamp, impact, links)
-        return structs.replace(account, signature=self.standing.notary.sign(ACCOUNT, encode(account)))
+        account = account_of(claimed, self.mission, self.robot, self.boot)
+        return structs.replace(account, signature=self.standing.notary.sign(*words_of(account)))
 
     def hear(self, sender: int, account: Account, neighbours: tuple[int, ...]) -> list[Effect]:
         """Keep an account and hand it on; ValueError if it is not by whom it says."""
         stamp = account.epoch, account.sequence
         held = self._accounts.get(stamp, {})
-        if self._claimed is None or stamp != self._claimed.stamp or account.robot in held:
+        known = held.get(account.robot)
+        if self._claimed is None or stamp != self._claimed.stamp or account == known:
             return []
         if account.robot != self.robot:
-            unsigned = encode(structs.replace(account, signature=b""))
-            self.standing.notary.check(account.robot, account.signature, ACCOUNT, unsigned)
+            check(account, self.standing.notary)
+        if known is not None:
+            words = (Word(words_of(each), each.signature) for each in (known, account))
+            self.standing.catch(account.robot, Twice(*words))
+            return []
         self._accounts = {stamp: held | {account.robot: account}}
         return _to([k for k in neighbours if k != sender], account)
 
@@ -121,11 +113,22 @@ class Auditor:
                 self.mission.admit(claimed.belief, impacts[robot], 1)
             except ValueError as error:
                 self._catch(robot, f"what it has signed cannot be: {error}", now)
+                continue
+            self._check_sums(account)
         others = {robot: impact for robot, impact in impacts.items() if robot != self.robot}
         for robot in self._promises.note(self.mission, claimed.belief, others, now):
             self._catch(robot, "less than half of what it has signed to see comes true", now)
-        for link, told in claimed.told.items():
+        for link, told in claimed.heard.items():
             self._compare(link, told, claimed, accounts, impacts, now)
+
+    def _check_sums(self, account: Account) -> None:
+        """Find out whether somebody has told another sum than that of what it says to have added up."""
+        try:
+            is_false = contradicts(account, self.mission)
+        except ValueError:
+            return  # what came over a link is none: its own fault, or that of who is there
+        if is_false:
+            self.standing.catch(account.robot, Accounted(encode(account)))
 
     def _compare(
         self,
@@ -176,17 +179,14 @@ class _Part:
         if robot not in self.impacts or away > len(self.accounts):
             return None
         total = self.impacts[robot]
-        for k, halvings in self.accounts[robot].links:
+        for k, halvings, _ in self.accounts[robot].links:
             if k == towards:
                 continue
             more = self.sum(k, robot, away + 1)
             if more is None:
                 return None
-            total = self.mission.objective.combine(total, self._weighed(more, halvings))
+            total = self.mission.objective.combine(total, weighed(self.mission, more, halvings))
         return total
-
-    def _weighed(self, impact: Any, halvings: int) -> Any:
-        return impact if halvings == 0 else self.mission.discounted(impact, halvings)  # type: ignore[attr-defined]
 
 
 def _to(neighbours: list[int], message: Audit | Account) -> list[Effect]:

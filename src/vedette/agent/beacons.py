@@ -11,10 +11,10 @@ from vedette.agent.effects import Effect, Shun
 from vedette.agent.events import Pose
 from vedette.agent.messages import Beacon, Vouched
 from vedette.agent.state import Agent
+from vedette.fusion.seals import BEACON
 
 SIGNED = 4  # one beacon in so many is signed, and all of the first ones, where there are keys
 INTRODUCES = 8  # the first ones bring the certificate
-BEACON = "beacon"
 
 
 def tell(agent: Agent, pose: Pose) -> bytes:

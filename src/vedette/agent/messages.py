@@ -102,6 +102,12 @@ class Audit(msgspec.Struct, frozen=True, array_like=True, tag=8):
     sequence: Count
 
 
+Heard = tuple[Robot, Halvings, bytes]  # the sum that came over a link, and how much it counted
+PRINT_BYTES = 16
+Print = Annotated[bytes, Meta(min_length=PRINT_BYTES, max_length=PRINT_BYTES)]
+Told = tuple[Robot, Print]  # a fingerprint of the sum of all else, as it went over a link
+
+
 class Account(msgspec.Struct, frozen=True, array_like=True, tag=9):
     """What one robot has claimed in a round; passed on to everybody."""
 
@@ -110,7 +116,8 @@ class Account(msgspec.Struct, frozen=True, array_like=True, tag=9):
     epoch: Count
     sequence: Count
     impact: bytes
-    links: Annotated[tuple[tuple[Robot, Halvings], ...], Meta(max_length=MOST_ROBOTS)]  # that it added up
+    links: Annotated[tuple[Heard, ...], Meta(max_length=MOST_ROBOTS)]  # what it added up
+    told: Annotated[tuple[Told, ...], Meta(max_length=MOST_ROBOTS)]  # sums of that, where it told them last
     signature: bytes = b""  # under the same without it
 
 
@@ -122,12 +129,39 @@ class Vouched(msgspec.Struct, frozen=True, array_like=True, tag=10):
     certificate: bytes = b""  # in a robot's first ones; later it has come with the evidence
 
 
+class Proof(msgspec.Struct, frozen=True, array_like=True, tag=11):
+    """What a robot has signed that cannot both be so; passed on to everybody."""
+
+    robot: Robot
+    certificate: bytes  # the robot's
+    data: bytes
+
+
+class Proven(msgspec.Struct, frozen=True, array_like=True, tag=12):
+    """Of whom the sender has proofs."""
+
+    robots: Annotated[tuple[Robot, ...], Meta(max_length=MOST_ROBOTS)]
+
+
 Wire: TypeAlias = (
-    Beacon | Beacons | Evidence | Call | Begin | Flushed | Freeze | Negotiate | Audit | Account | Vouched
+    Beacon
+    | Beacons
+    | Evidence
+    | Call
+    | Begin
+    | Flushed
+    | Freeze
+    | Negotiate
+    | Audit
+    | Account
+    | Vouched
+    | Proof
+    | Proven
 )
 
 _DECODER: msgspec.msgpack.Decoder[Wire] = msgspec.msgpack.Decoder(Wire)
 _BEACON_DECODER: msgspec.msgpack.Decoder[Beacon] = msgspec.msgpack.Decoder(Beacon)
+_ACCOUNT_DECODER: msgspec.msgpack.Decoder[Account] = msgspec.msgpack.Decoder(Account)
 _TOLD_DECODER: msgspec.msgpack.Decoder[Beacon | Vouched] = msgspec.msgpack.Decoder(Beacon | Vouched)
 encode = msgspec.msgpack.Encoder().encode
 
@@ -139,6 +173,15 @@ def decode_beacon(payload: bytes) -> Beacon:
         ValueError: malformed.
     """
     return wire.decode(_BEACON_DECODER, payload, "beacon")
+
+
+def decode_account(payload: bytes) -> Account:
+    """Return an account.
+
+    Raises:
+        ValueError: malformed.
+    """
+    return wire.decode(_ACCOUNT_DECODER, payload, "account")
 
 
 def decode_told(payload: bytes) -> Beacon | Vouched:

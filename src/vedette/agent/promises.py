@@ -80,6 +80,13 @@ class Promises:
         self._cells, self._first, self._due = self._cells[:0], self._first[:0], self._due[:0]
 
 
+def weighed(mission: Mission[Any, Any, Any], impact: Any, halvings: int) -> Any:
+    """Return an impact as much as it counts, so many times half of what it claims."""
+    if halvings == 0 or not isinstance(mission, Promising):
+        return impact
+    return mission.discounted(impact, halvings)
+
+
 @dataclass
 class Suspicion:
     """A robot's neighbours, by what comes over their links."""
@@ -88,10 +95,7 @@ class Suspicion:
 
     def weigh(self, mission: Mission[Any, Any, Any], neighbour: int, impact: Any) -> Any:
         """Return what a neighbour's claim counts for."""
-        halvings = self.halvings(neighbour)
-        if halvings == 0 or not isinstance(mission, Promising):
-            return impact
-        return mission.discounted(impact, halvings)
+        return weighed(mission, impact, self.halvings(neighbour))
 
     def halvings(self, neighbour: int) -> int:
         """Return how many times a neighbour's claims have lost half of their weight."""

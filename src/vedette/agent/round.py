@@ -82,6 +82,7 @@ class Round:
     claimed: dict[int, Any] = field(
         default_factory=dict
     )  # the last impact from each neighbour, as it was told
+    told: dict[int, Any] = field(default_factory=dict)  # the last impact to each neighbour
     early: list[tuple[int, Negotiate]] = field(default_factory=list)  # came before this robot was ready
 
     def __post_init__(self) -> None:
@@ -245,6 +246,9 @@ class Round:
 
     def _replies(self, replies: Sequence[Reply[Any]]) -> list[Effect]:
         epoch, codec = self.tree.epoch, self.mission.codec
+        for reply in replies:
+            if (impact := getattr(reply.message, "mu", None)) is not None:
+                self.told[reply.to] = impact
         return [
             say(reply.to, Negotiate(epoch, self.sequence, messages.encode(reply.message, codec)))
             for reply in replies

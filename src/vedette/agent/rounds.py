@@ -14,8 +14,9 @@ from functools import partial
 from math import inf
 from typing import Any
 
+from vedette.agent.account import Claimed
 from vedette.agent.attendance import Attendance, Upwards
-from vedette.agent.audit import Auditor, Claimed
+from vedette.agent.audit import Auditor
 from vedette.agent.effects import Effect, Job, Shun
 from vedette.agent.events import Pose, TreeChanged
 from vedette.agent.mates import Mate
@@ -260,7 +261,7 @@ class Rounds:
             return []
         if lost or self._stands_about(belief, claims):
             self.auditor.want(now)
-        claimed = Claimed(self.stamp, belief, self.impact, claims, halvings)
+        claimed = Claimed(self.stamp, belief, self.impact, claims, round_.told, halvings)
         return self.auditor.decided(claimed, self.tree.neighbours, now)
 
     def _stands_about(self, belief: Any, claims: dict[int, Any]) -> bool:

@@ -18,6 +18,7 @@ from vedette.agent.events import Arrived, Pose, Scan, Sensed, Stuck
 from vedette.agent.mates import Mates
 from vedette.agent.mission import Mission
 from vedette.agent.pace import Pace
+from vedette.agent.proofs import Proofs
 from vedette.agent.relay import Relay
 from vedette.agent.rounds import Decision, Rounds
 from vedette.fusion.standing import Signed, signed_by
@@ -97,6 +98,7 @@ class Agent:
     mates: Mates = field(default_factory=Mates)
     relay: Relay = field(default_factory=Relay)  # of their beacons
     rounds: Rounds = field(init=False)
+    proofs: Proofs | None = field(default=None, init=False)  # of lies, where robots sign
     quiet: int = 0  # rounds in a row with nothing to gain for anybody
     beacons: int = 0  # sent
     due: dict[str, float] = field(default_factory=dict)  # when what is to be done next [s]
@@ -107,6 +109,7 @@ class Agent:
         self.rounds.anybody_moves = self.mates.anybody_moves
         if self.signed is not None:
             self.rounds.auditor = Auditor(self.robot, self.boot, self.mission, self.signed.standing)
+            self.proofs = Proofs(self.mission, self.signed)
 
     @property
     def mission(self) -> Mission[Any, Any, Any]:

@@ -6,6 +6,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
+from vedette.fusion.contradictions import Twice, Word
 from vedette.fusion.link import Key
 from vedette.fusion.seals import Seal
 from vedette.fusion.standing import Standing
@@ -92,9 +93,11 @@ class Sealings(ABC, Generic[CopyT, NewsT]):
 
     def admits(self, neighbour: int, key: Key, held: CopyT, news: NewsT) -> bool:
         """Check who has signed the news, and that they can be so; else say whose fault it is."""
+        robot, certificate, seal, notary = key[0], news.certificate, news.seal, self.standing.notary
+        if news.version == held.version:
+            self._compare(key, news.version, held.seal, seal)
         if not news.base <= held.version < news.version:
             return True
-        robot, certificate, seal, notary = key[0], news.certificate, news.seal, self.standing.notary
         if self.is_gone(robot):
             return False
         try:
@@ -104,8 +107,7 @@ class Sealings(ABC, Generic[CopyT, NewsT]):
         except ValueError as error:
             return self._refuse(neighbour, robot, f"{error}")
         if held.root_after(news) != seal.root:
-            self.doubted.add(key)  # it may be that what this robot holds is another evidence of one version
-            return False if news.base else self._refuse(neighbour, robot, "its root is another")
+            return self.unlike(neighbour, key, held, news)
         self.doubted.discard(key)
         if certificate:
             self._certificates[robot] = certificate
@@ -115,6 +117,29 @@ class Sealings(ABC, Generic[CopyT, NewsT]):
             self.standing.complaints[robot] = f"its evidence is refused: {error}"
             return False
         return True
+
+    def word(self, key: Key, version: int, seal: Seal) -> Word:
+        """Return a seal as it was signed."""
+        return Word((self.kind, *key, version, seal.time, seal.root), seal.signature)
+
+    def _compare(self, key: Key, version: int, ours: Seal, theirs: Seal) -> None:
+        """Find out whether a contributor has signed a version twice."""
+        if (ours.time, ours.root) == (theirs.time, theirs.root) or not ours.signature:
+            return
+        twice = Twice(self.word(key, version, ours), self.word(key, version, theirs))
+        try:
+            twice.second.check(self.standing.notary, key[0])
+        except ValueError:
+            return  # old news, which nobody believes anyway
+        self.standing.catch(key[0], twice)
+
+    def unlike(self, neighbour: int, key: Key, held: CopyT, news: NewsT) -> bool:
+        """Refuse news that lead to another root than was signed.
+
+        It may be that what this robot holds is another evidence of one version: then the whole tells.
+        """
+        self.doubted.add(key)
+        return False if news.base else self._refuse(neighbour, key[0], "its root is another")
 
     @abstractmethod
     def admit(self, news: NewsT, held: CopyT) -> None:

@@ -32,6 +32,9 @@ class Notary(Protocol):
     def admit(self, robot: int, certificate: bytes) -> None:
         """Take a robot's certificate; ValueError if it is not one of this team for this robot."""
 
+    def certificate_of(self, robot: int) -> bytes:
+        """Return the last one of a robot's that has come; KeyError if none has."""
+
     def knows(self, robot: int) -> bool:
         """Tell whether a certificate of a robot has come."""
 
@@ -39,4 +42,4 @@ class Notary(Protocol):
         """Raise ValueError unless a robot, whose certificate has come, has signed this."""
 
 
-EVIDENCE = "evidence"
+EVIDENCE, STEPS, BEACON, ACCOUNT = "evidence", "steps", "beacon", "account"  # under every signature

@@ -79,6 +79,10 @@ class CertifiedNotary:
             raise ValueError(f"more than {MOST_CERTIFICATES} certificates")
         known[certificate] = self._key_of(robot, certificate)
 
+    def certificate_of(self, robot: int) -> bytes:
+        """Return the last one of a robot's that has come; KeyError if none has."""
+        return list(self._admitted[robot])[-1]
+
     def knows(self, robot: int) -> bool:
         """Tell whether a certificate of a robot has come."""
         return bool(self._admitted.get(robot))
@@ -113,14 +117,24 @@ class CertifiedNotary:
         return key
 
 
-def notary_of(config: AgentConfig, folder: Path, terms: Terms, speed: float) -> CertifiedNotary | None:
+def notary_of(
+    config: AgentConfig, folder: Path, terms: Terms, speed: float
+) -> tuple[CertifiedNotary | None, Terms]:
     """Return the notary of a robot's file, for the mission that its team agrees on; None: it has no keys.
+
+    With the terms, and whether robots sign among them.
 
     Raises:
         InputError: keys that do not admit this robot now.
     """
     if config.links.keys is None:
-        return None
+        return None, {**terms, "signatures": "none"}
     own = credentials(folder / config.links.keys, datetime.now(UTC))
-    begun, at = time.time(), time.monotonic()  # a clock that is set meanwhile goes on here as it was
-    return CertifiedNotary(own, f"{fingerprint_of(terms):x}", lambda: speed * (begun + time.monotonic() - at))
+    notary = CertifiedNotary(own, f"{fingerprint_of(terms):x}", _steady(speed))
+    return notary, {**terms, "signatures": "P-256"}
+
+
+def _steady(speed: float) -> Callable[[], float]:
+    """Return the time of day, so many times as fast [s]; it goes on though the clock is set meanwhile."""
+    begun, at = time.time(), time.monotonic()
+    return lambda: speed * (begun + time.monotonic() - at)

@@ -12,7 +12,8 @@ from vedette.fusion.gaussian.intersection import IntersectionFusion, intersect
 from vedette.fusion.gaussian.packing import Likelihoods, TrackPacking
 from vedette.fusion.gaussian.refiltered import RefilteredTracks
 from vedette.fusion.link import RESEND_AFTER
-from vedette.fusion.steps import ReplicatedSteps, StepSums
+from vedette.fusion.seals import Notary
+from vedette.fusion.steps import StepSums, replicated_steps
 
 __all__ = [
     "WAYS",
@@ -81,6 +82,7 @@ def track_fusion(
     most_vector: float,
     window: int = WINDOW,
     resend_after: float = RESEND_AFTER,
+    notary: Notary | None = None,
 ) -> TrackFusion:
     """Return one of the ``WAYS`` of fusing tracks; InputError for another name.
 
@@ -88,6 +90,7 @@ def track_fusion(
     the same for every robot. ``boot < 2**38`` must differ from those of the robot's earlier starts.
     For "replicated" and "sums", likelihoods have entries up to ``most_matrix`` and ``most_vector``, and are
     kept to 2^-50 of these. For "sums", evidence later than ``window`` steps is lost. ``resend_after`` [s].
+    ``notary`` signs what is "replicated"; sums and whole tracks of many robots nobody can sign.
     """
     if way == "channel":
         return GaussianChannel(robot, boot, prior, motion, start, resend_after=resend_after)
@@ -95,7 +98,7 @@ def track_fusion(
         return IntersectionFusion(robot, boot, prior, motion, start, resend_after=resend_after)
     likelihoods = Likelihoods(TrackPacking(*prior.vector.shape), most_matrix, most_vector)
     if way == "replicated":
-        replicated = ReplicatedSteps(robot, boot, likelihoods.elements, resend_after=resend_after)
+        replicated = replicated_steps(robot, boot, likelihoods.elements, notary, resend_after)
         return RefilteredTracks(replicated, likelihoods, prior, motion, start)
     if way == "sums":
         sums = StepSums(robot, boot, likelihoods.elements, window=window, resend_after=resend_after)

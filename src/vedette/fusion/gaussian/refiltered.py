@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from vedette.errors import InputError
 from vedette.fusion.gaussian.information import Information, TrackMotion, check_likelihood, checked_start
 from vedette.fusion.gaussian.packing import Likelihoods
+from vedette.fusion.standing import Signed, signed_by
 from vedette.fusion.steps import Refilter, Sparse, StepEvidence
 
 
@@ -46,6 +47,11 @@ class RefilteredTracks:
             return track
         updated = track + self._likelihoods.tracks(total)
         return updated if updated.is_sound else track
+
+    @property
+    def signed(self) -> Signed | None:
+        """The likelihoods, where they are signed."""
+        return signed_by(self.evidence)
 
     @property
     def digest(self) -> int:

@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol, TypeVar
 
+from vedette.fusion.link import RESEND_AFTER
+from vedette.fusion.seals import Notary
 from vedette.fusion.steps.elements import Elements, FixedPoint, Sparse, SparseIntegers
 from vedette.fusion.steps.refilter import Refilter
 from vedette.fusion.steps.replicated import ReplicatedSteps
+from vedette.fusion.steps.signed import SignedSteps
 from vedette.fusion.steps.sums import StepSums
 
 E = TypeVar("E")
@@ -17,10 +20,12 @@ __all__ = [
     "FixedPoint",
     "Refilter",
     "ReplicatedSteps",
+    "SignedSteps",
     "Sparse",
     "SparseIntegers",
     "StepEvidence",
     "StepSums",
+    "replicated_steps",
 ]
 
 
@@ -77,3 +82,12 @@ class StepEvidence(Protocol[E]):
     def receive(self, neighbour: int, payload: bytes, now: float) -> None:
         """Merge a payload (ValueError if malformed, and nothing changes)."""
         ...
+
+
+def replicated_steps(
+    robot: int, boot: int, elements: Elements[E], notary: Notary | None, resend_after: float = RESEND_AFTER
+) -> ReplicatedSteps[E] | SignedSteps[E]:
+    """Return the way of sharing on any graph: signed, where there is a notary."""
+    if notary is None:
+        return ReplicatedSteps(robot, boot, elements, resend_after=resend_after)
+    return SignedSteps(robot, boot, elements, notary=notary, resend_after=resend_after)

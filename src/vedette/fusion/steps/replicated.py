@@ -2,61 +2,47 @@
 
 from __future__ import annotations
 
-from array import array
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from typing import TypeVar
+from typing import Generic, Protocol, TypeVar
 
 from vedette.fusion.contributors import Contributors
-from vedette.fusion.link import MOST_BYTES, RESEND_AFTER, Key
+from vedette.fusion.link import RESEND_AFTER, Key, News, Payload
 from vedette.fusion.steps.elements import Elements
+from vedette.fusion.steps.log import Log, PlainLog
 from vedette.fusion.steps.totals import Totals
 from vedette.fusion.steps.wire import Entries, check_step, decode, encode, pack, unpack
 
 E = TypeVar("E")
+LogT = TypeVar("LogT", bound=Log)
 
 
-class Log:
-    """One contributor's entries in order; its version is their number, and a holder's copy is a prefix."""
-
-    def __init__(self) -> None:
-        self._data = bytearray()
-        self._ends = array("q", [0])  # where the first v entries end
+class EntriesNews(News, Protocol):
+    """Entries as they travel, sealed or not."""
 
     @property
-    def version(self) -> int:
-        """Number of entries."""
-        return len(self._ends) - 1
+    def base(self) -> int:
+        """The least version that they can be added to."""
 
-    def append(self, entry: bytes) -> None:
-        """Add an entry."""
-        self._data += entry
-        self._ends.append(len(self._data))
-
-    def overtake(self, version: int) -> None:
-        """Refuse it: entries are only ever added."""
-        raise ValueError("fusion payload: claims evidence of this robot that it never published")
-
-    def since(self, base: int) -> Entries:
-        """Return the entries from ``base`` on, as many as one payload takes, but at least one."""
-        version = self.version
-        while version > base + 1 and self._ends[version] - self._ends[base] > MOST_BYTES:
-            version = (version + base) // 2
-        return Entries(base, version, bytes(self._data[self._ends[base] : self._ends[version]]))
+    @property
+    def data(self) -> bytes:
+        """The entries."""
 
 
-class ReplicatedSteps(Totals[E]):
+NewsT = TypeVar("NewsT", bound=EntriesNews)
+
+
+class SharedLogs(Totals[E], ABC, Generic[E, LogT, NewsT]):
     """``total(k) = sum over contributors of what each published for step k``, on any graph.
 
     Memory is O(contributors x steps). Nothing is forgotten: a robot that joins late needs the old steps, and
     only those who keep them can tell. (Two hours at 1 Hz, 16 robots that see six targets each: 37 MB.)
     """
 
-    def __init__(
-        self, robot: int, boot: int, elements: Elements[E], *, resend_after: float = RESEND_AFTER
-    ) -> None:
-        """Start with nothing known; ``boot < 2**38`` must differ from those of the robot's earlier starts."""
+    def __init__(self, elements: Elements[E], contributors: Contributors[LogT, NewsT]) -> None:
+        """Start with nothing known; ``contributors`` are this robot's, who writes its own."""
         super().__init__(elements)
-        self._contributors: Contributors[Log, Entries] = Contributors(robot, boot, Log, resend_after)
+        self._contributors = contributors
 
     @property
     def open_from(self) -> int:
@@ -67,7 +53,7 @@ class ReplicatedSteps(Totals[E]):
         """Add the robot's own evidence of a step."""
         check_step(step)
         self._contributors.own.append(pack(step, self._elements.encode(element)))
-        self.add(step, element)
+        self._take(self._contributors.key, step, element)
 
     def forget(self, before: int) -> None:
         """Keep everything: no step is closed."""
@@ -83,18 +69,20 @@ class ReplicatedSteps(Totals[E]):
     def outgoing(self, neighbour: int, now: float) -> bytes | None:
         """Return what the neighbour lacks, and what it waits to see acknowledged; None if nothing."""
         payload = self._contributors.tell(neighbour, now)
-        return None if payload is None else encode(payload)
+        return None if payload is None else self._encode(payload)
 
     def receive(self, neighbour: int, payload: bytes, now: float) -> None:
         """Merge a neighbour's payload (ValueError if malformed, and nothing changes)."""
-        message = decode(payload)
+        message = self._decode(payload)
         new = {key: self._new(key, entries) for key, entries in message.sections}
-        for key, _ in self._contributors.hear(neighbour, message, now):
+        for key, news in self._contributors.hear(neighbour, message, now):
             for step, element, entry in new[key]:
                 self._contributors.copies[key].append(entry)
-                self.add(step, element)
+                self._take(key, step, element)
+            if new[key]:
+                self._taken(key, news)
 
-    def _new(self, key: Key, entries: Entries) -> list[tuple[int, E, bytes]]:
+    def _new(self, key: Key, entries: NewsT) -> list[tuple[int, E, bytes]]:
         """Return what some entries add to our copy of their log, decoded; nothing if they do not connect."""
         found = unpack(entries.data, self._elements.most_bytes)
         if entries.base + len(found) != entries.version:
@@ -105,3 +93,34 @@ class ReplicatedSteps(Totals[E]):
             return []
         more = found[held - entries.base :]
         return [(step, self._elements.decode(data), entry) for step, data, entry in more]
+
+    def _take(self, key: Key, step: int, element: E) -> None:
+        """Add what a contributor says of a step."""
+        self.add(step, element)
+
+    def _taken(self, key: Key, news: NewsT) -> None:
+        """Note that a contributor's copy has come to the version of some news."""
+
+    @abstractmethod
+    def _encode(self, payload: Payload[NewsT]) -> bytes:
+        """Return a payload's bytes."""
+
+    @abstractmethod
+    def _decode(self, data: bytes) -> Payload[NewsT]:
+        """Return the payload; ValueError if malformed."""
+
+
+class ReplicatedSteps(SharedLogs[E, PlainLog, Entries]):
+    """Step evidence that nobody signs: whoever passes it on is believed."""
+
+    def __init__(
+        self, robot: int, boot: int, elements: Elements[E], *, resend_after: float = RESEND_AFTER
+    ) -> None:
+        """Start with nothing known; ``boot < 2**38`` must differ from those of the robot's earlier starts."""
+        super().__init__(elements, Contributors(robot, boot, PlainLog, resend_after))
+
+    def _encode(self, payload: Payload[Entries]) -> bytes:
+        return encode(payload)
+
+    def _decode(self, data: bytes) -> Payload[Entries]:
+        return decode(data)

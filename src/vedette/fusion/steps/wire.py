@@ -72,8 +72,17 @@ def pack(step: Step, element: bytes) -> bytes:
     return _ENTRY.pack(step, 2 * len(best) + deflated) + best
 
 
-def unpack(entries: bytes, most_bytes: int) -> list[tuple[Step, bytes, bytes]]:
-    """Return ``(step, element, the entry itself)`` of each entry; ValueError if malformed."""
+class Part(NamedTuple):
+    """One of the entries."""
+
+    step: Step
+    is_deflated: bool
+    body: bytes
+    entry: bytes  # all of it
+
+
+def parts(entries: bytes) -> list[Part]:
+    """Return the entries one by one; ValueError if malformed."""
     at, found = 0, []
     while at < len(entries):
         if at + _ENTRY.size > len(entries):
@@ -83,7 +92,15 @@ def unpack(entries: bytes, most_bytes: int) -> list[tuple[Step, bytes, bytes]]:
         if len(body) < size // 2:
             raise ValueError("step evidence: an entry is truncated")
         end = at + _ENTRY.size + len(body)
-        element = wire.inflate(body, most_bytes, "step evidence: an entry") if size & 1 else body
-        found.append((step, element, entries[at:end]))
+        found.append(Part(step, bool(size & 1), body, entries[at:end]))
         at = end
     return found
+
+
+def unpack(entries: bytes, most_bytes: int) -> list[tuple[Step, bytes, bytes]]:
+    """Return ``(step, element, the entry itself)`` of each entry; ValueError if malformed."""
+    what = "step evidence: an entry"
+    return [
+        (step, wire.inflate(body, most_bytes, what) if is_deflated else body, entry)
+        for step, is_deflated, body, entry in parts(entries)
+    ]

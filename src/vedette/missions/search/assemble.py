@@ -9,7 +9,8 @@ from math import ceil
 from vedette.agent import Agent, FlightBehaviour, Pace
 from vedette.agent.terms import Terms, flat
 from vedette.errors import InputError
-from vedette.fusion.steps import ReplicatedSteps, Sparse, SparseIntegers, StepEvidence, StepSums
+from vedette.fusion.seals import Notary
+from vedette.fusion.steps import Sparse, SparseIntegers, StepEvidence, StepSums, replicated_steps
 from vedette.missions.flying import RoundTimes
 from vedette.missions.search.case import SearchCase
 from vedette.missions.search.options import SearchOptions
@@ -69,17 +70,21 @@ class SearchTeam:
         )
         return SearchPlan(case.pdf, scenario.weights, self.lead, declare.probability, declare.radius, most)
 
-    def assemble(self, robot: int, boot: int) -> Agent:
-        """Return a fresh agent for a vehicle, by its number from 0."""
+    def assemble(self, robot: int, boot: int, notary: Notary | None = None) -> Agent:
+        """Return a fresh agent for a vehicle, by its number from 0.
+
+        ``notary``: signs its evidence, if that is replicated, and checks everybody's; None: nobody does.
+        """
         vehicle, scenario = self.case.scenario.vehicles[robot], self.case.scenario
         tells_plans = self.options.coordination != "shared"
-        mission = Searching(self.case.platform(robot), self.plan, self._fusion(robot, boot), tells_plans)
+        fusion = self._fusion(robot, boot, notary)
+        mission = Searching(self.case.platform(robot), self.plan, fusion, tells_plans)
         behaviour = FlightBehaviour(mission, vehicle.speed, vehicle.turn_rate)
         pace = Pace.each(scenario.replan * scenario.step)
         return Agent(robot, boot, vehicle, behaviour, self.options.negotiates_by, pace, forks=True)
 
-    def _fusion(self, robot: int, boot: int) -> StepEvidence[Sparse]:
+    def _fusion(self, robot: int, boot: int, notary: Notary | None) -> StepEvidence[Sparse]:
         elements = SparseIntegers(self.case.pdf.frame.size)
         if self.options.fusion == "sums":
             return StepSums(robot, boot, elements, window=ceil(_WINDOW / self.case.scenario.step))
-        return ReplicatedSteps(robot, boot, elements)
+        return replicated_steps(robot, boot, elements, notary)

@@ -13,6 +13,7 @@ from vedette.domains.tracking.platform import TrackingPlatform
 from vedette.domains.tracking.sensing import Sensor
 from vedette.errors import InputError
 from vedette.fusion.gaussian import Information, TrackMotion, track_fusion
+from vedette.fusion.seals import Notary
 from vedette.missions.flying import RoundTimes
 from vedette.missions.track.options import TrackOptions
 from vedette.missions.track.scenario import TrackScenario
@@ -87,14 +88,17 @@ class TrackTeam:
         each = [sensor.most_evidence(extent) for sensor in self.sensors]
         return LookBounds(max(matrix for matrix, _ in each), max(vector for _, vector in each))
 
-    def assemble(self, robot: int, boot: int) -> Agent:
-        """Return a fresh agent for a vehicle, by its number from 0; InputError if the fusion is unknown."""
+    def assemble(self, robot: int, boot: int, notary: Notary | None = None) -> Agent:
+        """Return a fresh agent for a vehicle, by its number from 0; InputError if the fusion is unknown.
+
+        ``notary``: signs its evidence, if that is replicated, and checks everybody's; None: nobody does.
+        """
         scenario, vehicle = self.scenario, self.scenario.vehicles[robot]
-        behaviour = FlightBehaviour(self._mission(robot, boot), vehicle.speed, vehicle.turn_rate)
+        behaviour = FlightBehaviour(self._mission(robot, boot, notary), vehicle.speed, vehicle.turn_rate)
         pace = Pace.each(scenario.step)
         return Agent(robot, boot, vehicle, behaviour, self.options.negotiates_by, pace, forks=True)
 
-    def _mission(self, robot: int, boot: int) -> Tracking:
+    def _mission(self, robot: int, boot: int, notary: Notary | None) -> Tracking:
         scenario, prior, vehicle = self.scenario, self.prior, self.scenario.vehicles[robot]
         platform = TrackingPlatform(
             vehicle.speed,
@@ -113,6 +117,7 @@ class TrackTeam:
             0,
             most_matrix=self.bounds.matrix,
             most_vector=self.bounds.vector,
+            notary=notary,
         )
         plan = TrackPlan(prior.models, prior.dt, prior.horizon, self.lead, prior.origin, prior.layers)
         return Tracking(platform, plan, fusion, self.bounds, self.options.coordination != "shared")

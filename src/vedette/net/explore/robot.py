@@ -52,9 +52,8 @@ def explorer(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robo
         place = _own(config.body, config.body.own, robot_name(config.robot - 1), folder, options)
     else:
         place = _simulated(config, folder, options)
-    terms = {**terms_of(place.lattice, options), **place.terms}
-    notary = notary_of(config, folder, terms, speed)
-    terms["signatures"] = "none" if notary is None else "P-256"
+    agreed = {**terms_of(place.lattice, options), **place.terms}
+    notary, terms = notary_of(config, folder, agreed, speed)
     agent = assemble(
         place.lattice,
         place.hull,

@@ -8,6 +8,7 @@ from vedette.missions.search.assemble import SearchTeam
 from vedette.missions.search.case import default_case, read_case
 from vedette.net.config import AgentConfig
 from vedette.net.flights import check_number, round_times
+from vedette.net.notary import notary_of
 from vedette.net.robot import Robot
 from vedette.net.search.content import SearchTeller
 from vedette.net.simulated import simulated_searcher
@@ -23,5 +24,6 @@ def searcher(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robo
     case = default_case() if config.scenario is None else read_case(folder / config.scenario)
     check_number(config.robot, len(case.names))
     team = SearchTeam(case, config.search, round_times(config.links, speed))
-    agent = team.assemble(config.robot - 1, boot)
-    return Robot(agent, simulated_searcher(config, case), None, SearchTeller(agent, case), team.terms)
+    notary, terms = notary_of(config, folder, team.terms, speed)
+    agent = team.assemble(config.robot - 1, boot, notary)
+    return Robot(agent, simulated_searcher(config, case), None, SearchTeller(agent, case), terms)

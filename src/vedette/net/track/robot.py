@@ -8,6 +8,7 @@ from vedette.missions.track.assemble import TrackTeam
 from vedette.missions.track.scenario import default_scenario, read_scenario
 from vedette.net.config import AgentConfig
 from vedette.net.flights import check_number, round_times
+from vedette.net.notary import notary_of
 from vedette.net.robot import Robot
 from vedette.net.simulated import simulated_tracker
 from vedette.net.track.content import TrackTeller
@@ -23,5 +24,6 @@ def tracker(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robot
     scenario = default_scenario() if config.scenario is None else read_scenario(folder / config.scenario)
     check_number(config.robot, len(scenario.vehicles))
     team = TrackTeam(scenario, config.track, round_times(config.links, speed))
-    agent = team.assemble(config.robot - 1, boot)
-    return Robot(agent, simulated_tracker(config, team), None, TrackTeller(agent, scenario), team.terms)
+    notary, terms = notary_of(config, folder, team.terms, speed)
+    agent = team.assemble(config.robot - 1, boot, notary)
+    return Robot(agent, simulated_tracker(config, team), None, TrackTeller(agent, scenario), terms)
