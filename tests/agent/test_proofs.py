@@ -18,7 +18,7 @@ from vedette.agent.events import Message, Pose, TreeChanged
 from vedette.agent.messages import Proof
 from vedette.agent.proofs import AGAIN
 from vedette.fusion import contradictions
-from vedette.fusion.contradictions import Accounted, Twice, Word
+from vedette.fusion.contradictions import Accounted, SignedWord, Twice
 from vedette.fusion.particulars import Capabilities
 from vedette.fusion.seals import BEACON, EVIDENCE
 from vedette.fusion.signed import SignedEvidence
@@ -41,11 +41,11 @@ def agent(robot: int, neighbours: tuple[int, ...]) -> Agent:
     return made
 
 
-def word(*what: int | bytes | str, robot: int = LIAR) -> Word:
-    return Word(what, notary(robot).sign(*what))
+def word(*what: int | bytes | str, robot: int = LIAR) -> SignedWord:
+    return SignedWord(what, notary(robot).sign(*what))
 
 
-def seal(version: int, root: bytes, robot: int = LIAR) -> Word:
+def seal(version: int, root: bytes, robot: int = LIAR) -> SignedWord:
     return word(EVIDENCE, robot, 1, version, 100, root, robot=robot)
 
 
@@ -78,7 +78,7 @@ NO_PROOFS = {
         seal(3, b"a" * 16), structs.replace(seal(3, b"b" * 16), signature=bytes(64))
     ),
     "another's signature": Twice(
-        seal(3, b"a" * 16), Word(seal(3, b"b" * 16).what, notary(1).sign(*seal(3, b"b" * 16).what))
+        seal(3, b"a" * 16), SignedWord(seal(3, b"b" * 16).what, notary(1).sign(*seal(3, b"b" * 16).what))
     ),
     "a kind that there is not": Twice(word("x", LIAR, 1, 3, 1), word("x", LIAR, 1, 3, 2)),
     "no kind": Twice(word(7, LIAR), word(7, LIAR, 1)),

@@ -19,7 +19,7 @@ from vedette.agent.effects import Effect, Send, TrafficKind
 from vedette.agent.messages import Account, Audit, encode
 from vedette.agent.mission import Mission, Promising
 from vedette.agent.promises import LEAST, Suspicion, weighed
-from vedette.fusion.contradictions import Accounted, Twice, Word
+from vedette.fusion.contradictions import Accounted, SignedWord, Twice
 from vedette.fusion.standing import Standing
 
 EVERY = 5.0  # audits are at least so far apart [s]
@@ -90,7 +90,7 @@ class Auditor:
         if account.robot != self.robot:
             check(account, self.standing.notary)
         if known is not None:
-            words = (Word(words_of(each), each.signature) for each in (known, account))
+            words = (SignedWord(words_of(each), each.signature) for each in (known, account))
             self.standing.catch(account.robot, Twice(*words))
             return []
         self._accounts = {stamp: held | {account.robot: account}}

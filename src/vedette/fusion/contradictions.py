@@ -16,7 +16,7 @@ Signature = Annotated[bytes, Meta(min_length=SIGNATURE_BYTES, max_length=SIGNATU
 Words = tuple[Any, ...]  # numbers, bytes and text, as they are signed
 
 
-class Word(msgspec.Struct, frozen=True, array_like=True):
+class SignedWord(msgspec.Struct, frozen=True, array_like=True):
     """What a robot has signed, and how."""
 
     what: Words
@@ -30,15 +30,15 @@ class Word(msgspec.Struct, frozen=True, array_like=True):
 class Twice(msgspec.Struct, frozen=True, array_like=True, tag=0):
     """Two words about one thing, of which a robot says one at most."""
 
-    first: Word
-    second: Word
+    first: SignedWord
+    second: SignedWord
 
 
 class Histories(msgspec.Struct, frozen=True, array_like=True, tag=1):
     """A signed version of a log, and a later one that does not begin with it."""
 
-    early: Word
-    late: Word
+    early: SignedWord
+    late: SignedWord
     entries: bytes  # up to the later one
 
 
@@ -60,7 +60,7 @@ def decode(data: bytes) -> Contradiction:
     return wire.decode(_DECODER, data, "proof")
 
 
-class Found(NamedTuple):
+class ProvenLie(NamedTuple):
     """A contradiction that this robot has come upon."""
 
     robot: int

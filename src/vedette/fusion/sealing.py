@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
-from vedette.fusion.contradictions import Twice, Word
+from vedette.fusion.contradictions import SignedWord, Twice
 from vedette.fusion.link import Key
 from vedette.fusion.seals import Seal
 from vedette.fusion.standing import Standing
@@ -118,9 +118,9 @@ class Sealings(ABC, Generic[CopyT, NewsT]):
             return False
         return True
 
-    def word(self, key: Key, version: int, seal: Seal) -> Word:
+    def word(self, key: Key, version: int, seal: Seal) -> SignedWord:
         """Return a seal as it was signed."""
-        return Word((self.kind, *key, version, seal.time, seal.root), seal.signature)
+        return SignedWord((self.kind, *key, version, seal.time, seal.root), seal.signature)
 
     def _compare(self, key: Key, version: int, ours: Seal, theirs: Seal) -> None:
         """Find out whether a contributor has signed a version twice."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from vedette.fusion.contradictions import Contradiction, Found
+from vedette.fusion.contradictions import Contradiction, ProvenLie
 from vedette.fusion.digest import fingerprint
 from vedette.fusion.seals import Notary
 
@@ -20,7 +20,7 @@ class Standing:
     complaints: dict[int, str] = field(default_factory=dict)  # by robot: why its word was not taken
     forgers: set[int] = field(default_factory=set)  # neighbours that pass on what they have changed
     gone: dict[int, str] = field(default_factory=dict)  # robots of whom nothing counts any more, and why
-    found: list[Found] = field(
+    found: list[ProvenLie] = field(
         default_factory=list
     )  # lies that this robot can prove; whoever reads it empties it
 
@@ -32,7 +32,7 @@ class Standing:
     def catch(self, robot: int, proof: Contradiction) -> None:
         """Note what a robot has signed that cannot both be so."""
         if robot not in self.gone and all(robot != found.robot for found in self.found):
-            self.found.append(Found(robot, proof))
+            self.found.append(ProvenLie(robot, proof))
 
     def convict(self, robot: int, at: str) -> None:
         """Let nothing count of a robot whose lie is proven."""

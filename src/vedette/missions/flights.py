@@ -13,6 +13,7 @@ from msgspec import Struct
 from vedette.agent import Agent, FlightBehaviour, Pace
 from vedette.agent.mission import FlightMission
 from vedette.agent.terms import Terms, flat
+from vedette.fusion.seals import Notary
 from vedette.missions.flying import RoundTimes
 from vedette.missions.pairs import SCHEME
 
@@ -111,8 +112,11 @@ class FlightTeam(ABC, Generic[CaseT]):
         """By name."""
 
     @abstractmethod
-    def mission(self, robot: int, boot: int) -> FlightMission[Any, Any, Any]:
-        """Return a vehicle's share, by its number from 0; ``boot`` grows from start to start."""
+    def mission(self, robot: int, boot: int, notary: Notary | None) -> FlightMission[Any, Any, Any]:
+        """Return a vehicle's share, by its number from 0; ``boot`` grows from start to start.
+
+        ``notary``: signs its evidence, if that is replicated, and checks everybody's; None: nobody does.
+        """
 
     @property
     def size(self) -> int:
@@ -133,9 +137,9 @@ class FlightTeam(ABC, Generic[CaseT]):
             **dict(flat("scenario", self.case.scenario)),
         }
 
-    def assemble(self, robot: int, boot: int) -> Agent:
-        """Return a fresh agent for a vehicle, by its number from 0."""
+    def assemble(self, robot: int, boot: int, notary: Notary | None = None) -> Agent:
+        """Return a fresh agent for a vehicle, by its number from 0, and as ``mission`` says."""
         vehicle = self.case.vehicles[robot]
-        behaviour = FlightBehaviour(self.mission(robot, boot), vehicle.speed, vehicle.turn_rate)
+        behaviour = FlightBehaviour(self.mission(robot, boot, notary), vehicle.speed, vehicle.turn_rate)
         pace = Pace.each(self.case.replan * self.case.step)
         return Agent(robot, boot, vehicle, behaviour, self.options.negotiates_by, pace, forks=True)

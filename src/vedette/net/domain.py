@@ -20,6 +20,7 @@ from vedette.missions.flights import FlightCase, FlightTeam, FlightVehicle
 from vedette.net.config import AgentConfig
 from vedette.net.flights import check_number, round_times
 from vedette.net.gather import figures_of, path_of
+from vedette.net.notary import notary_of
 from vedette.net.report import Condition
 from vedette.net.robot import Robot
 from vedette.net.simulated import Domain, domain_of, simulated_vehicle
@@ -45,10 +46,10 @@ def vehicle(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robot
     case = domain.case(None if config.scenario is None else folder / config.scenario)
     check_number(config.robot, len(case.names))
     team = domain.team(case, config.domain, round_times(config.links, speed))
-    agent = team.assemble(config.robot - 1, boot)
-    return Robot(
-        agent, simulated_vehicle(config, domain, case), None, DomainTeller(agent, domain, case), team.terms
-    )
+    notary, terms = notary_of(config, folder, team.terms, speed)
+    agent = team.assemble(config.robot - 1, boot, notary)
+    teller = DomainTeller(agent, domain, case)
+    return Robot(agent, simulated_vehicle(config, domain, case), None, teller, terms)
 
 
 @dataclass(frozen=True, eq=False)

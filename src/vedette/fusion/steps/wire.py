@@ -72,7 +72,7 @@ def pack(step: Step, element: bytes) -> bytes:
     return _ENTRY.pack(step, 2 * len(best) + deflated) + best
 
 
-class Part(NamedTuple):
+class LogEntry(NamedTuple):
     """One of the entries."""
 
     step: Step
@@ -81,7 +81,7 @@ class Part(NamedTuple):
     entry: bytes  # all of it
 
 
-def parts(entries: bytes) -> list[Part]:
+def parts(entries: bytes) -> list[LogEntry]:
     """Return the entries one by one; ValueError if malformed."""
     at, found = 0, []
     while at < len(entries):
@@ -92,7 +92,7 @@ def parts(entries: bytes) -> list[Part]:
         if len(body) < size // 2:
             raise ValueError("step evidence: an entry is truncated")
         end = at + _ENTRY.size + len(body)
-        found.append(Part(step, bool(size & 1), body, entries[at:end]))
+        found.append(LogEntry(step, bool(size & 1), body, entries[at:end]))
         at = end
     return found
 

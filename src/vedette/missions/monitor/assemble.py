@@ -15,7 +15,8 @@ from vedette.domains.monitoring.platform import MonitoringPlatform
 from vedette.domains.monitoring.ways import Place, Way
 from vedette.domains.monitoring.worth import Patrol
 from vedette.errors import InputError
-from vedette.fusion.steps import ReplicatedSteps, Sparse, SparseIntegers, StepEvidence, StepSums
+from vedette.fusion.seals import Notary
+from vedette.fusion.steps import Sparse, SparseIntegers, StepEvidence, StepSums, replicated_steps
 from vedette.missions.flights import FlightTeam
 from vedette.missions.monitor.case import MonitorCase, way_of
 from vedette.missions.monitor.monitoring import Monitoring, MonitorPlan
@@ -57,7 +58,7 @@ class MonitorTeam(FlightTeam[MonitorCase]):
             max(units_of(variance, unit) for variance in variances),
         )
 
-    def mission(self, robot: int, boot: int) -> Monitoring:
+    def mission(self, robot: int, boot: int, notary: Notary | None) -> Monitoring:
         """Return a vehicle's share, by its number from 0."""
         case, vehicle = self.case, self.case.vehicles[robot]
         platform = MonitoringPlatform(
@@ -72,7 +73,7 @@ class MonitorTeam(FlightTeam[MonitorCase]):
             platform,
             case.sensor(robot),
             self.plan,
-            self._fusion(robot, boot),
+            self._fusion(robot, boot, notary),
             vehicle.budget,
             coordination != "shared",
             partial(self._route, robot) if coordination in ("lawnmower", "random") else None,
@@ -86,8 +87,8 @@ class MonitorTeam(FlightTeam[MonitorCase]):
             return at_random(case.scenario.frame, here, length, np.random.default_rng([robot, 7]))
         return strip(case.scenario.frame, here, robot, len(case.vehicles), length)
 
-    def _fusion(self, robot: int, boot: int) -> StepEvidence[Sparse]:
+    def _fusion(self, robot: int, boot: int, notary: Notary | None) -> StepEvidence[Sparse]:
         elements = SparseIntegers(self.case.packing.size)
         if self.options.fusion == "sums":
             return StepSums(robot, boot, elements, window=ceil(_WINDOW / self.case.step))
-        return ReplicatedSteps(robot, boot, elements)
+        return replicated_steps(robot, boot, elements, notary)
