@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable, Mapping, Sequence
-from typing import Generic
 
 from vedette.errors import InputError
 from vedette.negotiation.branch import Branch, value_alone
+from vedette.negotiation.member import Member
 from vedette.negotiation.messages import Fork, Gather, Joined, Message, RoundOutcome, Settled
-from vedette.negotiation.node import Claims, Outgoing, Participant, TreeLinks
+from vedette.negotiation.node import Claims, Outgoing, Participant
 from vedette.problem.bound import attains, tightest
 from vedette.problem.objective import ImpactT
 from vedette.problem.reach import Reach
 
 
-class ForkNode(Generic[ImpactT]):
+class ForkNode(Member[ImpactT]):
     """Sweeps down all branches at once and back: ``2 depth`` hops, whatever the size of the team.
 
     A platform replies to what it is told, then hands the right to choose to all its children together. When
@@ -38,17 +38,12 @@ class ForkNode(Generic[ImpactT]):
         claims: Claims[ImpactT] | None = None,
     ) -> None:
         """Join a round; arguments as `TokenNode`."""
-        self.finished: RoundOutcome | None = None
+        super().__init__(own, neighbours, parent, reaches, claims)
         self.values: list[float] = []  # at the root: the team's value after each sweep
         self.sweeps = 0
-        self._own = own
-        self._links = TreeLinks(own, neighbours, reaches, claims)
-        self._claims = claims
-        self._parent = parent
-        self._children = [k for k in neighbours if k != parent]
         self._epsilon = epsilon
         self._max_sweeps = max_sweeps
-        self._started = self._gathered = self._forked = False
+        self._gathered = self._forked = False
         self._quiet = False  # the round ended with nobody moving
         self._branches: dict[int, Branch[ImpactT]] = {}
         self._before: tuple[Hashable, dict[int, Branch[ImpactT]]] = (own.strategy, {})  # this sweep
@@ -58,7 +53,6 @@ class ForkNode(Generic[ImpactT]):
         self._fewer = 0  # children lost in this sweep, in which others have still counted on them
         self._slack = math.inf  # own, in this sweep
         self._lost: list[int] = []  # cut, but still counted above
-        self._cut: set[int] = set()
 
     @property
     def waiting_for(self) -> frozenset[int]:
@@ -71,28 +65,18 @@ class ForkNode(Generic[ImpactT]):
             return frozenset(self._children).difference(self._joined, self._cut)
         return frozenset(() if self._parent is None else (self._parent,))
 
-    def start(self) -> list[Outgoing[ImpactT]]:
-        """Begin, once the own impact is ready; messages may have arrived before."""
-        self._started = True
-        return self._gather()
-
-    def receive(self, sender: int, message: Message[ImpactT]) -> list[Outgoing[ImpactT]]:
-        """Take in a neighbour's message; ``ValueError`` if it breaks the protocol or claims too much."""
-        self._links.check(sender)
-        if self.finished is not None or sender in self._cut:
-            return []
-        if sender in self.waiting_for:
-            match message:
-                case Gather() if not self._gathered:
-                    return self._hear(sender, message)
-                case Joined() if self._forked:
-                    return self._hear_joined(sender, message)
-                case Fork() if sender == self._parent and self._gathered:
-                    self._links.receive(sender, message.mu)
-                    return self._sweep(keep=message.keep)
-                case Settled() if sender == self._parent and self._gathered:
-                    return self._settle(message)
-        raise InputError(f"message {type(message).__name__} from {sender} is out of turn; drop it")
+    def _hear(self, sender: int, message: Message[ImpactT]) -> list[Outgoing[ImpactT]] | None:
+        match message:
+            case Gather() if not self._gathered:
+                return self._note_branch(sender, message)
+            case Joined() if self._forked:
+                return self._note_joined(sender, message)
+            case Fork() if sender == self._parent and self._gathered:
+                self._links.receive(sender, message.mu)
+                return self._sweep(keep=message.keep)
+            case Settled() if sender == self._parent and self._gathered:
+                return self._settle(message)
+        return None
 
     @property
     def replied(self) -> bool:
@@ -105,16 +89,11 @@ class ForkNode(Generic[ImpactT]):
             return None
         return self._own.combine(self._links.others(), self._own.impact)
 
-    def cut(self, neighbour: int) -> list[Outgoing[ImpactT]]:
-        """Go on without a child and all behind it; see `Negotiator`."""
-        self._links.check_child(neighbour, self._parent)
-        if self.finished is not None or neighbour in self._cut:
-            return []
-        self._cut.add(neighbour)
+    def _go_without(self, child: int) -> list[Outgoing[ImpactT]]:
         if self._gathered and not self._forked:
-            self._lost.append(neighbour)
+            self._lost.append(child)
             return []  # the next sweep will come by, or the round end first
-        self._drop(neighbour)
+        self._drop(child)
         if not self._forked:
             return self._gather()
         self._fewer += 1
@@ -128,16 +107,12 @@ class ForkNode(Generic[ImpactT]):
 
     # -- gathering ----------------------------------------------------------------------------------------
 
-    def _hear(self, child: int, report: Gather[ImpactT]) -> list[Outgoing[ImpactT]]:
+    def _note_branch(self, child: int, report: Gather[ImpactT]) -> list[Outgoing[ImpactT]]:
         """Hold what a child's part of the tree is and does."""
         self._check_size(child, report.size)
         self._links.receive(child, report.mu)
         self._branches[child] = Branch(self._links.held(child), report.size, report.ceiling, report.value)
         return self._gather()
-
-    def _check_size(self, child: int, size: int) -> None:
-        if self._claims is not None:
-            self._claims.check_size(child, size)
 
     def _gather(self) -> list[Outgoing[ImpactT]]:
         """Report to the parent once all children have reported; the root begins the first sweep."""
@@ -196,7 +171,7 @@ class ForkNode(Generic[ImpactT]):
             self._links.hold(child, branches[child].mu)
         self._refused.update(self._children)
 
-    def _hear_joined(self, child: int, joined: Joined[ImpactT]) -> list[Outgoing[ImpactT]]:
+    def _note_joined(self, child: int, joined: Joined[ImpactT]) -> list[Outgoing[ImpactT]]:
         """Note what a child's part has become; nothing is taken until all have joined."""
         self._check_size(child, joined.size)
         if joined.size > self._branches[child].size:

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Hashable, Sequence
-from typing import Generic
 
 from vedette.errors import InputError
+from vedette.negotiation.member import Member
 from vedette.negotiation.messages import Down, Message, RoundOutcome, Stop, Up
-from vedette.negotiation.node import Claims, Outgoing, Participant, TreeLinks
+from vedette.negotiation.node import Claims, Outgoing, Participant
 from vedette.problem.bound import attains, tightest
 from vedette.problem.objective import ImpactT
 
 
-class JacobiNode(Generic[ImpactT]):
+class JacobiNode(Member[ImpactT]):
     """``v_i <- argmax psi(Y_i(v_i) * a_{-i})`` for all i at once, from the last iterate's ``a_{-i}``.
 
     An iterate goes up the tree and comes down it, ``2 (n - 1)`` messages. Simultaneous replies may cycle:
@@ -47,16 +47,11 @@ class JacobiNode(Generic[ImpactT]):
                 is needed.
             claims: what each neighbour's side may claim; without it anything.
         """
-        self.finished: RoundOutcome | None = None
+        super().__init__(own, neighbours, parent, None, claims)
         self.values: list[float] = []  # at the root: the team's value at each iterate
-        self._own = own
-        self._links = TreeLinks(own, neighbours, claims=claims)
-        self._parent = parent
-        self._children = tuple(k for k in neighbours if k != parent)
         self._epsilon = epsilon
         self._max_sweeps = max_sweeps
         self._remove = remove
-        self._started = False
         self._told = False  # this iterate is reported to the parent
         self._strategies: list[Hashable] = []  # own, at each iterate
         self._reports: dict[int, Up[ImpactT]] = {}
@@ -64,7 +59,6 @@ class JacobiNode(Generic[ImpactT]):
         self._slack = math.inf  # own, against the last iterate that came down
         self._slacks: list[float] = []  # at the root: the team's, at each iterate but the present
         self._first = 0  # at the root: first iterate that counts, everybody having a strategy
-        self._cut: set[int] = set()
         self._lost: list[int] = []  # those cut that the iterate last reported still counts
         self._fewer = -1  # the iterate first reported without those cut last
 
@@ -79,29 +73,23 @@ class JacobiNode(Generic[ImpactT]):
 
     def start(self) -> list[Outgoing[ImpactT]]:
         """Begin, once the own impact is ready; messages may have arrived before."""
-        self._started = True
         self._ceiling = self._own.slack(self._own.nothing())
         self._strategies.append(self._own.strategy)
-        return self._report()
+        return super().start()
 
-    def receive(self, sender: int, message: Message[ImpactT]) -> list[Outgoing[ImpactT]]:
-        """Take in a neighbour's message; ``ValueError`` if it breaks the protocol or claims too much."""
-        self._links.check(sender)
-        if self.finished is not None or sender in self._cut:
-            return []
-        if sender in self.waiting_for:
-            match message:
-                case Up(mu=mu) if sender != self._parent:
+    def _hear(self, sender: int, message: Message[ImpactT]) -> list[Outgoing[ImpactT]] | None:
+        match message:
+            case Up(mu=mu) if sender != self._parent:
+                self._links.receive(sender, mu)
+                self._reports[sender] = message
+                return self._gather()
+            case Down(mu=mu) if sender == self._parent:
+                if self._remove is None:
                     self._links.receive(sender, mu)
-                    self._reports[sender] = message
-                    return self._report()
-                case Down(mu=mu) if sender == self._parent:
-                    if self._remove is None:
-                        self._links.receive(sender, mu)
-                    return self._next_iterate(message)
-                case Stop() if sender == self._parent:
-                    return self._end(message)
-        raise InputError(f"message {type(message).__name__} from {sender} is out of turn; drop it")
+                return self._next_iterate(message)
+            case Stop() if sender == self._parent:
+                return self._end(message)
+        return None
 
     @property
     def replied(self) -> bool:
@@ -111,23 +99,18 @@ class JacobiNode(Generic[ImpactT]):
     def team_held(self) -> None:
         """Nothing: the round may end with the strategies of an earlier iterate."""
 
-    def cut(self, neighbour: int) -> list[Outgoing[ImpactT]]:
-        """Go on without a child and all behind it; see `Negotiator`."""
-        self._links.check_child(neighbour, self._parent)
-        if self.finished is not None or neighbour in self._cut:
-            return []
-        self._cut.add(neighbour)
-        self._links.cut(neighbour)
-        self._children = tuple(k for k in self._children if k != neighbour)
-        self._reports.pop(neighbour, None)
+    def _go_without(self, child: int) -> list[Outgoing[ImpactT]]:
+        self._links.cut(child)
+        self._children.remove(child)
+        self._reports.pop(child, None)
         if self._told:
-            self._lost.append(neighbour)
+            self._lost.append(child)
             self._fewer = len(self._strategies)  # the next one
             return []
         self._fewer = max(0, len(self._strategies) - 1)
-        return self._report()
+        return self._gather()
 
-    def _report(self) -> list[Outgoing[ImpactT]]:
+    def _gather(self) -> list[Outgoing[ImpactT]]:
         """Send this iterate up once all children have reported it; the root decides what comes down."""
         if not self._started or self.waiting_for:
             return []
@@ -199,7 +182,7 @@ class JacobiNode(Generic[ImpactT]):
             self._links.changed()
         self._slack = self._own.slack(self._own.combine(others, before))
         self._strategies.append(self._own.strategy)
-        return onwards + self._report()
+        return onwards + self._gather()
 
     def _end(self, stop: Stop) -> list[Outgoing[ImpactT]]:
         """Take up the best iterate's strategy again and tell the children."""

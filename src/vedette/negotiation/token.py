@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import Generic
 
 import msgspec
 
 from vedette.errors import InputError
+from vedette.negotiation.member import Member
 from vedette.negotiation.messages import Gather, Message, RoundOutcome, Stop, Tally, Token
-from vedette.negotiation.node import Claims, Outgoing, Participant, TreeLinks
+from vedette.negotiation.node import Claims, Outgoing, Participant
 from vedette.negotiation.part import Part
 from vedette.problem.bound import attains, tightest
 from vedette.problem.objective import ImpactT
 from vedette.problem.reach import Reach
 
 
-class TokenNode(Generic[ImpactT]):
+class TokenNode(Member[ImpactT]):
     """Gauss-Seidel along the Euler tour: never lowers the value, ends at an equilibrium.
 
     Every impact is first gathered to the root, which starts the token. A platform replies when the token
@@ -51,21 +51,14 @@ class TokenNode(Generic[ImpactT]):
                 everything.
             claims: what each neighbour's side may claim; without it anything.
         """
-        self.finished: RoundOutcome | None = None
+        super().__init__(own, neighbours, parent, reaches, claims)
         self.turns: list[tuple[int, float]] = []  # own: (number in the round, team value after it)
-        self._own = own
-        self._links = TreeLinks(own, neighbours, reaches, claims)
-        self._claims = claims
         self._most = math.inf if claims is None else 1 + sum(claims.platforms[k] for k in neighbours)
-        self._parent = parent
-        self._children = tuple(k for k in neighbours if k != parent)
         self._epsilon = epsilon
         self._max_sweeps = max_sweeps
-        self._started = False
         self._expected: int | None = None  # where the token comes from next; None: still gathering
         self._handed: Tally | None = None  # with the token, to the child that has it
         self._parts: dict[int, Part[ImpactT]] = {}  # of the children that have gathered
-        self._cut: set[int] = set()
         self._lost: list[int] = []  # those cut that the tally still counts
 
     @property
@@ -77,47 +70,31 @@ class TokenNode(Generic[ImpactT]):
             return frozenset(self._children).difference(self._parts, self._cut)
         return frozenset((self._expected,))
 
-    def start(self) -> list[Outgoing[ImpactT]]:
-        """Begin, once the own impact is ready; messages may have arrived before."""
-        self._started = True
-        return self._gather()
+    def _hear(self, sender: int, message: Message[ImpactT]) -> list[Outgoing[ImpactT]] | None:
+        match message:
+            case Gather() if self._expected is None:
+                return self._note_part(sender, message)
+            case Token() if self._expected == sender:
+                return self._take(sender, message)
+            case Stop(outcome=outcome) if self._expected == sender:
+                self.finished = outcome
+                return [Outgoing(k, message) for k in self._links.neighbours if k != sender]
+        return None
 
-    def receive(self, sender: int, message: Message[ImpactT]) -> list[Outgoing[ImpactT]]:
-        """Take in a neighbour's message; ``ValueError`` if it breaks the protocol or claims too much."""
-        self._links.check(sender)
-        if self.finished is not None or sender in self._cut:
-            return []
-        if sender in self.waiting_for:
-            match message:
-                case Gather() if self._expected is None:
-                    return self._hear(sender, message)
-                case Token() if self._expected == sender:
-                    return self._take(sender, message)
-                case Stop(outcome=outcome) if self._expected == sender:
-                    self.finished = outcome
-                    return [Outgoing(k, message) for k in self._links.neighbours if k != sender]
-        raise InputError(f"message {type(message).__name__} from {sender} is out of turn; drop it")
-
-    def cut(self, neighbour: int) -> list[Outgoing[ImpactT]]:
-        """Go on without a child and all behind it; see `Negotiator`."""
-        self._links.check_child(neighbour, self._parent)
-        if self.finished is not None or neighbour in self._cut:
-            return []
-        self._cut.add(neighbour)
+    def _go_without(self, child: int) -> list[Outgoing[ImpactT]]:
         if self._expected is None:
-            self._parts.pop(neighbour, None)
-            self._links.cut(neighbour)
+            self._parts.pop(child, None)
+            self._links.cut(child)
             return self._gather()
-        self._lost.append(neighbour)
-        if self._expected != neighbour:
+        self._lost.append(child)
+        if self._expected != child:
             return []  # the token will come by, or the round stop first
         assert self._handed is not None
-        return self._pass_on(self._less_the_lost(self._handed), neighbour)
+        return self._pass_on(self._less_the_lost(self._handed), child)
 
-    def _hear(self, child: int, report: Gather[ImpactT]) -> list[Outgoing[ImpactT]]:
+    def _note_part(self, child: int, report: Gather[ImpactT]) -> list[Outgoing[ImpactT]]:
         """Hold what a child's part of the tree is and does."""
-        if self._claims is not None:
-            self._claims.check_size(child, report.size)
+        self._check_size(child, report.size)
         self._links.receive(child, report.mu)
         nothing, mu = self._own.nothing(), self._links.held(child)
         first = (report.value, nothing, nothing, mu)
@@ -167,7 +144,7 @@ class TokenNode(Generic[ImpactT]):
     def _take(self, sender: int, token: Token[ImpactT]) -> list[Outgoing[ImpactT]]:
         """Take the token: from the parent to reply, from a child to hand it on."""
         if sender == self._parent:
-            self._check_size(token.tally, 1 + sum(part.size for part in self._parts.values()), math.inf)
+            self._check_team(token.tally, 1 + sum(part.size for part in self._parts.values()), math.inf)
             self._links.receive(sender, token.mu)
             return self._turn(self._less_the_lost(token.tally))
         self._note_change(sender, token)
@@ -177,11 +154,11 @@ class TokenNode(Generic[ImpactT]):
         """Hold what a child's part has become while it had the token."""
         part, handed, before = self._parts[child], self._handed, self._links.held(child)
         assert handed is not None
-        self._check_size(token.tally, handed.size - part.size + 1, handed.size)
+        self._check_team(token.tally, handed.size - part.size + 1, handed.size)
         self._links.receive(child, token.mu)
         part.note(handed, token.tally, before, token.mu)
 
-    def _check_size(self, tally: Tally, least: int, most: float) -> None:
+    def _check_team(self, tally: Tally, least: int, most: float) -> None:
         """Raise ``InputError`` for a team without those known to be in it, or with more than there can be."""
         most = min(most, self._most)
         if not least <= tally.size <= most:
