@@ -106,6 +106,10 @@ LINES: list[tuple[dict[str, Any], str]] = [
         "reach[1] has (0.0, 0.0, nan, 1.0); a box is lowest x, lowest y, highest x, highest y",
     ),
     (
+        {"objective": Strip(), "reach": [(), (("0", 0.0, 1.0, 1.0),)]},
+        "reach[1] has ('0', 0.0, 1.0, 1.0); a box is lowest x, lowest y, highest x, highest y",
+    ),
+    (
         {"objective": Strip(), "reach": [(), (("0", 0.0, 1.0),)]},
         "reach[1] has ('0', 0.0, 1.0); a box is lowest x, lowest y, highest x, highest y",
     ),

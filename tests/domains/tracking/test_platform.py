@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from functools import reduce
 
@@ -11,6 +12,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 from tests.support.tracking_scenes import SIDE, random_impact, random_platform, random_tracks
 from vedette import Tree, exhaustive, negotiate
@@ -21,12 +23,14 @@ from vedette.domains.tracking.courses import Course, sequences
 from vedette.domains.tracking.models import constant_velocity, static
 from vedette.domains.tracking.objective import OBJECTIVES, FinalEntropy, TrackingObjective
 from vedette.domains.tracking.platform import TrackingPlatform
-from vedette.domains.tracking.sensors import BearingOnly, Position, RangeBearing
+from vedette.domains.tracking.sensing import Sensor
+from vedette.domains.tracking.sensors import BearingOnly, Position, RangeBearing, RangeOnly
 from vedette.errors import InputError
 from vedette.vehicle import drive
 
 OBJECTIVE = TrackingObjective()
 seeds = st.integers(0, 2**32 - 1)
+Float = NDArray[np.float64]
 
 
 @pytest.mark.parametrize("horizon", [1, 2, 5, 6, 8, 15])
@@ -163,31 +167,45 @@ def test_the_papers_sweep_with_the_inverse_agrees_with_the_one_without() -> None
     assert one.value == pytest.approx(other.value, rel=1e-9)
 
 
-@pytest.mark.parametrize("name", sorted(OBJECTIVES))
-@pytest.mark.parametrize("sensor", [BearingOnly(range=1e3), RangeBearing(range=1e3), Position(range=1e3)])
-def test_the_gradient_by_turn_rates_agrees_with_central_differences(name: str, sensor: BearingOnly) -> None:
+RATES = np.array([0.3, -0.2, 0.0, 0.5, 0.1])  # one at the straight limit
+
+
+def slopes(objective: TrackingObjective, sensor: Sensor) -> tuple[Float, Callable[[Float], float]]:
+    """The gradient by turn rates at RATES, and the value that it is the gradient of."""
     rng = np.random.default_rng(3)
-    objective, sensor = OBJECTIVES[name](), replace(sensor, detection=0.9)
     belief = random_tracks(rng, targets=3, horizon=5)
     platform = TrackingPlatform(4.0, 0.6, sensor, objective)
     platform.place(10.0, 20.0, 0.4)
     platform.prepare(belief)
     others = random_impact(rng, belief)
-    rates = np.array([0.3, -0.2, 0.0, 0.5, 0.1])  # one at the straight limit
 
-    def value(turns: np.ndarray) -> float:
+    def value(turns: Float) -> float:
         own = platform.impact(belief, Course(belief.k0, tuple(turns)))
         return objective.value(belief, objective.combine(others, own))
 
-    poses = drive(platform.pose, rates, 4.0, belief.dt)
+    poses = drive(platform.pose, RATES, 4.0, belief.dt)
     points = belief.predicted_means[..., :2].swapaxes(0, 1)
-    team = objective.combine(others, platform.impact(belief, Course(belief.k0, tuple(rates))))
+    team = objective.combine(others, platform.impact(belief, Course(belief.k0, tuple(RATES))))
     spreads = belief.predicted_covariances[..., :2, :2].swapaxes(0, 1)
     by_pose = sensor.foreseen_slope(poses, points, spreads, objective.gradient(belief, team), 4.0).sum(axis=0)
-    found = turn_rate_gradient(platform.pose, rates, 4.0, belief.dt, by_pose)
+    return turn_rate_gradient(platform.pose, RATES, 4.0, belief.dt, by_pose), value
+
+
+@pytest.mark.parametrize("name", sorted(OBJECTIVES))
+@pytest.mark.parametrize("kind", [BearingOnly, RangeOnly, RangeBearing])
+def test_the_gradient_by_turn_rates_agrees_with_central_differences(name: str, kind: type[Sensor]) -> None:
+    found, value = slopes(OBJECTIVES[name](), kind(range=1e3, detection=0.9))
     steps = 1e-5 * np.eye(5)
-    differences = np.array([(value(rates + step) - value(rates - step)) / 2e-5 for step in steps])
-    np.testing.assert_allclose(found, differences, rtol=1e-5, atol=1e-6 * max(1.0, np.abs(differences).max()))
+    differences = np.array([(value(RATES + step) - value(RATES - step)) / 2e-5 for step in steps])
+    assert np.abs(differences).min() > 1e-3
+    np.testing.assert_allclose(found, differences, rtol=1e-5, atol=1e-6)
+
+
+@pytest.mark.parametrize("name", sorted(OBJECTIVES))
+def test_who_measures_places_gains_nothing_by_turning_while_all_targets_are_in_view(name: str) -> None:
+    found, value = slopes(OBJECTIVES[name](), Position(range=1e3, detection=0.9))
+    np.testing.assert_allclose(found, np.zeros(5), atol=1e-6)  # a thousandth of the least slope above
+    assert value(RATES + 0.1) == pytest.approx(value(RATES), rel=1e-12, abs=0.0)
 
 
 def test_the_ascent_finds_the_top_of_a_hill_and_stays_in_its_limits() -> None:

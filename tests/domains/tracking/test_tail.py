@@ -17,7 +17,7 @@ from vedette.domains.tracking.impact import Impact, nothing
 from vedette.domains.tracking.models import constant_velocity, static
 from vedette.domains.tracking.objective import TrackingObjective
 from vedette.domains.tracking.platform import TrackingPlatform
-from vedette.domains.tracking.sensors import Position
+from vedette.domains.tracking.sensors import Position, RangeBearing
 from vedette.domains.tracking.tail import edges
 from vedette.testing import check_objective
 from vedette.vehicle import drive
@@ -96,6 +96,26 @@ def test_a_look_that_finds_its_target_half_the_time_is_worth_half_as_much() -> N
         belief.tail.worth(every, attending.looks(belief.tail, p * np.ones(len(every)))) for p in (1.0, 0.5)
     )
     np.testing.assert_allclose(half, 0.5 * sure, rtol=1e-6)
+
+
+def test_a_look_in_the_tail_says_as_much_in_all_directions() -> None:
+    belief = with_tail(np.random.default_rng(1))
+    looks = Attending(Position(range=50.0, noise=2.0, detection=1.0), 5.0, 0.5).looks(belief.tail)
+    np.testing.assert_allclose(looks, np.broadcast_to([0.25, 0.0, 0.25], looks.shape), rtol=1e-9)
+
+
+def test_who_stays_in_its_place_sees_beside_a_target_what_is_in_its_view_when_it_faces_it() -> None:
+    places = [[30.0, 0.0], [28.0, 4.0], [0.0, 30.0], [200.0, 0.0]]
+    belief = tracks([static(1.0, 0.0)] * 4, places, [np.eye(2)] * 4, dt=1.0, horizon=2, layers=(10.0, 30.0))
+    turret = Attending(RangeBearing(range=60.0, view=60.0), 0.0, 1.0)
+    poses = np.array([[0.0, 0.0, 0.0]])
+    seen = [turret.blocks(belief.tail, poses, target)[0, :, -1, 0] > 0.0 for target in range(4)]
+    assert np.array(seen).tolist() == [
+        [True, True, False, False],
+        [True, True, False, False],
+        [False, False, True, False],
+        [False, False, False, False],  # out of its range
+    ]
 
 
 @settings(deadline=None, max_examples=15)
