@@ -10,7 +10,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.negotiation import Chooser, Negotiator, Outgoing, RoundOutcome, Tree, messages, node_of
+from vedette.negotiation import (
+    Chooser,
+    Negotiator,
+    Outgoing,
+    RoundOutcome,
+    TokenNode,
+    Tree,
+    messages,
+    node_of,
+)
 from vedette.negotiation.messages import Message
 from vedette.problem import Invertible, Objective
 
@@ -47,6 +56,7 @@ class Recording:
     replies: tuple[tuple[int, ...], ...]  # each platform's candidate after each of its replies
     combinations: NDArray[np.int64]  # (n,) applications of ``*`` by each platform
     seconds: Float  # (n,) CPU time of each platform
+    values: tuple[float, ...]  # of the team, as the root finds them; none with ``token``
 
     def sent(self, n: int) -> NDArray[np.int64]:
         """Count the messages that each of n platforms sent."""
@@ -116,7 +126,7 @@ def record(
         beliefs: one for all, or each platform's own.
         candidates: each platform's impacts.
         tree: who talks to whom.
-        scheme: ``token`` or ``jacobi``.
+        scheme: one of the ``SCHEMES``.
         start: everybody's first candidate.
         inverse: with ``jacobi``, send the team's impact down the tree (paper, eq. (31)).
         root: where the way up ends.
@@ -136,7 +146,8 @@ def record(
         for i, seat in enumerate(seats)
     ]
     letters, seconds = _carry(nodes, codec, shuffle)
-    outcome = nodes[root].finished
+    first = nodes[root]
+    outcome = first.finished
     assert outcome is not None
     return Recording(
         tuple(letters),
@@ -145,6 +156,7 @@ def record(
         tuple(tuple(seat.replies) for seat in seats),
         np.array([seat.combinations for seat in seats]),
         seconds,
+        () if isinstance(first, TokenNode) else tuple(first.values),
     )
 
 
