@@ -22,7 +22,7 @@ INSTALLED := $(VENV)/.installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help explore test test-all test-ros2 check lint types contracts rust-lint bench fuzz mutants missions figures schemas docs dist build ready ready-dev clean
+.PHONY: help explore test test-all test-ros2 check lint types contracts rust-lint bench fuzz mutants blunt missions figures schemas docs dist build ready ready-dev clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -70,9 +70,11 @@ fuzz: ready-dev ## Fuzz every decoder and loader, guided by coverage
 	@$(PY) -m tests.fuzz $(ARGS)
 
 mutants: ready-dev ## Put small faults into a copy of the code, for half an hour, and tell which no test notices
-	@$(PIP) install -c constraints.txt 'mutmut>=3.8,<4'
-	@test -x build/mutants/cargo/bin/cargo-mutants || cargo install --quiet --locked --version 27.1.0 --root build/mutants/cargo cargo-mutants
+	@test -x build/cargo-mutants/bin/cargo-mutants || cargo install --quiet --locked --version 27.1.0 --root build/cargo-mutants cargo-mutants
 	@nice -n 19 $(PY) -m tests.mutants $(ARGS)
+
+blunt: ready-dev ## Run the quick tests and tell what in them nothing could have failed
+	@PYTHONPYCACHEPREFIX=build/blunt PATH="$(CURDIR)/$(BIN):$$PATH" $(PY) -m pytest -p tests.support.blunt -o enable_assertion_pass_hook=true -m "not slow" $(ARGS)
 
 missions: ready-dev ## Run the table of missions beside the yardsticks (long)
 	@$(PY) -m bench.missions $(if $(wildcard $(MAPS)),--maps $(MAPS)) $(ARGS)

@@ -1,74 +1,79 @@
-"""Mutants of the kernels, listed by cargo-mutants; Python tests are run on each, the kernels' own first."""
+"""Mutants of the kernels, listed by cargo-mutants; each is built on what the last build left."""
 
 from __future__ import annotations
 
 import json
 import os
-import resource
+import re
 import shutil
 import subprocess
-import sys
+from pathlib import Path
 from typing import Any
 
-from tests.mutants.tree import CRATE_AS_IT_WAS, TREE, WORK
+from tests.mutants import tree
 
-_CRATE = TREE / "rust"
-_KERNELS = TREE / "src/vedette/_kernels.abi3.so"
-_TOOL = WORK / "cargo/bin/cargo-mutants"
-_CPU = 240  # seconds of it: a mutant that takes more has no end
+_TOOL = tree.WORK.parent / "cargo-mutants/bin/cargo-mutants"
 _FASTER_BUILD = {
-    "CARGO_TARGET_DIR": str(WORK / "target"),
     "CARGO_INCREMENTAL": "1",
     "CARGO_PROFILE_RELEASE_LTO": "off",
-    "CARGO_PROFILE_RELEASE_CODEGEN_UNITS": "16",
+    "CARGO_PROFILE_RELEASE_CODEGEN_UNITS": "64",
 }
 
 
 def mutants() -> dict[str, str]:
     """Return each mutant's name and diff; bindings that return some other array do not compile."""
+    manifest = str(tree.TREE / "rust/Cargo.toml")
     words = [
-        str(_TOOL),
+        _TOOL,
         "mutants",
         "--list",
         "--json",
         "--diff",
         "--exclude-re=PyResult",
         "--manifest-path",
-        str(_CRATE / "Cargo.toml"),
+        manifest,
     ]
     listed: list[dict[str, Any]] = json.loads(subprocess.run(words, check=True, capture_output=True).stdout)
     return {f"rust/{each['name']}": str(each["diff"]) for each in listed}
 
 
-def run(name: str, diff: str) -> str:
-    """Put one mutant into the copy, build it and test it; return what became of it."""
-    shutil.rmtree(_CRATE)
-    shutil.copytree(CRATE_AS_IT_WAS, _CRATE)
-    subprocess.run(["patch", "--quiet", name.split(":")[0]], cwd=TREE, input=diff, text=True, check=True)
-    env = {**os.environ, "PYTHONPATH": "src"}
+def put(copy: Path, name: str, diff: str) -> bool:
+    """Put one mutant into a worker's copy and build it; return whether it can be built."""
+    subprocess.run(["patch", "--quiet", name.split(":")[0]], cwd=copy, input=diff, text=True, check=True)
     build = ["cargo", "build", "--release", "--quiet", "--features", "extension-module"]
-    if subprocess.run(build, cwd=_CRATE, env=env | _FASTER_BUILD, capture_output=True).returncode:
-        return "unbuildable"
-    _KERNELS.unlink()
-    shutil.copy2(WORK / "target/release/lib_kernels.so", _KERNELS)
-    tests = [
-        sys.executable,
-        "-m",
-        "pytest",
-        "-x",
-        "-q",
-        "-m",
-        "not slow",
-        "-p",
-        "no:randomly",
-        "--hypothesis-profile=ci",
+    env = os.environ | _FASTER_BUILD | {"CARGO_TARGET_DIR": str(copy / "target")}
+    if subprocess.run(build, cwd=copy / "rust", env=env, capture_output=True).returncode:
+        return False
+    (copy / tree.KERNELS).unlink()
+    shutil.copy2(copy / "target/release/lib_kernels.so", copy / tree.KERNELS)
+    return True
+
+
+def calls_of(name: str) -> list[tuple[str, int]]:
+    """Return file and line of each call of a kernel that a mutant can make a difference to.
+
+    Those are the kernels of its topic, and of topics that use it, themselves or by way of others.
+    """
+    sources: dict[str, str] = {}
+    for path in sorted((tree.TREE / "rust/src").rglob("*.rs")):
+        topic = _topic(str(path.relative_to(tree.TREE)))
+        sources[topic] = sources.get(topic, "") + path.read_text(encoding="utf-8")
+    topics, grown = set[str](), {_topic(name.split(":")[0])}
+    while topics != grown:
+        topics = grown
+        grown = topics | {
+            each for each, text in sources.items() if any(f"crate::{t}::" in text for t in topics)
+        }
+    kernels = {
+        each for topic in topics for each in re.findall(r'#\[pyfunction\(name = "(\w+)"', sources[topic])
+    }
+    return [
+        (str(path.relative_to(tree.TREE)), number)
+        for path in sorted((tree.TREE / "src/vedette/kernels").glob("*.py"))
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1)
+        if kernels.intersection(re.findall(r"_kernels\.(\w+)", line))
     ]
-    for folder in ("tests/kernels", "tests/domains"):
-        done = subprocess.run([*tests, folder], cwd=TREE, env=env, capture_output=True, preexec_fn=_limit)
-        if done.returncode:
-            return "killed"
-    return "survived"
 
 
-def _limit() -> None:
-    resource.setrlimit(resource.RLIMIT_CPU, (_CPU, _CPU))
+def _topic(file: str) -> str:
+    return Path(file).relative_to("rust/src").parts[0].removesuffix(".rs")
