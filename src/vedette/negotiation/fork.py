@@ -7,15 +7,15 @@ from collections.abc import Hashable, Mapping, Sequence
 
 from vedette.errors import InputError
 from vedette.negotiation.branch import Branch, value_alone
-from vedette.negotiation.member import Member
 from vedette.negotiation.messages import Fork, Gather, Joined, Message, RoundOutcome, Settled
 from vedette.negotiation.node import Claims, Outgoing, Participant
+from vedette.negotiation.rooted import RootedNode
 from vedette.problem.bound import attains, tightest
 from vedette.problem.objective import ImpactT
 from vedette.problem.reach import Reach
 
 
-class ForkNode(Member[ImpactT]):
+class ForkNode(RootedNode[ImpactT]):
     """Sweeps down all branches at once and back: ``2 depth`` hops, whatever the size of the team.
 
     A platform replies to what it is told, then hands the right to choose to all its children together. When

@@ -6,14 +6,14 @@ import math
 from collections.abc import Callable, Hashable, Sequence
 
 from vedette.errors import InputError
-from vedette.negotiation.member import Member
 from vedette.negotiation.messages import Down, Message, RoundOutcome, Stop, Up
 from vedette.negotiation.node import Claims, Outgoing, Participant
+from vedette.negotiation.rooted import RootedNode
 from vedette.problem.bound import attains, tightest
 from vedette.problem.objective import ImpactT
 
 
-class JacobiNode(Member[ImpactT]):
+class JacobiNode(RootedNode[ImpactT]):
     """``v_i <- argmax psi(Y_i(v_i) * a_{-i})`` for all i at once, from the last iterate's ``a_{-i}``.
 
     An iterate goes up the tree and comes down it, ``2 (n - 1)`` messages. Simultaneous replies may cycle:

@@ -8,16 +8,16 @@ from collections.abc import Mapping, Sequence
 import msgspec
 
 from vedette.errors import InputError
-from vedette.negotiation.member import Member
 from vedette.negotiation.messages import Gather, Message, RoundOutcome, Stop, Tally, Token
 from vedette.negotiation.node import Claims, Outgoing, Participant
 from vedette.negotiation.part import Part
+from vedette.negotiation.rooted import RootedNode
 from vedette.problem.bound import attains, tightest
 from vedette.problem.objective import ImpactT
 from vedette.problem.reach import Reach
 
 
-class TokenNode(Member[ImpactT]):
+class TokenNode(RootedNode[ImpactT]):
     """Gauss-Seidel along the Euler tour: never lowers the value, ends at an equilibrium.
 
     Every impact is first gathered to the root, which starts the token. A platform replies when the token

@@ -13,7 +13,7 @@ from vedette.problem.objective import ImpactT
 from vedette.problem.reach import Reach
 
 
-class Member(ABC, Generic[ImpactT]):
+class RootedNode(ABC, Generic[ImpactT]):
     """A `Negotiator` that hears those whom it waits for, and nobody who is cut."""
 
     def __init__(
