@@ -55,9 +55,13 @@ class Outcome(StrEnum):
 def together(endings: Iterable[str]) -> Outcome:
     """Return how a mission ends for a team of which all who live are done, each with its own ending.
 
-    What one could not get to is left, whatever the others did; who cannot move keeps nobody from it.
+    What one could not get to is left, whatever the others did; who cannot move keeps nobody from it, nor does
+    whom the operator has called off.
     """
     said = set(endings)
+    if said == {Outcome.ORDERED}:
+        return Outcome.ORDERED
+    said.discard(Outcome.ORDERED)
     if said == {Outcome.ENCLOSED}:
         return Outcome.ENCLOSED
     return Outcome.UNREACHED if Outcome.UNREACHED in said else Outcome.COMPLETE
@@ -76,7 +80,9 @@ class Agreement:
 
     def reached(self, held: Iterable[int], endings: Iterable[str], now: float) -> Outcome | None:
         """Return how it ends for those who are done, by the digests of what they hold; None: not yet."""
-        self._since = min(self._since, now)
+        self._since, endings = min(self._since, now), list(endings)
+        if set(endings) == {Outcome.ORDERED}:
+            return Outcome.ORDERED
         if len(set(held)) <= 1:
             return together(endings)
         return Outcome.MAPS_DIFFER if now > self._since + AGREEING else None

@@ -14,6 +14,7 @@ from tests.fuzz.fingerprint import fingerprint
 from tests.fuzz.mutation import mutate_message
 from tests.fuzz.target import Broken, Target
 from vedette.agent import messages as agent_messages
+from vedette.agent import orders
 from vedette.domains.mapping.impact import Impact as Misses
 from vedette.domains.mapping.impact import MapImpactCodec as MappingCodec
 from vedette.domains.search.impact import SearchImpactCodec as SearchCodec
@@ -71,8 +72,27 @@ def _agent_messages() -> list[Any]:
         agent_messages.Begin(3, 7, 1),
         agent_messages.Flushed(3, 7, 2, ((1, 2, 3),), ((0, 0, 9, 9),)),
         agent_messages.Freeze(3, 7, 12_000, 1 << 60, 4, ((1, 2, 3), (4, 5, 6)), ((0, 0, 9, 9),)),
+        agent_messages.Orders((b"one", b"another")),
         agent_messages.Negotiate(3, 7, msgspec.msgpack.encode([4, [1.0, 2.0, 1, True, 0], None])),
     ]
+
+
+def _orders() -> list[Any]:
+    square = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
+    said = [
+        orders.Pause(robot=2),
+        orders.Resume(),
+        orders.Stay(robot=1),
+        orders.Recall(to=(1.0, 2.0)),
+        orders.LookThere(at=(1.0, 2.0)),
+        orders.End(),
+        orders.NoGo(area="lab", corners=square),
+        orders.Priority(area="lab", corners=square, factor=3.0),
+        orders.Remove(area="lab"),
+        orders.Exclude(robot=3),
+        orders.Reinstate(robot=3),
+    ]
+    return [orders.Given(k, "operator", each) for k, each in enumerate(said)]
 
 
 def _hellos() -> list[Any]:
@@ -228,6 +248,7 @@ def decoders() -> list[Target]:
     message = track_wire.TrackMessage(9, -1, 2, 1, 0, 14, b"tracks")
     return [
         _decoder("decode-agent", agent_messages.decode, agent_messages.encode, _agent_messages),
+        _decoder("decode-order", orders.decode, orders.encode, _orders),
         _decoder("decode-hello", partial(hello.decode, 3), hello.encode, _hellos),
         _decoder("decode-packet", packet.decode, packet.encode, _packets),
         _decoder("decode-negotiation", hear, say, partial(_negotiation, mapping)),

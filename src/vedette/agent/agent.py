@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from functools import partial
 
-from vedette.agent import beacons, messages
+from vedette.agent import beacons, messages, obeying
 from vedette.agent.effects import Effect, Send, Shun, TrafficKind
 from vedette.agent.events import (
     Arrived,
@@ -17,6 +17,7 @@ from vedette.agent.events import (
     Event,
     JobDone,
     Message,
+    Ordered,
     Pose,
     Scan,
     Sensed,
@@ -58,8 +59,11 @@ def _take(agent: Agent, event: Event, now: float) -> list[Effect]:
                 agent.quiet = 0  # who is new may know of something left to do
             agent.rounds.join(event, now)
             agent.mission.fusion.set_neighbours(event.neighbours)
+            return obeying.tell_all(agent)
         case CertificatesRevoked(robots) if agent.signed is not None and agent.signed.standing.revoke(robots):
             agent.signed.heed()
+        case Ordered(order):
+            return obeying.take(agent, [order], None)
     return []
 
 
@@ -106,6 +110,8 @@ def _hear(agent: Agent, sender: int, payload: bytes, now: float) -> list[Effect]
             return agent.rounds.freeze(message, now)
         case messages.Negotiate():
             return agent.rounds.negotiate(sender, message, now)
+        case messages.Orders(told):
+            return obeying.take(agent, told, sender)
         case messages.Audit() if agent.rounds.auditor is not None:
             return agent.rounds.auditor.ask(sender, message, agent.rounds.tree.neighbours, now)
         case messages.Account() if agent.rounds.auditor is not None:

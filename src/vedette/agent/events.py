@@ -66,6 +66,13 @@ class JobDone:
 
 
 @dataclass(frozen=True)
+class Ordered:
+    """The operator has told this robot an order, as bytes."""
+
+    order: bytes
+
+
+@dataclass(frozen=True)
 class TreeChanged:
     """The team's tree is another one now; messages of older epochs are void."""
 
@@ -84,5 +91,5 @@ class CertificatesRevoked:
 
 
 Event: TypeAlias = (
-    Message | Pose | Scan | Sensed | Arrived | Stuck | JobDone | TreeChanged | CertificatesRevoked
+    Message | Pose | Scan | Sensed | Arrived | Stuck | JobDone | TreeChanged | CertificatesRevoked | Ordered
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import hypot
 from typing import Any
 
@@ -12,13 +12,16 @@ from numpy.typing import NDArray
 from vedette.agent.driving import YIELD_LIMIT, Driver
 from vedette.agent.effects import Drive, Effect
 from vedette.agent.events import Arrived, Pose, Scan, Sensed, Stuck
-from vedette.agent.mission import GroundMission
+from vedette.agent.mission import GroundMission, Heeding
+from vedette.agent.orders import End, Given, LookThere, Pause, Recall, Stay
 from vedette.agent.state import Agent, State
 from vedette.outcome import Outcome
 
 HOME = 0.3  # from its start a robot is at home [m]
 HOME_AGAIN = 3.0  # a robot whose way home is blocked tries again after so long [s]
 HOME_TRIES = 10  # then it stays where it is
+LOOK_TRIES = 3  # where it cannot look, it works on
+ON_THE_WAY = (State.RETURNING, State.LOOKING)  # to a place of its own
 LISTEN = 3.0  # a robot waits at most so long for its mates' first beacons before it maps [s]
 GATHER = 120.0  # and so long for mates that it was told to expect [s]
 LOOK_OUT_PERIOD = 0.5  # [s]
@@ -38,11 +41,13 @@ class GroundBehaviour:
     home_tries: int = 0  # ways home that were blocked
     listening: bool = True  # until all mates have been heard, or for a while: they are not to be mapped
     held: Scan | Sensed | None = None  # the latest while listening
+    obeyed: Given | None = None  # the order that keeps it from work
+    called: tuple[float, float] | None = None  # where that wants it [m]; None: home
 
     @property
     def ending(self) -> Outcome:
-        """The mission's own word."""
-        return self.mission.ending
+        """The mission's own word, or that the operator has called the robot off."""
+        return self.mission.ending if self.obeyed is None else Outcome.ORDERED
 
     def wake(self, agent: Agent, pose: Pose, now: float) -> bool:
         """Begin to map once the mates' places are known, so that they are not taken for obstacles."""
@@ -70,7 +75,7 @@ class GroundBehaviour:
 
     def departure(self, agent: Agent, pose: Pose, belief: object) -> Pose:
         """Return the pose itself: tours begin where the robot is."""
-        return pose
+        return pose if self.obeyed is None else replace(pose, at_work=False)
 
     def ahead(self, pose: Pose) -> NDArray[np.float64]:
         """Return the next few metres that the robot will really drive, ``(L, 2)`` [m], team frame."""
@@ -79,14 +84,67 @@ class GroundBehaviour:
     # -- driving ------------------------------------------------------------------------------------
 
     def follow(self, agent: Agent, pose: Pose, now: float, news: bool) -> list[Effect]:
-        """Drive where the latest decision wants the robot; after the last one, home or nowhere."""
+        """Drive where orders or the latest decision want the robot; after the last one, home or nowhere."""
+        given = agent.orders.in_force(agent.robot)
+        if given != self.obeyed:
+            return self._obey(agent, pose, given, now)
+        if (out := self._leave(agent, pose, now)) is not None:
+            return out
+        if self.obeyed is not None:
+            return self._go_on_home(agent, pose, now)
         if not pose.at_work or self.state is State.PAUSED:
             return self._pause(agent, pose)
         effects = self._follow_decision(agent, pose, now) if news else []
-        waiting = self.state is State.RETURNING and self.driver.standing
+        return [*effects, *self._go_on_home(agent, pose, now)]
+
+    def _go_on_home(self, agent: Agent, pose: Pose, now: float) -> list[Effect]:
+        """Try again where the way home was taken."""
+        waiting = self.state in ON_THE_WAY and self.driver.standing
         if waiting and agent.is_due("home", HOME_AGAIN, now):
-            effects += self._go_home(agent, pose, now, blocked=False)
-        return effects
+            return self._go_home(agent, pose, now, blocked=False)
+        return []
+
+    # -- orders -------------------------------------------------------------------------------------
+
+    def _obey(self, agent: Agent, pose: Pose, given: Given | None, now: float) -> list[Effect]:
+        """Give the work back and do as the operator says; without an order, ask for work."""
+        self.obeyed, self.called, self.home_tries = given, None, 0
+        self.mission.stand_by()
+        agent.rounds.want()
+        agent.quiet = 0
+        match None if given is None else given.order:
+            case None:
+                self.state = State.IDLE
+            case Pause():
+                self.state = State.PAUSED
+            case Recall(to=place) | LookThere(at=place):
+                self.called = place
+                self.state = State.LOOKING if isinstance(given.order, LookThere) else State.RETURNING
+                return self._go_home(agent, pose, now, blocked=False)
+            case _:
+                self.state = State.DONE
+        return [self.driver.go(None)]
+
+    def _leave(self, agent: Agent, pose: Pose, now: float) -> list[Effect] | None:
+        """Leave a no-go area that the robot finds itself in; None: it is in none, or is held where it is."""
+        held = self.state in (State.PAUSED, State.DONE) or not pose.at_work
+        if held or not isinstance(self.mission, Heeding):
+            return None
+        if self.state is State.LEAVING and not self.driver.standing:
+            return []
+        if not agent.orders.any_no_go or not agent.is_due("leave", CHECK_PERIOD, now):
+            return None
+        route = self.mission.way_out(pose)
+        if route is None:
+            return None
+        self.mission.stand_by()
+        self.state = State.LEAVING
+        return [self.driver.go(route)]
+
+    def _looked(self, agent: Agent) -> list[Effect]:
+        """Work on: the robot has looked where it was to look, or cannot get there."""
+        agent.orders.fulfil(agent.robot)
+        return [self.driver.go(None)]
 
     def _pause(self, agent: Agent, pose: Pose) -> list[Effect]:
         """Give the work back while somebody keeps the robot from it; ask for some when that is over."""
@@ -138,9 +196,17 @@ class GroundBehaviour:
         """Go on to the next stop; at home, be done."""
         if self.driver.yielding or self.driver.wanted is None:
             return []
-        if self.state is State.RETURNING:
+        if self.state is State.LEAVING:
+            self.state = State.IDLE
+            self.driver.go(None)
+            agent.rounds.want()
+            self.obeyed = None  # what was ordered is taken up again
+            return [self.driver.go(None)]
+        if self.state in ON_THE_WAY:
             if not self._at_home(pose):
                 return self._wait_for_home(agent, now)
+            if self.state is State.LOOKING:
+                return self._looked(agent)
             self.state = State.DONE
             return [self.driver.go(None)]
         if self.state is not State.DRIVING:
@@ -151,8 +217,10 @@ class GroundBehaviour:
 
     def _stuck(self, agent: Agent, pose: Pose, now: float) -> list[Effect]:
         """Release the work at once, so that others can take it, and plan round what is in the way."""
-        if self.state is State.RETURNING:
+        if self.state in ON_THE_WAY:
             return self._go_home(agent, pose, now, blocked=True)
+        if self.state is State.LEAVING:
+            return [self.driver.go(None)]
         if self.state is State.DONE:
             return [self.driver.go(None)]
         if self.state is not State.DRIVING and not self.driver.yielding:
@@ -167,7 +235,7 @@ class GroundBehaviour:
 
     def look_out(self, agent: Agent, pose: Pose, now: float) -> list[Effect]:
         """Make room for mates, and ask for a round when the present goal has lost its point."""
-        if not pose.at_work:
+        if not pose.at_work or self.state in (State.PAUSED, State.LEAVING) or self._is_to_stay:
             return []
         effects = self._make_room(agent, pose, now) if agent.is_due("look out", LOOK_OUT_PERIOD, now) else []
         checks = agent.is_due("check", CHECK_PERIOD, now)
@@ -197,24 +265,35 @@ class GroundBehaviour:
     # -- the way home -------------------------------------------------------------------------------
 
     def _go_home(self, agent: Agent, pose: Pose, now: float, *, blocked: bool) -> list[Effect]:
-        """Drive to where the robot started."""
-        assert self.home
-        route = self.mission.route(pose, self.home, agent.mates.all(), blocked, now)
+        """Drive to where the robot started, or where the operator wants it."""
+        place = self.called or self.home
+        assert place
+        route = self.mission.route(pose, place, agent.mates.all(), blocked, now)
         if route is None:
             return self._wait_for_home(agent, now)
-        self.state = State.RETURNING
+        if self.state is not State.LOOKING:
+            self.state = State.RETURNING
         return [self.driver.go(route)]
 
     def _wait_for_home(self, agent: Agent, now: float) -> list[Effect]:
         """Stand for a while where the way home, or home itself, is taken; in the end stay here."""
         self.home_tries += 1
         agent.due["home"] = now + HOME_AGAIN
+        if self.state is State.LOOKING:
+            return self._looked(agent) if self.home_tries > LOOK_TRIES else [self.driver.go(None)]
         self.state = State.RETURNING if self.home_tries <= HOME_TRIES else State.DONE
         return [self.driver.go(None)]
 
     def _at_home(self, pose: Pose) -> bool:
-        return self.home is None or hypot(pose.x - self.home[0], pose.y - self.home[1]) <= HOME
+        place = self.called or self.home
+        return place is None or hypot(pose.x - place[0], pose.y - place[1]) <= HOME
+
+    @property
+    def _is_to_stay(self) -> bool:
+        """Tell whether the operator wants the robot to stand where it is."""
+        return self.obeyed is not None and isinstance(self.obeyed.order, Stay | End)
 
     def _strayed(self, pose: Pose) -> bool:
         """Tell whether the robot, done, had to make room and could go home again."""
-        return self.return_home and self.home_tries <= HOME_TRIES and not self._at_home(pose)
+        homing = self.return_home or self.obeyed is not None
+        return homing and self.home_tries <= HOME_TRIES and not self._at_home(pose)

@@ -143,6 +143,12 @@ class Proven(msgspec.Struct, frozen=True, array_like=True, tag=12):
     robots: Annotated[tuple[Robot, ...], Meta(max_length=MOST_ROBOTS)]
 
 
+class Orders(msgspec.Struct, frozen=True, array_like=True, tag=13):
+    """Orders of the operator, each as it has been signed; passed on to everybody."""
+
+    told: Annotated[tuple[bytes, ...], Meta(max_length=256)]
+
+
 Wire: TypeAlias = (
     Beacon
     | Beacons
@@ -157,6 +163,7 @@ Wire: TypeAlias = (
     | Vouched
     | Proof
     | Proven
+    | Orders
 )
 
 _DECODER: msgspec.msgpack.Decoder[Wire] = msgspec.msgpack.Decoder(Wire)

@@ -13,6 +13,7 @@ from vedette.agent.events import Pose
 from vedette.agent.flight import AnyPlan
 from vedette.agent.mates import Mate
 from vedette.agent.messages import Note
+from vedette.agent.orders import OrderBook
 from vedette.outcome import Outcome
 from vedette.problem import Codec, Objective, Reach
 
@@ -134,6 +135,17 @@ class Promising(Protocol[BeliefT_contra, ImpactT]):
 
     def discounted(self, impact: ImpactT, halvings: int) -> ImpactT:
         """Return an impact that is so many times half as likely."""
+
+
+@runtime_checkable
+class Heeding(Protocol):
+    """A mission whose plans heed orders about areas and about who is believed."""
+
+    def heed(self, book: OrderBook) -> None:
+        """Plan by these orders from now on."""
+
+    def way_out(self, pose: Pose) -> Route | None:
+        """Return the shortest way out of where nobody may be any more; None: the robot is not in there."""
 
 
 class GroundMission(Mission[BeliefT, StrategyT, ImpactT], Protocol[BeliefT, StrategyT, ImpactT]):

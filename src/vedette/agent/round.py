@@ -69,6 +69,7 @@ class Round:
     weigh: Callable[[int, Any], Any] = lambda neighbour, impact: (
         impact
     )  # what a neighbour's impact counts for
+    mandate: Callable[[], int] = lambda: 0  # digest of the orders that this robot holds
     waiting: set[int] = field(init=False)  # children that have not flushed yet
     notes: set[Note] = field(default_factory=set)  # told by children
     reaches: dict[int, Reach | None] = field(default_factory=dict)  # beyond each neighbour, as it told
@@ -111,6 +112,11 @@ class Round:
         if self.belief is not None:
             return set()
         return self.waiting or ({self.tree.parent} if self.tree.parent is not None else set())
+
+    @property
+    def digest(self) -> int:
+        """Of what this robot plans on: the team's evidence, and the operator's orders."""
+        return self.mission.fusion.digest ^ self.mandate()
 
     @property
     def finished(self) -> RoundOutcome | None:
@@ -159,7 +165,7 @@ class Round:
         notes = tuple(sorted(self.notes.union(self.mission.notes())))[:MOST_NOTES]
         epoch, parent = self.tree.epoch, self.tree.parent
         if parent is None:
-            t0, digest = round(1000.0 * now), self.mission.fusion.digest
+            t0, digest = round(1000.0 * now), self.digest
             return self.freeze(Freeze(epoch, self.sequence, t0, digest, self.part, notes), now)
         news = send_news(self.mission, parent, now)
         reach = self._told(now)[parent]
@@ -185,7 +191,7 @@ class Round:
             effects.append(say(child, structs.replace(message, reach=told[child])))
         if self.scheme == "token" and self.forks and message.robots >= FORK_FROM:
             self.scheme = "fork"  # all in the round hear the same number, so all do
-        self.approximate = self.mission.fusion.digest != message.digest
+        self.approximate = self.digest != message.digest
         self.mission.hear_notes(message.notes)
         self.belief = self.mission.freeze(message.t0 / 1000.0)
         return effects

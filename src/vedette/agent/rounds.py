@@ -58,6 +58,7 @@ class Rounds:
     forks: bool = False  # the token may fork in a large team
     anybody_moves: Callable[[], bool] = lambda: True  # of the mates
     admitted: int = 1 << 16  # robots that there can be in the team
+    mandate: Callable[[], int] = lambda: 0  # digest of the orders that are held
     tree: TreeChanged = field(default_factory=lambda: TreeChanged(0, None, (), 1))
     decisions: int = 0
     sweeps: int = 0
@@ -217,7 +218,7 @@ class Rounds:
         self._solos += 1
         self._began, self._wanted = now, False
         tree = replace(self.tree, parent=None, neighbours=())
-        self.round = Round(self.mission, self.scheme, tree, -self._solos, 0, now)
+        self.round = Round(self.mission, self.scheme, tree, -self._solos, 0, now, mandate=self.mandate)
         return self.round.begin(Begin(self.tree.epoch, -self._solos, 0), now)
 
     def _after(self, effects: list[Effect], now: float) -> list[Effect]:
@@ -299,7 +300,15 @@ class Rounds:
         tree = replace(self.tree, neighbours=tuple(k for k in self.tree.neighbours if k not in absent))
         weigh = partial(self.suspicion.weigh, self.mission)
         self.round = Round(
-            self.mission, self.scheme, tree, message.sequence, message.depth, now, self.forks, weigh
+            self.mission,
+            self.scheme,
+            tree,
+            message.sequence,
+            message.depth,
+            now,
+            self.forks,
+            weigh,
+            self.mandate,
         )
         return [*unfinished, *self.round.begin(message, now)]
 

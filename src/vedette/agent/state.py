@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import Enum
 from math import inf
@@ -17,6 +18,7 @@ from vedette.agent.effects import Effect
 from vedette.agent.events import Arrived, Pose, Scan, Sensed, Stuck
 from vedette.agent.mates import Mates
 from vedette.agent.mission import Mission
+from vedette.agent.orders import Given, OrderBook
 from vedette.agent.pace import Pace
 from vedette.agent.proofs import Proofs
 from vedette.agent.relay import Relay
@@ -37,6 +39,8 @@ class State(Enum):
     PAUSED = "paused"  # by somebody beside the robot
     IDLE = "idle"  # nothing it can do is worth doing
     RETURNING = "returning"
+    LOOKING = "looking where it was told"
+    LEAVING = "leaving a no-go area"
     FLYING = "flying"
     CIRCLING = "circling"  # its plan has run out
     DONE = "done"
@@ -103,10 +107,15 @@ class Agent:
     beacons: int = 0  # sent
     due: dict[str, float] = field(default_factory=dict)  # when what is to be done next [s]
     news: bool = False  # a new decision waits to be carried out
+    orders: OrderBook = field(default_factory=OrderBook)  # of the operator
+    check_order: Callable[[Given], None] = lambda given: (
+        None
+    )  # raises ValueError for one that is not in order
 
     def __post_init__(self) -> None:
         self.rounds = Rounds(self.mission, self.scheme, self._decided, self.pace, forks=self.forks)
         self.rounds.anybody_moves = self.mates.anybody_moves
+        self.rounds.mandate = lambda: self.orders.digest
         if self.signed is not None:
             self.rounds.auditor = Auditor(self.robot, self.boot, self.mission, self.signed.standing)
             self.proofs = Proofs(self.mission, self.signed)

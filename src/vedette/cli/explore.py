@@ -21,6 +21,12 @@ from vedette.run.saved import seed_of
 @click.option(
     "--continue", "saved", type=FILE, metavar="RUN_DIR", help="Start from the map that an earlier run left."
 )
+@click.option(
+    "--orders",
+    type=FILE,
+    metavar="FILE",
+    help="What the operator orders, and when: pause, recall, no-go areas.",
+)
 @fault_options
 @output_options
 def explore(
@@ -30,6 +36,7 @@ def explore(
     team: Path | None,
     starts: str | None,
     saved: Path | None,
+    orders: Path | None,
     output: Output,
     **options: Any,
 ) -> None:
@@ -41,6 +48,6 @@ def explore(
     world, specs = world_named(map_path, resolution), team_named(team, robots, starts)
     if saved is not None and world is None and (seed := seed_of(saved)) not in (None, options["seed"]):
         raise InputError(f"--continue: {saved} is of the office of seed {seed}; add --seed {seed}")
-    mission = Explore(world, specs, saved=saved, **options)
+    mission = Explore(world, specs, saved=saved, orders=orders or (), **options)
     mission.inputs += files_of(None if saved is None else saved / "map.yaml", team)
     simulate(EXPLORING, mission, mission.scene, output)

@@ -83,6 +83,7 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
         self.unsettled = False  # time alone may change who is believed
         self.standing = standing
         self._trust = Trust(tiling, limits.resolution)
+        self._excluded, self._reinstated = frozenset[int](), frozenset[int]()  # by the operator's word
         self._again: dict[int, int] = {}  # tiles to look at again, since evidence grows firm: when [0.1 s]
         self._told: Particulars | None = None  # by this robot
 
@@ -105,6 +106,12 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
     def heed(self) -> None:
         """Take up that somebody has gone."""
         self._merge({})
+
+    def overrule(self, excluded: frozenset[int], reinstated: frozenset[int]) -> None:
+        """Believe none of the first robots, and all of the second, whatever their evidence says."""
+        if (excluded, reinstated) != (self._excluded, self._reinstated):
+            self._excluded, self._reinstated = excluded, reinstated
+            self._merge({})
 
     def contradictions(self, now: int) -> dict[tuple[int, int], Comparison]:
         """Return how far pairs of robots contradict each other, of what stands at a time [0.1 s]."""
@@ -180,5 +187,9 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
         now = sorted(said.values())[-2] if len(said) > 1 else 0
         times = {key: copy.times for key, copy in copies.items()}
         gone = frozenset(self.standing.gone)
-        self.out = gone | self._trust.out(times, now, gone)
-        self.unsettled = self.out != gone | self._trust.out(times, now + STANDS, gone)
+        self.out = gone | self._overruled(self._trust.out(times, now, gone))
+        self.unsettled = self.out != gone | self._overruled(self._trust.out(times, now + STANDS, gone))
+
+    def _overruled(self, out: frozenset[int]) -> frozenset[int]:
+        """Return whom not to believe by the operator's word; who is proved to lie, or revoked, stays out."""
+        return (out | self._excluded) - self._reinstated

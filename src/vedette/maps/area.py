@@ -45,6 +45,27 @@ class Area:
         xs, ys = zip(*self.corners, strict=True)
         return min(xs), min(ys), max(xs), max(ys)
 
+    @property
+    def square_metres(self) -> float:
+        """How large it is, if no edges cross [m^2]."""
+        x, y = np.array(self.corners).T
+        return abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1))) / 2.0
+
+    def distance(self, places: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return how far points ``(n, 2)`` [m] are from it; 0 inside."""
+        start = np.array(self.corners)
+        along = np.roll(start, -1, axis=0) - start
+        away = places[:, None] - start  # (n, E, 2)
+        square = np.maximum((along**2).sum(axis=1), 1e-12)
+        t = np.clip((away * along).sum(axis=2) / square, 0.0, 1.0)
+        edges: NDArray[np.float64] = np.hypot(*(away - t[..., None] * along).transpose(2, 0, 1)).min(axis=1)
+        x, y = places[:, None].transpose(2, 0, 1)
+        (x0, y0), (dx, dy) = start.T, along.T
+        crosses = (y0 <= y) != (y0 + dy <= y)
+        left = x < x0 + (y - y0) * np.divide(dx, dy, out=np.zeros_like(dx), where=dy != 0.0)
+        inside = (crosses & left).sum(axis=1) % 2 == 1
+        return np.where(inside, 0.0, edges)
+
     def holds(self, frame: GridFrame) -> NDArray[np.bool_]:
         """Return ``(R, C)``: which cells of a grid have their centre inside, by the crossings of each row."""
         inside = np.zeros(frame.shape, np.bool_)

@@ -37,6 +37,7 @@ from vedette.run.result import MissionResult
 from vedette.run.saved import read_saved_map
 from vedette.sim.explore.run import ExploreRun, prepare, views
 from vedette.sim.explore.simulation import ExploreSetup
+from vedette.sim.orders import OrderAt, check_orders, load_orders
 
 _Mission: TypeAlias = StepwiseMission[ExploreSnapshot, Tour, Impact, ExploreReport]
 
@@ -85,6 +86,7 @@ class Explore(_Mission):
         area: Sequence[Sequence[float]] | None = None,
         unbounded: bool = False,
         saved: str | Path | None = None,
+        orders: str | Path | Sequence[OrderAt] = (),
         record: str | Path | None = None,
         **conditions: Unpack[Conditions],
     ) -> None:
@@ -101,6 +103,7 @@ class Explore(_Mission):
             area: corners x, y [m] of the ground that is the team's; None: all of the world.
             unbounded: whether the robots are not told how far their ground goes.
             saved: folder of an earlier run, whose map the team starts from: its first robot has it.
+            orders: of the operator, each with its time; or a file of them.
             record: a folder for the run record, ``run.mcap``.
             conditions: see `vedette.run.inputs.Conditions`.
 
@@ -122,6 +125,12 @@ class Explore(_Mission):
         self.world = world_of(world, setup.seed)
         if saved is not None:
             setup = replace(setup, saved=read_saved_map(Path(saved), self.world.frame.resolution))
+        if orders:
+            given = load_orders(orders) if isinstance(orders, str | Path) else tuple(orders)
+            check_orders(
+                given, self.world, specs, str(orders) if isinstance(orders, str | Path) else "orders"
+            )
+            setup = replace(setup, orders=given)
         self.simulation = prepare(self.world, specs, setup)
         self.scene = ExploreScene.of(self.world, [spec.name for spec in specs])
         followers = Followers[ExploreSnapshot]()
@@ -131,7 +140,7 @@ class Explore(_Mission):
             followers,
             lambda place: ExploreMcapWriter(place, self.scene),
             record,
-            files_of(world, team, conditions.get("faults")),
+            files_of(world, team, conditions.get("faults"), orders),
         )
 
     @property

@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 from vedette.domains.mapping.frontier_worth import frontier_areas, spread_behind
 from vedette.domains.mapping.layers import TimeLayers, rate
 from vedette.domains.mapping.outlook import mean_promise
+from vedette.domains.mapping.priorities import Priorities, priority_factors, pull
 from vedette.kernels.coverage import CellWeights
 from vedette.kernels.frontier import find_frontiers
 from vedette.maps import UNKNOWN, GridFrame
-from vedette.maps.area import Area
 from vedette.maps.bounds import EVERYWHERE, Extent
+from vedette.maps.leave import Leave
 
 PLANNING_CELL = 0.2  # [m]; coarser costs quality, finer only bytes (docs/mapping.md, section 3)
 SHORTEST = 0.25  # frontier worth a name [m] ...
@@ -79,7 +80,8 @@ def freeze(
     layers: TimeLayers,
     counts: NDArray[np.int64],
     known: Extent = EVERYWHERE,
-    area: Area | None = None,
+    leave: Leave | None = None,
+    priorities: Priorities = (),
 ) -> MapBelief:
     """Snapshot a team map for a round.
 
@@ -98,7 +100,8 @@ def freeze(
         layers: the time layers of the objective.
         counts: (4, BINS) the team's sightings.
         known: rows and columns outside of which nothing is known.
-        area: outside of which there is nothing to see and no way; None: everywhere is the team's.
+        leave: where there is nothing to see and no way for want of it; None: everywhere is the team's.
+        priorities: areas in which all is worth so many times as much.
     """
     factor = planning_factor(frame.resolution)
     planning = frame.coarse(factor)
@@ -107,8 +110,8 @@ def freeze(
     crop = np.zeros((rows.stop - rows.start, cols.stop - cols.start), np.uint8)
     _paste(classes, crop, (corner[0] - rows.start, corner[1] - cols.start))
     window = frame.window(rows, cols)
-    if area is not None:
-        crop = area.close(crop, window)
+    if leave is not None:
+        crop = leave.close(crop, window)
     cells, starts = find_frontiers(crop, *frontier_limits(extent, frame.resolution, shortest))
     unknown = _block_sum(crop == UNKNOWN, factor)
     local = unknown.astype(np.float32) * LN2
@@ -117,9 +120,12 @@ def freeze(
         turn > 0.0 and mean_promise(crop, frame.resolution, frontiers, counts, unknown, factor) < turn
     )
     areas = frontier_areas(window, cells, starts, hidden, return_price)
+    areas += pull(window, crop, (cells, starts), priorities)
     if gathering and areas.any():
         local += LN2 / frame.resolution**2 * spread_behind(crop, cells, starts, areas, factor)
     first = (rows.start // factor, cols.start // factor)
+    if priorities:
+        local *= priority_factors(window.coarse(factor), priorities)
     weights = CellWeights(local, first, planning.shape, _all_unknown(frame, factor))
     return MapBelief(
         window,

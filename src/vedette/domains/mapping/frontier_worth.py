@@ -32,15 +32,20 @@ def frontier_areas(
     count = len(starts) - 1
     if return_price == 0.0 or count == 0:
         return np.full(count, hidden)
-    owner = np.repeat(np.arange(count), np.diff(starts))
-    points = frame.centres(cells)
-    sums = np.column_stack([np.bincount(owner, axis, minlength=count) for axis in points.T])
-    middles = sums / np.diff(starts)[:, None]
     if count <= NEIGHBOURS:
         return np.full(count, hidden + return_price * FARTHEST)
-    apart = np.hypot(*(middles[:, None] - middles).transpose(2, 0, 1))
+    places = middles(frame, cells, starts)
+    apart = np.hypot(*(places[:, None] - places).transpose(2, 0, 1))
     fifth: NDArray[np.float64] = np.partition(apart, NEIGHBOURS, axis=1)[:, NEIGHBOURS]
     return np.asarray(hidden + return_price * np.minimum(fifth, FARTHEST))
+
+
+def middles(frame: GridFrame, cells: NDArray[np.int64], starts: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return ``(K, 2)`` x, y [m] of the middle of each frontier's cells."""
+    count = len(starts) - 1
+    owner = np.repeat(np.arange(count), np.diff(starts))
+    sums = np.column_stack([np.bincount(owner, axis, minlength=count) for axis in frame.centres(cells).T])
+    return np.asarray(sums / np.diff(starts)[:, None])
 
 
 def spread_behind(

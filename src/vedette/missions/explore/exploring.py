@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from vedette.agent.effects import Route
 from vedette.agent.events import Pose, Scan, Sensed
 from vedette.agent.mates import Mate
+from vedette.agent.orders import OrderBook
 from vedette.domains.mapping.belief import (
     MapBelief,
     freeze,
@@ -29,14 +30,17 @@ from vedette.domains.mapping.views import MOST_STOPS
 from vedette.fusion import Fusion
 from vedette.fusion.signed import SignedEvidence
 from vedette.maps import UNKNOWN, GridFrame
+from vedette.maps.area import Area
 from vedette.maps.bounds import Extent
 from vedette.maps.lattice import Lattice
+from vedette.maps.leave import Leave
 from vedette.missions.explore.doubts import Doubts
 from vedette.missions.explore.evidence import OwnEvidence
 from vedette.missions.explore.failures import BLOCKING, Failures
 from vedette.missions.explore.looking import Looking
 from vedette.missions.explore.notes import given_up as given_up_at
 from vedette.missions.explore.notes import sifted
+from vedette.missions.explore.ordered import no_go_areas, priority_areas, trusted
 from vedette.missions.explore.own_map import OwnMap
 from vedette.missions.explore.resort import LastResort, hemmed_in
 from vedette.missions.explore.ways import Ways
@@ -72,6 +76,8 @@ class Exploring:
     _doubts: Doubts = field(init=False)
     _failures: Failures = field(init=False)
     _ways: Ways = field(init=False)
+    _leave: Leave = field(init=False)  # where the team may work
+    _priorities: list[tuple[Area, float]] = field(default_factory=list)
     _left: list[Leftover] | None = None  # as of the last round; None: there was a stop
     _at_work: bool = True  # as of the last round; a robot that is kept from work ends nothing
 
@@ -83,7 +89,9 @@ class Exploring:
         self._resort = LastResort(self._looking)
         self._doubts = Doubts(self.spec.radius)
         self._failures = Failures(self.platform)
-        self._ways = Ways(self.lattice, self.spec.radius, self.fusion, self.own.log_odds, self._doubts)
+        self._leave = Leave(self.lattice.area)
+        ground = self.lattice, self.spec.radius, self.fusion, self.own.log_odds, self._doubts
+        self._ways = Ways(*ground, self._leave)
 
     @property
     def frame(self) -> GridFrame:
@@ -169,7 +177,8 @@ class Exploring:
             layers=self.planner.layers,
             counts=self.fusion.counts.reshape(4, BINS).copy(),
             known=known,
-            area=self.lattice.area,
+            leave=self._leave or None,
+            priorities=self._priorities,
         )
         self.frontiers = len(belief.frontier_starts) - 1
         return belief
@@ -206,8 +215,7 @@ class Exploring:
             slice(row, row + belief.frame.rows), slice(col, col + belief.frame.cols)
         )
         doubtful = self._doubts.about(belief.classes, own, belief.frame)
-        area = self.lattice.area
-        return doubtful if area is None else doubtful & area.holds(belief.frame)
+        return doubtful & self._leave.holds(belief.frame) if self._leave else doubtful
 
     @property
     def left_out(self) -> list[Leftover]:
@@ -256,6 +264,21 @@ class Exploring:
     def discounted(self, impact: Impact, halvings: int) -> Impact:
         """Return an impact that is so many times half as likely."""
         return discounted(impact, halvings)
+
+    # -- orders -------------------------------------------------------------------------------------
+
+    def heed(self, book: OrderBook) -> None:
+        """Leave alone what is forbidden, and go first where there is priority."""
+        self._leave = Leave(self.lattice.area, no_go_areas(book))
+        self._priorities = priority_areas(book)
+        self._ways.leave = self._leave
+        self._ways.forget()
+        if self.signed is not None:
+            self.signed.overrule(*trusted(book))
+
+    def way_out(self, pose: Pose) -> Route | None:
+        """Return the shortest way out of where nobody may be any more; None: the robot is not in there."""
+        return self._ways.out((pose.x, pose.y))
 
     # -- driving ------------------------------------------------------------------------------------
 

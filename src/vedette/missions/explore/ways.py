@@ -16,6 +16,7 @@ from vedette.kernels.tiles import TiledGrid
 from vedette.maps import FREE
 from vedette.maps.bounds import Extent
 from vedette.maps.lattice import Lattice
+from vedette.maps.leave import Leave
 from vedette.missions.explore.doubts import Doubts
 
 JOIN = 4  # cells beyond what is known from which a robot or a goal still joins it
@@ -32,6 +33,7 @@ class Ways:
     fusion: Fusion
     log_odds: TiledGrid[np.int8]  # own evidence
     doubts: Doubts
+    leave: Leave  # where the team may work
     _ground: dict[float, tuple[int, Ground]] = field(default_factory=dict)  # by clearance, as of a digest
 
     def find(self, start: Place, goal: Place, discs: Sequence[Disc], daring: bool) -> Route | None:
@@ -52,6 +54,33 @@ class Ways:
                 path[0] = start
                 return Route(path, passable, frame, clearance)
         return None
+
+    def out(self, start: Place) -> Route | None:
+        """Return the shortest way out of where nobody may be any more; None: the robot is not in there."""
+        if not self.leave.no_go:
+            return None
+        extent = self._around_known
+        frame, clearance = self.lattice.frame.window(*extent), CLEARANCES[-1]
+        forbidden = frame.centres(np.flatnonzero(self.leave.forbidden(frame)))
+        if not len(forbidden) or np.hypot(*(forbidden - start).T).min() > self.radius:
+            return None
+        classes = self.fusion.classes.window(*extent)
+        around = frontier.traversable(
+            Leave(self.leave.area).close(classes, frame), self.radius + clearance, frame.resolution
+        )
+        _, allowed = self._traversable(classes, extent, clearance)
+        field = distance.distance_field(around, self._cell(*start, extent), frame.resolution)
+        away = np.where(allowed, field, np.inf)
+        if not np.isfinite(away.min()):
+            return None
+        cells = distance.path_to(field, around, int(away.argmin()))
+        path = self.lattice.frame.centres(self._in_all(distance.shortcut(around, cells), extent))
+        path[0] = start
+        return Route(path, around, frame, clearance)
+
+    def forget(self) -> None:
+        """Work the ground out anew: the team may work elsewhere now."""
+        self._ground.clear()
 
     def _grounds(self, daring: bool) -> Iterator[tuple[float, Ground]]:
         """Yield clearances and where they let the robot's centre be, the widest first, the doubtful last."""
@@ -100,6 +129,6 @@ class Ways:
     def _traversable(self, classes: NDArray[np.uint8], extent: Extent, clearance: float) -> Ground:
         """Return where the robot's centre may be on a map of some rows and columns; never beside the area."""
         frame = self.lattice.frame
-        if self.lattice.area is not None:
-            classes = self.lattice.area.close(classes, frame.window(*extent))
+        if self.leave:
+            classes = self.leave.close(classes, frame.window(*extent))
         return extent, frontier.traversable(classes, self.radius + clearance, frame.resolution)

@@ -16,6 +16,7 @@ from vedette.domains.mapping.belief import LN2, planning_factor
 from vedette.domains.mapping.impact import cells_missed, moved
 from vedette.domains.mapping.stops import unknown_near
 from vedette.maps import UNKNOWN
+from vedette.maps.area import Area
 from vedette.maps.lattice import Lattice
 from vedette.maps.world import World
 from vedette.missions.explore.options import ExploreOptions
@@ -88,6 +89,11 @@ class ExploreObserver:
         """
         self._measure(now, views, links, log=self._looks % 2 == 0)
         self._looks += 1
+
+    def forbid(self, no_go: tuple[Area, ...]) -> None:
+        """Leave what is in these areas out of what can be covered, from now on, and nothing else."""
+        if no_go != self._reference.no_go:
+            self._reference = replace(self._reference, no_go=no_go)
 
     def finish(self, now: float, views: Sequence[RobotView], links: Sequence[Link] | None) -> None:
         """Measure and log how the mission ended; as ``look``."""
@@ -175,6 +181,7 @@ class ExploreObserver:
             rate_m2_s=known_m2 / time if time > 0.0 else 0.0,
             frontiers=frontiers_left(views),
             beyond=sum(view.beyond for view in views),
+            no_go_m2=self._reference.forbidden_m2,
             map_errors=wrong,
             map_error_share=wrong / known if known else 0.0,
             overlap=overlap(view.seen_on(self._world.frame) for view in views),

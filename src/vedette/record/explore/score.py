@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from vedette.domains.mapping.stops import SURE_CLEARANCE
 from vedette.kernels.visibility import visible_cells
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
+from vedette.maps.area import Area
+from vedette.maps.leave import Leave
 from vedette.maps.world import World, reachable_poses
 from vedette.team import PlatformSpec
 
@@ -23,10 +25,22 @@ class Reference:
     world: World
     specs: Sequence[PlatformSpec]
     starts: NDArray[np.float64]  # (n, 3) x, y, heading [m, m, rad], team frame
+    no_go: tuple[Area, ...] = ()  # where nobody may go, and nothing counts
 
     @cached_property
     def coverable(self) -> NDArray[np.bool_]:
         """``bool[rows, cols]``: free cells seen without noise from poses a disc can reach from its start."""
+        return self.visible & Leave(no_go=self.no_go).holds(self.world.frame)
+
+    @property
+    def forbidden_m2(self) -> float:
+        """How much of what could be covered nobody may see [m^2]."""
+        cells = np.count_nonzero(self.visible) - self.cells
+        return float(cells) * self.world.frame.resolution**2
+
+    @cached_property
+    def visible(self) -> NDArray[np.bool_]:
+        """``bool[rows, cols]``: the same, were nothing forbidden."""
         seen = np.zeros_like(self.world.solid)
         bodies = {
             (spec.radius, spec.range): start for spec, start in zip(self.specs, self.starts, strict=True)

@@ -42,6 +42,7 @@ class ExploreSummary(MissionSummary):
     rate_m2_s: float
     frontiers: int | None
     beyond: int
+    no_go_m2: float
     map_errors: int
     map_error_share: float
     path_m: Mapping[str, float]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import inf
 from typing import cast
 
 import numpy as np
@@ -11,12 +12,19 @@ from numpy.typing import NDArray
 
 from vedette.agent import Agent, GroundBehaviour
 from vedette.agent.driving import Driver
+from vedette.agent.events import Ordered
+from vedette.agent.orders import Given, encode
+from vedette.agent.state import State
 from vedette.domains.mapping.planners import DEFAULT
+from vedette.maps.area import Area
 from vedette.maps.world import World
 from vedette.missions.explore.assemble import assemble
 from vedette.missions.explore.exploring import Exploring
 from vedette.missions.explore.options import ExploreOptions
+from vedette.missions.explore.ordered import no_go_areas
 from vedette.missions.explore.own_map import OwnMap
+from vedette.outcome import NO_PROGRESS, Outcome
+from vedette.sim.orders import OrderAt
 from vedette.sim.robots import Robots
 from vedette.sim.setup import Setup
 from vedette.sim.simulation import Simulation, random_streams
@@ -33,6 +41,7 @@ class ExploreSetup(Setup):
     area: tuple[tuple[float, float], ...] | None = None  # corners [m], as in ``ExploreOptions``
     unbounded: bool = False
     saved: OwnMap | None = None  # an earlier mission's map, which the first robot knows from the start
+    orders: tuple[OrderAt, ...] = ()  # of the operator, in order of time
 
     @property
     def options(self) -> ExploreOptions:
@@ -65,6 +74,8 @@ class ExploreSimulation(Simulation):
         self.world, self.specs, self.starts = world, tuple(specs), starts
         self.robots = Robots(world, self.specs, starts, random_streams(setup.seed, len(specs)))
         super().__init__(self._explorer, self.robots, setup, world)
+        self._orders, self._given = list(setup.orders), 0
+        self._paused = -inf  # when anybody was told to wait last [s]
 
     def _explorer(self, robot: int, boot: int) -> Agent:
         specs = self.specs
@@ -73,6 +84,31 @@ class ExploreSimulation(Simulation):
         if robot == 0 and self.setup.saved is not None:
             cast(Exploring, agent.mission).own.take_over(self.setup.saved, ())
         return agent
+
+    @property
+    def over(self) -> Outcome | None:
+        """How the mission ends as it stands now; for want of progress only where nobody is held."""
+        outcome = super().over
+        if outcome is Outcome.NO_PROGRESS and self.now <= self._paused + NO_PROGRESS:
+            return None
+        return outcome
+
+    @property
+    def no_go(self) -> tuple[Area, ...]:
+        """Where nobody may go by now, as far as any living robot has heard."""
+        told = (no_go_areas(self.agents[i].orders) for i in self.living)
+        return tuple(dict.fromkeys(area for areas in told for area in areas))
+
+    def _tick(self) -> None:
+        """Let the operator tell the first living robot what is due; the team passes it on."""
+        while self._orders and self._orders[0].at <= self.now + 1e-9:
+            order, self._given = self._orders.pop(0).what, self._given + 1
+            for i in self.living[:1]:
+                told = Ordered(encode(Given(self._given, "operator", order)))
+                self._let(i, self.network.tell(i, [told], self.now))
+        super()._tick()
+        if any(self.agents[i].state is State.PAUSED for i in self.living):
+            self._paused = self.now
 
     def held(self, robots: Sequence[int]) -> list[int]:
         """Return the digests of their maps."""

@@ -1,0 +1,95 @@
+"""Orders that an operator gives in the course of a simulated mission, from a file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+from msgspec import Meta, Struct
+
+from vedette.agent.orders import Exclude, LookThere, NoGo, Order, Priority, Recall, Reinstate, Remove
+from vedette.errors import InputError, nearest_name
+from vedette.maps.area import Area
+from vedette.maps.world import World, standable
+from vedette.scenario import as_scenario, load_scenario
+from vedette.team import PlatformSpec
+
+Instant = Annotated[float, Meta(ge=0.0, le=86400.0)]  # since the start [s]
+
+
+class OrderAt(Struct, frozen=True):
+    """An order, and when it is given."""
+
+    at: Instant
+    what: Order
+
+
+class _OrderFile(Struct, forbid_unknown_fields=True, frozen=True):
+    orders: tuple[dict[str, Any], ...]
+
+
+def load_orders(path: Path | str) -> tuple[OrderAt, ...]:
+    """Read a file of orders, each with its time, in order of time.
+
+    Raises:
+        InputError: as :func:`vedette.scenario.load_scenario`.
+    """
+    told = load_scenario(path, _OrderFile, "file of orders").orders
+    return tuple(sorted((_order(each, f"{path}: orders[{i}]") for i, each in enumerate(told)), key=_time))
+
+
+def check_orders(orders: Sequence[OrderAt], world: World, specs: Sequence[PlatformSpec], where: str) -> None:
+    """Refuse orders that make no sense to this team in this world.
+
+    Raises:
+        InputError: there is no such robot, or no such area yet; an area, or a place, lies outside or in a
+            wall; or it is about whom to believe, where nobody signs what it says.
+    """
+    areas: set[str] = set()
+    for each in orders:
+        order, at = each.what, f"{where}: {each.what.subject} at {each.at:g} s"
+        if order.robot_number > len(specs):
+            raise InputError(f"{at}: there is no robot {order.robot_number} in a team of {len(specs)}")
+        match order:
+            case NoGo() | Priority():
+                _check_area(Area.of(order.corners), world, at)
+                areas.add(order.area)
+            case Remove() if order.area not in areas:
+                raise InputError(f"{at}: there is no such area by then; {nearest_name(order.area, areas)}")
+            case Recall(to=(x, y)) | LookThere(at=(x, y)):
+                robots = specs if order.robot is None else [specs[order.robot - 1]]
+                _check_place(x, y, world, max(spec.radius for spec in robots), at)
+            case Exclude() | Reinstate():
+                raise InputError(f"{at}: simulated robots sign nothing, and all are believed; leave it out")
+
+
+def _time(each: OrderAt) -> float:
+    return each.at
+
+
+def _order(told: dict[str, Any], where: str) -> OrderAt:
+    what = {name: value for name, value in told.items() if name != "at"}
+    at = {"at": told["at"]} if "at" in told else {}
+    try:
+        return as_scenario({**at, "what": what}, OrderAt, where)
+    except InputError as error:
+        raise InputError(str(error).replace(": what.", ": ", 1).replace(": what:", ":", 1)) from None
+
+
+def _check_area(area: Area, world: World, at: str) -> None:
+    if not area.holds(world.frame).any():
+        x_min, x_max, y_min, y_max = world.frame.extent
+        raise InputError(
+            f"{at}: the area lies outside: x is {x_min:g} to {x_max:g} m, y is {y_min:g} to {y_max:g} m"
+        )
+
+
+def _check_place(x: float, y: float, world: World, radius: float, at: str) -> None:
+    x_min, x_max, y_min, y_max = world.frame.extent
+    if not (x_min <= x < x_max and y_min <= y < y_max):
+        raise InputError(
+            f"{at}: {x:g},{y:g} lies outside; x is {x_min:g} to {x_max:g} m, y is {y_min:g} to {y_max:g} m"
+        )
+    if not standable(world, radius).flat[world.frame.flat(x, y)]:
+        raise InputError(f"{at}: no robot can stand at {x:g},{y:g}: there is a wall")
