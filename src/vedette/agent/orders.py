@@ -141,6 +141,7 @@ class Given(Struct, frozen=True, array_like=True):
     counter: Annotated[int, Meta(ge=0, le=2**62)]
     operator: Name
     order: Order
+    mission: Annotated[str, Meta(max_length=64)] = ""  # that it is for; no other takes it
     signature: bytes = b""  # by the operator's certificate, where the team has keys
     certificate: bytes = b""
 

@@ -28,6 +28,7 @@ COMMANDS = {
     "keys": "Make the keys of a team.",
     "map": "Fetch the map of a team on the network.",
     **{name: domain.line for name, domain in DOMAINS.items()},
+    "order": "Give a team on the network an order: pause, recall, a no-go area ...",
     "plot": "Draw the pictures of a run anew.",
     "replay": "Let recorded lidar data go through a team's agents.",
     "reproduce": "Compute the paper's figures and try its claims.",

@@ -163,15 +163,15 @@ def _robot_to_robot(names: Names, me: int, peer: int) -> list[Rule]:
 
 
 def _operator_to_robot(names: Names, me: int) -> list[Rule]:
-    """What ``me`` takes from the operator, who may hear everything and say nothing."""
+    """What ``me`` takes from the operator, who may hear everything, and say nothing but orders."""
     heard = [names.link(me, None), *(names.topic(topic, me) for topic in Topic)]
     return [
         ("ingress", ["declare_subscriber"], [names.everything()]),
-        ("ingress", ["query"], [names.status(None)]),
+        ("ingress", ["query"], [names.status(None), names.order(None)]),
         ("ingress", _ANY_WATCH, [names.alive(None)]),
         ("egress", ["put"], heard),
         ("egress", ["liveliness_token"], [names.alive(me)]),
-        ("egress", ["declare_queryable", "reply"], [names.status(me)]),
+        ("egress", ["declare_queryable", "reply"], [names.status(me), names.order(me)]),
     ]
 
 
@@ -181,9 +181,9 @@ def _robot_to_operator(names: Names, peer: int) -> list[Rule]:
     return [
         ("ingress", ["put"], heard),
         ("ingress", ["liveliness_token"], [names.alive(peer)]),
-        ("ingress", ["declare_queryable", "reply"], [names.status(peer)]),
+        ("ingress", ["declare_queryable", "reply"], [names.status(peer), names.order(peer)]),
         ("egress", ["declare_subscriber"], [names.everything()]),
-        ("egress", ["query"], [names.status(None)]),
+        ("egress", ["query"], [names.status(None), names.order(None)]),
         ("egress", _ANY_WATCH, [names.alive(None)]),
     ]
 

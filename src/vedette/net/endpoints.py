@@ -31,6 +31,16 @@ class Endpoint:
         return f"{self.protocol}/{host}:{self.port}"
 
 
+def is_loopback(text: str) -> bool:
+    """Tell whether an endpoint, as it is written, is on this computer alone."""
+    found = _FORM.fullmatch(text.strip())
+    host = "" if found is None else found["host"].strip("[]")
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
+
+
 def parse_endpoint(text: str, insecure: bool = False) -> Endpoint:
     """Return the endpoint that ``text`` writes, ``tls/HOST:PORT``, or ``tcp/HOST:PORT`` where ``insecure``.
 

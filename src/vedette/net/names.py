@@ -43,6 +43,10 @@ class Names:
         """Key under which a robot answers for its status."""
         return f"vedette/{self.team}/status/{_part(robot)}"
 
+    def order(self, robot: int | None) -> str:
+        """Key under which a robot takes the operator's orders."""
+        return f"vedette/{self.team}/order/{_part(robot)}"
+
     def everything(self) -> str:
         """Key expression of all of these."""
         return f"vedette/{self.team}/**"

@@ -55,6 +55,12 @@ class CertifiedNotary:
         own = load_certificate(credentials.folder / CERT)
         self._certificate = own.public_bytes(serialization.Encoding.DER)
         self._admitted: dict[int, dict[bytes, ec.EllipticCurvePublicKey]] = {}
+        self._operators: dict[bytes, ec.EllipticCurvePublicKey] = {}
+
+    @property
+    def mission(self) -> str:
+        """What is in everything that is signed."""
+        return self._mission
 
     @property
     def certificate(self) -> bytes:
@@ -89,19 +95,32 @@ class CertifiedNotary:
 
     def check(self, robot: int, signature: bytes, *what: int | bytes | str) -> None:
         """Raise ValueError unless a robot, whose certificate has come, has signed this."""
+        if not any(self._has_signed(key, signature, what) for key in self._admitted.get(robot, {}).values()):
+            raise ValueError("the signature is not by its key")
+
+    def check_operator(self, certificate: bytes, signature: bytes, *what: int | bytes | str) -> None:
+        """Raise ValueError unless the operator of this team has signed this, by this certificate."""
+        if certificate not in self._operators:
+            if len(self._operators) >= MOST_CERTIFICATES:
+                raise ValueError(f"more than {MOST_CERTIFICATES} certificates of operators")
+            self._operators[certificate] = self._key_of(None, certificate)
+        if not self._has_signed(self._operators[certificate], signature, what):
+            raise ValueError("the signature is not by the operator's key")
+
+    def _has_signed(
+        self, key: ec.EllipticCurvePublicKey, signature: bytes, what: tuple[int | bytes | str, ...]
+    ) -> bool:
         r, s = (int.from_bytes(half, "big") for half in (signature[:_HALF], signature[_HALF:]))
-        for key in self._admitted.get(robot, {}).values():
-            try:
-                key.verify(encode_dss_signature(r, s), self._message(what), _HOW)
-            except InvalidSignature:
-                continue
-            return
-        raise ValueError("the signature is not by its key")
+        try:
+            key.verify(encode_dss_signature(r, s), self._message(what), _HOW)
+        except InvalidSignature:
+            return False
+        return True
 
     def _message(self, what: tuple[int | bytes | str, ...]) -> bytes:
         return msgspec.msgpack.encode((self._names.team, self._mission, *what))
 
-    def _key_of(self, robot: int, der: bytes) -> ec.EllipticCurvePublicKey:
+    def _key_of(self, robot: int | None, der: bytes) -> ec.EllipticCurvePublicKey:
         try:
             certificate = x509.load_der_x509_certificate(der)
             certificate.verify_directly_issued_by(self._authority)

@@ -12,17 +12,18 @@ from typing import Protocol
 from vedette.agent import Datagram, NetworkedAgent
 from vedette.agent.body import Body, Shown
 from vedette.agent.effects import Drive, Fly, Job
-from vedette.agent.events import JobDone
+from vedette.agent.events import JobDone, Ordered
 from vedette.agent.networked import Output
 from vedette.net.clock import Clockwork
 from vedette.net.inbox import Inbox, PeerGone, PeerSeen
 from vedette.net.inbox import ReceivedDatagram as Received
 from vedette.net.keeping import Keeper
 from vedette.net.names import Topic, robot_name
+from vedette.net.orders import TAKEN, Judge
 from vedette.net.report import encode
 from vedette.net.revocations import KIND as REVOKED
 from vedette.net.revocations import Revocations
-from vedette.net.transport import Published, Transport
+from vedette.net.transport import Published, ToldOrder, Transport
 from vedette.net.witness import Witness
 
 REPORT_PERIOD = 0.5  # of mission time, but not more often than LEAST_REPORTS apart [s]
@@ -68,6 +69,7 @@ class AgentProcess:
     revocations: Revocations | None = None  # of certificates; None: links are open to everybody
     staged: Staged | None = None  # what befalls its links, to try a team
     keeper: Keeper | None = None  # of what the robot finds out
+    judge: Judge | None = None  # of the operator's orders; None: it takes none
     clock: Callable[[], float] = time.monotonic
     stopped: bool = False
     _reported: float = -1e9  # [s]
@@ -85,6 +87,8 @@ class AgentProcess:
         if self.shown is not None:
             self.transport.subscribe(Topic.BODY, self.inbox.put)
         self.transport.answer_status(lambda: self.witness.status)
+        if self.judge is not None:
+            self.transport.answer_orders(self.inbox.put)
         self.mission.start(self.clock())
         with ThreadPoolExecutor(1, thread_name_prefix="planning") as self._worker:
             while not self.stopped:
@@ -127,6 +131,10 @@ class AgentProcess:
             case PeerGone(robot):
                 self._do(partial(self.node.lost, robot, now))
                 self._do(partial(self.node.peers, self.transport.peers, now))
+            case ToldOrder() if self.judge is not None:
+                event.answer(verdict := self.judge.verdict(event.payload))
+                if verdict == TAKEN:
+                    self._do(partial(self.node.step, [Ordered(event.payload)], now))
             case Published(robot=robot, payload=payload):
                 self._see(robot, payload, now)
             case _Done(job, error):

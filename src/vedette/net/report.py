@@ -9,12 +9,13 @@ import msgspec
 from msgspec import Meta
 
 from vedette import wire
+from vedette.agent.orders import MOST_ORDERS, Order
 
 MOST_BYTES = 1 << 24
 Count = Annotated[int, Meta(ge=0, le=2**53)]
 FARTHEST = 1e9
 Real = Annotated[float, Meta(ge=-FARTHEST, le=FARTHEST)]
-Ending = Literal["complete", "unreached", "enclosed"]  # words of ``vedette.outcome.Outcome``
+Ending = Literal["complete", "unreached", "enclosed", "ordered"]  # words of ``vedette.outcome.Outcome``
 PRINTABLE = r"^[^\x00-\x1f\x7f-\x9f\[\]]*\Z"  # what a terminal shows as it is, markup left out
 Word = Annotated[str, Meta(max_length=64, pattern=PRINTABLE)]
 MOST_WORDS = 500  # characters of a sentence
@@ -46,6 +47,14 @@ class Complaint(msgspec.Struct, frozen=True, array_like=True):
 
     robot: Count
     what: Sentence
+
+
+class OrderReport(msgspec.Struct, frozen=True, array_like=True):
+    """An order that a robot holds: whoever gave it knows by that who has heard of it."""
+
+    counter: Annotated[int, Meta(ge=0, le=2**62)]
+    operator: Word
+    order: Order
 
 
 class Condition(msgspec.Struct, frozen=True, array_like=True, tag=2):
@@ -91,6 +100,8 @@ class Condition(msgspec.Struct, frozen=True, array_like=True, tag=2):
     known_m2: Real | None = None  # [m^2]; None: no map is made
     frontiers: Count | None = None  # of the latest round's map; None: there has been none
     beyond: Count = 0  # beams, or cells of its own map, that told of ground where there is no room for any
+    mission: Word = ""  # that orders have to be for; empty: it takes none
+    orders: Annotated[tuple[OrderReport, ...], Meta(max_length=MOST_ORDERS)] = ()  # in force, oldest first
 
 
 class Report(msgspec.Struct, frozen=True, array_like=True, tag=3):

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from vedette.agent import Agent
 from vedette.agent.body import Body, Shown
 from vedette.agent.terms import Terms
+from vedette.net.orders import Judge
 from vedette.net.witness import Teller
 
 
@@ -22,3 +23,4 @@ class Robot:
     terms: Terms  # what its team has to agree on
     show: Callable[[float], None] | None = None  # to those beside the robot, at a mission's time [s]
     time: Callable[[], float | None] | None = None  # its own clock [s], to go by; None: this host's
+    judge: Judge | None = None  # of the operator's orders; None: it takes none

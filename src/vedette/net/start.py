@@ -78,11 +78,23 @@ def agent_process(
         time_of_day=time_of_day,
         admitted=access.robots,
     )
-    witness = Witness(node, robot.body, transport, robot.teller, robot_name(index))
+    mission = "" if robot.judge is None else robot.judge.gate.mission
+    witness = Witness(node, robot.body, transport, robot.teller, robot_name(index), mission)
     keys = access.credentials
     revocations = None if keys is None else Revocations(keys, say)
     return AgentProcess(
-        node, robot.body, robot.shown, transport, inbox, witness, clock, robot.show, say, revocations, staged
+        node,
+        robot.body,
+        robot.shown,
+        transport,
+        inbox,
+        witness,
+        clock,
+        robot.show,
+        say,
+        revocations,
+        staged,
+        judge=robot.judge,
     )
 
 

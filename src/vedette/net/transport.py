@@ -7,6 +7,7 @@ import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from types import TracebackType
 from typing import Self
 
@@ -18,7 +19,8 @@ from vedette.net.endpoints import check_connecting, check_listening
 from vedette.net.inbox import Inbox, PeerGone, PeerSeen, ReceivedDatagram
 from vedette.net.names import Topic, check_robot, robot_of
 
-MOST_STATUS = 1 << 20  # bytes taken of an answer
+MOST_STATUS = 1 << 20  # bytes taken of an answer, or of an order
+MOST_WORDS = 500  # characters of what is said to an order
 
 
 @dataclass(frozen=True)
@@ -29,6 +31,14 @@ class Published:
     robot: int
     payload: bytes
     time: float  # of arrival [s]
+
+
+@dataclass(frozen=True, eq=False)
+class ToldOrder:
+    """An order that the operator has told a robot; it waits for an answer, a line."""
+
+    payload: bytes
+    answer: Callable[[str], None]
 
 
 class _Session:
@@ -161,6 +171,19 @@ class Transport(_Session):
 
         self._session.declare_queryable(key, reply)
 
+    def answer_orders(self, take: Callable[[ToldOrder], None]) -> None:
+        """Hand the operator's orders to ``take``, quick and in another thread; each is to be answered."""
+        key = self.names.order(self.robot)
+
+        def told(query: zenoh.Query) -> None:
+            payload = query.payload
+            if payload is None or len(payload) > MOST_STATUS:
+                self.refused += 1
+                return
+            take(ToldOrder(payload.to_bytes(), partial(_reply, query, key)))
+
+        self._session.declare_queryable(key, told)
+
     def _take(self, sample: zenoh.Sample) -> None:
         sender, payload = robot_of(str(sample.key_expr).split("/")[-2]), sample.payload
         if sender is None or len(payload) > MOST_PAYLOAD:
@@ -207,10 +230,16 @@ class Operator(_Session):
 
     def statuses(self, timeout: float = 1.0) -> dict[int, bytes]:
         """Ask all robots that a link is open to; return what those say that answer within ``timeout`` [s]."""
+        return self._ask(self.names.status(None), None, timeout)
+
+    def order(self, order: bytes, timeout: float = 2.0) -> dict[int, str]:
+        """Give all robots that a link is open to an order; return what those say that answer in time."""
+        answers = self._ask(self.names.order(None), order, timeout)
+        return {robot: answer.decode(errors="replace")[:MOST_WORDS] for robot, answer in answers.items()}
+
+    def _ask(self, key: str, payload: bytes | None, timeout: float) -> dict[int, bytes]:
         answers: dict[int, bytes] = {}
-        for reply in self._session.get(
-            self.names.status(None), target=zenoh.QueryTarget.ALL, timeout=timeout
-        ):
+        for reply in self._session.get(key, payload=payload, target=zenoh.QueryTarget.ALL, timeout=timeout):
             if reply.ok is None:
                 continue
             robot = robot_of(str(reply.ok.key_expr).rpartition("/")[2])
@@ -219,6 +248,11 @@ class Operator(_Session):
             else:
                 answers[robot] = reply.ok.payload.to_bytes()
         return answers
+
+
+def _reply(query: zenoh.Query, key: str, line: str) -> None:
+    with query:
+        query.reply(key, line.encode())
 
 
 def _open(access: Access, robot: int | None) -> zenoh.Session:

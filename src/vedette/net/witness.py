@@ -12,7 +12,16 @@ from numpy.typing import NDArray
 from vedette.agent import NetworkedAgent
 from vedette.agent.body import Body
 from vedette.net import report as wire
-from vedette.net.report import FARTHEST, MOST_WORDS, Complaint, Condition, Ending, LinkReport, SpreadReport
+from vedette.net.report import (
+    FARTHEST,
+    MOST_WORDS,
+    Complaint,
+    Condition,
+    Ending,
+    LinkReport,
+    OrderReport,
+    SpreadReport,
+)
 from vedette.net.transport import Transport
 from vedette.overlay import LinkStatus
 from vedette.record.clock import Clock
@@ -52,6 +61,7 @@ class Witness:
     transport: Transport
     teller: Teller
     name: str
+    mission: str = ""  # that orders have to be for; none: it takes no orders
     clock: Clock = field(default_factory=Clock)
     malformed: int = 0  # of what is told of bodies
     status: bytes = b""  # the latest condition, for any thread
@@ -149,6 +159,8 @@ class Witness:
             known_m2=None if known is None else known.area,
             frontiers=None if known is None else known.frontiers,
             beyond=0 if known is None else known.beyond,
+            mission=self.mission,
+            orders=tuple(OrderReport(each.counter, each.operator, each.order) for each in agent.orders.all),
         )
 
 

@@ -35,7 +35,7 @@ def pull(
 ) -> NDArray[np.float64]:
     """Return ``(K,)`` the area [m^2] that each frontier stands for as the way to what has priority.
 
-    ``P phi (1 - 2 k) exp(-(d_f - min d) / 3 m)`` with *d_f* its distance to the area, *phi* the area's factor and
+    ``P phi (1 - 2 k) exp(-(d_f - min d) / 3 m)`` with *d_f* its distance to the area, *phi* the factor and
     *k* the known share of it, until half of it is known.  docs/mapping.md (V149)
 
     Args:

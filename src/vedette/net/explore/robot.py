@@ -11,6 +11,7 @@ import numpy as np
 
 from vedette.agent import Agent
 from vedette.agent.body import Body, Shown
+from vedette.agent.terms import fingerprint_of
 from vedette.errors import InputError
 from vedette.maps.lattice import Lattice
 from vedette.maps.world import World
@@ -20,6 +21,7 @@ from vedette.net.config import RESOLUTION, AgentConfig, BodySettings
 from vedette.net.explore.content import ExploreTeller
 from vedette.net.names import robot_name
 from vedette.net.notary import notary_of
+from vedette.net.orders import Judge, gate_of
 from vedette.net.own import OwnSettings
 from vedette.net.real import real_robot, shows
 from vedette.net.robot import Robot
@@ -54,6 +56,7 @@ def explorer(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robo
         place = _simulated(config, folder, options)
     agreed = {**terms_of(place.lattice, options), **place.terms}
     notary, terms = notary_of(config, folder, agreed, speed)
+    gate = gate_of(config, f"{fingerprint_of(agreed):x}", notary)
     agent = assemble(
         place.lattice,
         place.hull,
@@ -65,8 +68,10 @@ def explorer(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robo
         waits_for=config.robots,
         notary=notary,
     )
+    agent.check_order = gate.check
     show = None if place.showing is None else place.showing(agent)
-    return Robot(agent, place.body, place.shown, ExploreTeller(agent), terms, show, place.time)
+    teller, judge = ExploreTeller(agent), Judge(agent, gate)
+    return Robot(agent, place.body, place.shown, teller, terms, show, place.time, judge)
 
 
 def _simulated(config: AgentConfig, folder: Path, options: ExploreOptions) -> _Place:

@@ -74,6 +74,8 @@ class ExploreWatcher:
             return Outcome.UNHEARD if silent else ended
         self._agreement.off()
         way = sum(self._ways.values())
+        if any(each.state == State.PAUSED.value for each in heard):  # somebody holds it there
+            self._moved = self._moved[0], now
         if way > self._moved[0] + MOVED:
             self._moved = way, now
         return Outcome.NO_PROGRESS if now > self._moved[1] + NO_PROGRESS else None
