@@ -38,6 +38,7 @@ GOLDEN: dict[str, Any] = {
     "rate_m2_s": 1.229319,
     "frontiers": 1,
     "beyond": 0,
+    "no_go_m2": 0.0,
     "map_errors": 0,
     "map_error_share": 0.0,
     "path_m": {"robot-1": 35.354265, "robot-2": 36.549873},

@@ -112,14 +112,15 @@ class GroundBehaviour:
         self.mission.stand_by()
         agent.rounds.want()
         agent.quiet = 0
-        match None if given is None else given.order:
+        order = None if given is None else given.order
+        match order:
             case None:
                 self.state = State.IDLE
             case Pause():
                 self.state = State.PAUSED
             case Recall(to=place) | LookThere(at=place):
                 self.called = place
-                self.state = State.LOOKING if isinstance(given.order, LookThere) else State.RETURNING
+                self.state = State.LOOKING if isinstance(order, LookThere) else State.RETURNING
                 return self._go_home(agent, pose, now, blocked=False)
             case _:
                 self.state = State.DONE

@@ -38,6 +38,7 @@ COMMANDS = {
     "study": "Compare planners on many worlds.",
     "team": "Start a team of agent processes on this host and watch it.",
     "track": "Let a team of vehicles follow targets in simulation.",
+    "watch": "Show a team on the network, or a run, in a browser.",
     "world": "Generate an office, a cave or a maze.",
 }
 

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import click
 
+from vedette.agent.orders import Order, OrderBook
 from vedette.cli.exploring import EXPLORING, exploring_options, team_named, world_named
 from vedette.cli.options import FILE, Output, fault_options, output_options
 from vedette.cli.running import simulate
+from vedette.cli.windows import linger, opened, watch_options
 from vedette.errors import InputError
+from vedette.outcome import Outcome
 from vedette.run import Explore
 from vedette.run.inputs import files_of
 from vedette.run.saved import seed_of
+from vedette.window.explore import Shower
+from vedette.window.hub import Hub
 
 
 @click.command()
@@ -28,6 +34,7 @@ from vedette.run.saved import seed_of
     help="What the operator orders, and when: pause, recall, no-go areas.",
 )
 @fault_options
+@watch_options
 @output_options
 def explore(
     map_path: Path | None,
@@ -37,6 +44,8 @@ def explore(
     starts: str | None,
     saved: Path | None,
     orders: Path | None,
+    watch: bool,
+    pace: float,
     output: Output,
     **options: Any,
 ) -> None:
@@ -50,4 +59,26 @@ def explore(
         raise InputError(f"--continue: {saved} is of the office of seed {seed}; add --seed {seed}")
     mission = Explore(world, specs, saved=saved, orders=orders or (), **options)
     mission.inputs += files_of(None if saved is None else saved / "map.yaml", team)
-    simulate(EXPLORING, mission, mission.scene, output)
+    if not watch:
+        simulate(EXPLORING, mission, mission.scene, output)
+    names = mission.scene.vehicles
+    hub = Hub(mission.scene.name, partial(_order, mission))
+    shower = Shower(hub, mission.scene, lambda: zip(names, map(_in_force, mission.books), strict=True), pace)
+    with opened(hub):
+        try:
+            simulate(EXPLORING, mission, mission.scene, output, more=[shower])
+        finally:
+            hub.close()
+            if mission.over is not Outcome.INTERRUPTED:
+                click.echo("the mission is over; the page stays until Ctrl-C", err=True)
+                linger()
+
+
+def _order(mission: Explore, order: Order) -> str:
+    """Give an order, and say what has come of it."""
+    mission.order(order)
+    return "given"
+
+
+def _in_force(book: OrderBook) -> list[Order]:
+    return [given.order for given in book.all]

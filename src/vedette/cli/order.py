@@ -28,7 +28,7 @@ class _Said(Struct, frozen=True):
     order: Order
 
 
-class Place(click.ParamType[Any]):
+class PlaceOf(click.ParamType[Any]):
     """A place, ``x,y`` [m]."""
 
     name = "place"
@@ -44,7 +44,7 @@ class Place(click.ParamType[Any]):
             raise InputError(f"{param.opts[0] if param else ''}: {value!r} must be x,y in m") from None
 
 
-class Polygon(click.ParamType[Any]):
+class CornersOf(click.ParamType[Any]):
     """Corners of a polygon, ``"x,y;x,y;x,y"`` [m]."""
 
     name = "polygon"
@@ -53,23 +53,23 @@ class Polygon(click.ParamType[Any]):
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> list[tuple[float, float]]:
         """Return them."""
-        return [Place().convert(each, param, ctx) for each in str(value).strip().strip(";").split(";")]
+        return [PlaceOf().convert(each, param, ctx) for each in str(value).strip().strip(";").split(";")]
 
 
 @click.command()
 @reaching_options
 @click.argument("kind", metavar="ORDER", type=OneOf(KINDS))
 @click.option("--robot", type=int, metavar="N", help="Which robot, from 1.  [default: the whole team]")
-@click.option("--to", type=Place(), metavar="x,y", help="Where to be recalled to [m].  [default: its start]")
-@click.option("--at", type=Place(), metavar="x,y", help="Where to look [m].")
+@click.option("--to", type=PlaceOf(), metavar="x,y", help="Where to go back to [m].  [default: its start]")
+@click.option("--at", type=PlaceOf(), metavar="x,y", help="Where to look [m].")
 @click.option("--area", metavar="NAME", help="Of a no-go or priority area.")
-@click.option("--corners", type=Polygon(), metavar='"x,y;x,y;x,y"', help="Of that area [m].")
+@click.option("--corners", type=CornersOf(), metavar='"x,y;x,y;x,y"', help="Of that area [m].")
 @click.option("--factor", type=float, help="How many times as much a priority area is worth.")
 def order(config_paths: tuple[Path, ...], keys: Path | None, wait: float, kind: str, **said: Any) -> None:
     """Give the agents that listen where the CONFIG.yaml files say an order: they pass it on to the others.
 
     ORDER is pause, resume, stay, recall, look, end, no-go, priority, remove, exclude or reinstate;
-    docs/how-to/orders.md says what each does. Exit status: 0 taken, 1 nobody answered, 2 refused or bad input.
+    docs/how-to/orders.md says what each does. Exit status: 0 taken, 1 nobody answered, 2 refused.
     """
     _, access = reached(config_paths, keys)
     given = {name: value for name, value in said.items() if value is not None}

@@ -75,10 +75,14 @@ def simulate(
     scene: SceneT,
     output: Output,
     beside: Callable[[ReportT, Say], ReportT] = lambda report, say: report,
+    more: Sequence[Sink[SnapshotT]] = (),
 ) -> NoReturn:
-    """Run a simulated mission as `Kind.run` does; the first Ctrl-C ends it in good order, a second aborts."""
+    """Run a simulated mission as `Kind.run` does; the first Ctrl-C ends it in good order, a second aborts.
+
+    ``more`` sinks follow it.
+    """
     with ending_on_ctrl_c(mission.stop):
-        kind.run(scene, output, mission.inputs, lambda sinks, folder: mission.play(sinks), beside)
+        kind.run(scene, output, mission.inputs, lambda sinks, folder: mission.play([*sinks, *more]), beside)
 
 
 def end(summary: MissionSummary, lines: Sequence[str], as_json: bool) -> NoReturn:

@@ -10,6 +10,7 @@ from typing import Any, TypeAlias, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.agent.orders import NoGo, Order, OrderBook, Priority
 from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.planners import DEFAULT
 from vedette.domains.mapping.platform import Tour
@@ -147,6 +148,22 @@ class Explore(_Mission):
     def map(self) -> NDArray[np.uint8]:
         """``(R, C)`` what the living robots know together now: UNKNOWN, FREE or OCCUPIED."""
         return union_map(views(self.simulation), self.world.frame)
+
+    def order(self, order: Order) -> None:
+        """Give the team an order, from the next tick on; any thread may.
+
+        Raises:
+            InputError: it makes no sense.
+        """
+        areas = [each.area for book in self.books for each in book.all_of(NoGo) + book.all_of(Priority)]
+        given = [OrderAt(self.now, order)]
+        check_orders(given, self.world, self.simulation.specs, "order", areas)
+        self.simulation.order(order)
+
+    @property
+    def books(self) -> list[OrderBook]:
+        """The orders that each robot holds."""
+        return [agent.orders for agent in self.simulation.agents]
 
     def run(self, progress: Callable[[ExploreSnapshot], object] | None = None) -> ExploreResult:
         """Explore to the end; ``progress`` is called with a snapshot every second."""

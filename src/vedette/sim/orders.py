@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -39,14 +39,20 @@ def load_orders(path: Path | str) -> tuple[OrderAt, ...]:
     return tuple(sorted((_order(each, f"{path}: orders[{i}]") for i, each in enumerate(told)), key=_time))
 
 
-def check_orders(orders: Sequence[OrderAt], world: World, specs: Sequence[PlatformSpec], where: str) -> None:
-    """Refuse orders that make no sense to this team in this world.
+def check_orders(
+    orders: Sequence[OrderAt],
+    world: World,
+    specs: Sequence[PlatformSpec],
+    where: str,
+    known: Iterable[str] = (),
+) -> None:
+    """Refuse orders that make no sense to this team in this world; ``known``: areas that there are already.
 
     Raises:
         InputError: there is no such robot, or no such area yet; an area, or a place, lies outside or in a
             wall; or it is about whom to believe, where nobody signs what it says.
     """
-    areas: set[str] = set()
+    areas = set(known)
     for each in orders:
         order, at = each.what, f"{where}: {each.what.subject} at {each.at:g} s"
         if order.robot_number > len(specs):

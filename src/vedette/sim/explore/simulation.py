@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
+from queue import Queue
 from typing import cast
 
 import numpy as np
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 from vedette.agent import Agent, GroundBehaviour
 from vedette.agent.driving import Driver
 from vedette.agent.events import Ordered
-from vedette.agent.orders import Given, encode
+from vedette.agent.orders import Given, Order, encode
 from vedette.agent.state import State
 from vedette.domains.mapping.planners import DEFAULT
 from vedette.maps.area import Area
@@ -75,6 +76,7 @@ class ExploreSimulation(Simulation):
         self.robots = Robots(world, self.specs, starts, random_streams(setup.seed, len(specs)))
         super().__init__(self._explorer, self.robots, setup, world)
         self._orders, self._given = list(setup.orders), 0
+        self._told = Queue[Order]()  # from other threads
         self._paused = -inf  # when anybody was told to wait last [s]
 
     def _explorer(self, robot: int, boot: int) -> Agent:
@@ -99,10 +101,18 @@ class ExploreSimulation(Simulation):
         told = (no_go_areas(self.agents[i].orders) for i in self.living)
         return tuple(dict.fromkeys(area for areas in told for area in areas))
 
+    def order(self, order: Order) -> None:
+        """Give an order at the next tick; any thread may."""
+        self._told.put(order)
+
     def _tick(self) -> None:
         """Let the operator tell the first living robot what is due; the team passes it on."""
-        while self._orders and self._orders[0].at <= self.now + 1e-9:
-            order, self._given = self._orders.pop(0).what, self._given + 1
+        due = [each.what for each in self._orders if each.at <= self.now + 1e-9]
+        del self._orders[: len(due)]
+        while not self._told.empty():
+            due.append(self._told.get())
+        for order in due:
+            self._given += 1
             for i in self.living[:1]:
                 told = Ordered(encode(Given(self._given, "operator", order)))
                 self._let(i, self.network.tell(i, [told], self.now))

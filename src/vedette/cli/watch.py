@@ -1,0 +1,62 @@
+"""``vedette watch``: a team or a run in a browser."""
+
+from __future__ import annotations
+
+import threading
+import time
+from pathlib import Path
+
+import click
+
+from vedette.cli.options import FILE
+from vedette.cli.reaching import reached
+from vedette.cli.windows import address_options, linger, opened
+from vedette.errors import InputError
+from vedette.interrupt import ending_on_ctrl_c
+from vedette.net.explore.feed import TeamFeed
+from vedette.net.transport import Operator
+from vedette.run.mission import RECORD
+from vedette.window.explore import recorded
+from vedette.window.hub import Hub
+
+LISTENING = 0.1  # between two pictures [s]
+
+
+@click.command()
+@click.argument("sources", metavar="CONFIG.yaml... | RUN_DIR | run.mcap", nargs=-1, required=True, type=FILE)
+@click.option("--keys", type=FILE, metavar="DIR", help="The operator's folder of `vedette keys`.")
+@address_options
+def watch(sources: tuple[Path, ...], keys: Path | None, host: str, port: int) -> None:
+    """Show a team on the network, or an exploration that was recorded, in a browser until Ctrl-C.
+
+    The address that is printed has a token in it, without which nothing is shown. Of a team whose agents
+    listen where the CONFIG.yaml files say, the page gives orders. Exit status: 0, or 2 for bad input.
+    """
+    record = _record(sources)
+    if record is not None:
+        with opened(recorded(record), host, port):
+            linger()
+        return
+    configs, access = reached(sources, keys)
+    if configs[0].mission != "explore":
+        raise InputError(f"{sources[0]}: only teams that explore are watched in a browser")
+    ended = threading.Event()
+    with Operator(access) as operator, ending_on_ctrl_c(ended.set):
+        feed = TeamFeed(operator, access)
+        hub = Hub(access.team, feed.give)
+        with opened(hub, host, port):
+            while not ended.is_set():
+                began = time.monotonic()
+                feed.hearing.listen(LISTENING)
+                if (shown := feed.picture()) is not None:
+                    hub.show(shown)
+                ended.wait(max(began + LISTENING - time.monotonic(), 0.0))
+
+
+def _record(sources: tuple[Path, ...]) -> Path | None:
+    """Return the record that is to be shown; None: the sources are robots' files."""
+    first = sources[0]
+    record = first / RECORD if first.is_dir() else first if first.suffix == ".mcap" else None
+    if record is not None and len(sources) > 1:
+        raise InputError(f"{sources[1]}: one run at a time can be watched; leave it out")
+    return record

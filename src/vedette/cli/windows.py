@@ -1,0 +1,61 @@
+"""How commands open the operator's window: where it listens, and for how long."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, TypeVar
+
+import click
+
+from vedette.cli.options import Positive, with_options
+from vedette.interrupt import ending_on_ctrl_c
+from vedette.window.hub import Hub
+from vedette.window.server import LOOPBACK, WindowServer
+
+CommandT = TypeVar("CommandT", bound=Callable[..., Any])
+PACE = 5.0
+
+
+def address_options(command: CommandT) -> CommandT:
+    """``--host`` and ``--port``."""
+    return with_options(
+        command,
+        click.option(
+            "--host", default=LOOPBACK, show_default=True, metavar="ADDRESS",
+            help="Where the page is served; others than this computer see it by another address.",
+        ),
+        click.option(
+            "--port", type=click.IntRange(0, 65535), default=0, metavar="N",
+            help="Of the page.  [default: any that is free]",
+        ),
+    )  # fmt: skip
+
+
+def watch_options(command: CommandT) -> CommandT:
+    """``--watch`` and ``--pace`` of a simulated mission."""
+    return with_options(
+        command,
+        click.option("--watch", is_flag=True, help="Show it in a browser, where orders can be given too."),
+        click.option(
+            "--pace", type=Positive("times real time", most=1000.0), default=PACE, show_default=True,
+            help="Of a mission that is watched.",
+        ),
+    )  # fmt: skip
+
+
+@contextmanager
+def opened(hub: Hub, host: str = LOOPBACK, port: int = 0) -> Iterator[WindowServer]:
+    """Serve a hub, and say where."""
+    with WindowServer(hub, host, port) as window:
+        click.echo(f"watch it at {window.address}", err=True)
+        yield window
+
+
+def linger() -> None:
+    """Wait for Ctrl-C."""
+    ended = threading.Event()
+    with ending_on_ctrl_c(ended.set):
+        while not ended.wait(0.5):
+            pass

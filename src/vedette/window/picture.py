@@ -1,0 +1,144 @@
+"""A moment of a mission as the page draws it: what is told of robots in words and numbers, and the map."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.agent.orders import NoGo, Order, Priority
+from vedette.maps import GridFrame
+from vedette.record import palette
+from vedette.record.explore.log import ExploreScene, ExploreSnapshot, RobotSample
+from vedette.record.explore.told import progress
+
+TILE = 32  # cells a side, in which changes of the map travel
+MOST_PATH = 40  # points of a path that are drawn
+
+
+@dataclass(frozen=True)
+class Beside:
+    """What is told beside a snapshot, where there is somebody to tell it."""
+
+    numbers: Sequence[int] = ()  # of the robots, from 1; none: 1, 2, ...
+    silent: Mapping[int, float] = field(default_factory=dict)  # by robot's number: for how long [s]
+    orders: Sequence[tuple[str, Sequence[str]]] = ()  # in force, and who holds each
+    areas: Sequence[Mapping[str, Any]] = ()  # that are ordered: kind, name and corners
+    alerts: Sequence[str] = ()
+
+
+NOTHING = Beside()
+
+
+def ordered(
+    held: Iterable[tuple[str, Iterable[Order]]],
+) -> tuple[list[tuple[str, list[str]]], list[Mapping[str, Any]]]:
+    """Return the orders in force with who holds each, and the areas among them, by what robots hold."""
+    holders, areas = dict[str, list[str]](), dict[str, Mapping[str, Any]]()
+    for name, orders in held:
+        for order in orders:
+            holders.setdefault(said(order), []).append(name)
+            if isinstance(order, NoGo | Priority):
+                kind = "no-go" if isinstance(order, NoGo) else "priority"
+                areas[order.area] = {"kind": kind, "name": order.area, "corners": order.corners}
+    return list(holders.items()), list(areas.values())
+
+
+def said(order: Order) -> str:
+    """Return an order in words, without the corners of an area."""
+    told = {name: value for name, value in msgspec.to_builtins(order).items() if name != "corners"}
+    kind = told.pop("order")
+    return " ".join([kind, *(f"{name} {value}" for name, value in told.items())])
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """What the page shows of one moment."""
+
+    t: float  # [s]
+    text: bytes  # JSON: all but the map
+    frame: GridFrame
+    classes: NDArray[np.uint8]  # (R, C), never changed afterwards
+
+
+def picture(scene: ExploreScene, snapshot: ExploreSnapshot, beside: Beside = NOTHING) -> Picture:
+    """Return a moment of an exploration."""
+    numbers = beside.numbers or range(1, len(scene.vehicles) + 1)
+    robots = [
+        _robot(number, name, robot, beside.silent.get(number))
+        for number, name, robot in zip(numbers, scene.vehicles, snapshot.robots, strict=True)
+    ]
+    figures = list(progress(snapshot))
+    if snapshot.coverage is not None:
+        figures.insert(0, ("covered", f"{100 * snapshot.coverage:.1f} %"))
+    told = {
+        "t": round(snapshot.t, 2),
+        "robots": robots,
+        "figures": figures,
+        "share": snapshot.known_fraction if snapshot.coverage is None else snapshot.coverage,
+        "links": [(link.a, link.b, link.on_tree, round(link.loss, 2)) for link in snapshot.links or ()],
+        "orders": beside.orders,
+        "areas": beside.areas,
+        "alerts": [*_lost(scene, snapshot), *beside.alerts],
+    }
+    text = msgspec.json.encode(told, enc_hook=lambda number: number.item())  # NumPy's
+    return Picture(snapshot.t, text, scene.frame, snapshot.classes.copy())
+
+
+def _robot(number: int, name: str, robot: RobotSample, silent: float | None) -> dict[str, Any]:
+    path = np.asarray(robot.path, np.float64)[:MOST_PATH].round(2).tolist()
+    return {
+        "id": number,
+        "name": name,
+        "x": round(robot.x, 3),
+        "y": round(robot.y, 3),
+        "heading": round(robot.heading, 3),
+        "state": robot.state,
+        "alive": robot.alive,
+        "silent": None if silent is None else round(silent, 1),
+        "path": path,
+        "driven": round(robot.driven, 1),
+        "colour": palette.robot_colour(number - 1),
+    }
+
+
+def _lost(scene: ExploreScene, snapshot: ExploreSnapshot) -> list[str]:
+    """Return what an operator should look at."""
+    pairs = zip(scene.vehicles, snapshot.robots, strict=True)
+    return [f"{name}: {robot.fate or robot.state}" for name, robot in pairs if _is_bad(robot)]
+
+
+def _is_bad(robot: RobotSample) -> bool:
+    return robot.fate == "lost" or robot.state == "stuck"
+
+
+def changes(
+    frame: GridFrame, classes: NDArray[np.uint8], shown: NDArray[np.uint8] | None
+) -> tuple[bool, bytes]:
+    """Return what a page that shows one map needs to show another, and whether that is all of it.
+
+    The bytes are, for each tile of 32 x 32 cells that differs, its row and column of tiles as little-endian
+    16 bits, then its cells row by row; beyond the map's edge they are 0.
+    """
+    whole = shown is None or shown.shape != classes.shape
+    rows, cols = -(-frame.rows // TILE), -(-frame.cols // TILE)
+    tiles = _tiles(classes, rows, cols)
+    differs = tiles != (0 if whole or shown is None else _tiles(shown, rows, cols))
+    row, col = np.nonzero(differs.any(axis=(1, 3)))
+    heads = np.column_stack((row, col)).astype("<u2").view(np.uint8)
+    body = tiles.transpose(0, 2, 1, 3)[row, col].reshape(len(row), TILE * TILE)
+    return whole, np.hstack((heads, body)).tobytes()
+
+
+def _tiles(classes: NDArray[np.uint8], rows: int, cols: int) -> NDArray[np.uint8]:
+    """Return ``(rows, 32, cols, 32)``."""
+    high, wide = rows * TILE, cols * TILE
+    if classes.shape != (high, wide):
+        padded = np.zeros((high, wide), np.uint8)
+        padded[: classes.shape[0], : classes.shape[1]] = classes
+        classes = padded
+    return classes.reshape(rows, TILE, cols, TILE)

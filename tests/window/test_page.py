@@ -1,0 +1,249 @@
+"""The page in Chromium: it loads, follows, replays, gives each order, comes back, and fits a phone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from tests.support.windows import SCENE, needs_chromium, shown, snapshot
+from vedette.agent.orders import End, LookThere, NoGo, Order, Pause, Priority, Recall, Resume, Stay
+from vedette.record import palette
+from vedette.window.hub import Hub
+from vedette.window.picture import Beside, ordered, picture
+from vedette.window.server import WindowServer
+
+playwright = pytest.importorskip("playwright.sync_api")
+pytestmark = needs_chromium
+UNKNOWN, FREE, WALL = ([*colour] for colour in palette.CLASSES.tolist())
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    """Debian's Chromium; playwright's own cannot be downloaded everywhere."""
+    with playwright.sync_playwright() as engine:
+        opened = engine.chromium.launch(executable_path="/usr/bin/chromium", args=["--no-sandbox"])
+        yield opened
+        opened.close()
+
+
+@pytest.fixture
+def page(browser: Any) -> Iterator[Any]:
+    """A page of its own; an error in it fails the test."""
+    errors: list[str] = []
+    opened = browser.new_page(viewport={"width": 1280, "height": 720})
+    opened.on("pageerror", lambda error: errors.append(str(error)))
+    yield opened
+    opened.close()
+    assert errors == []
+
+
+def until(page: Any, holds: str) -> None:
+    """Wait until an expression holds in the page, whose policy lets nobody evaluate one there."""
+    for _ in range(100):
+        if page.evaluate(holds):
+            return
+        page.wait_for_timeout(50)
+    raise AssertionError(f"it never came to {holds}")
+
+
+def pixel(page: Any, col: int, row: int) -> list[int]:
+    """The colour of a cell of the page's map, row 0 the topmost."""
+    colour: list[int] = page.evaluate(f"[...picture.getContext('2d').getImageData({col}, {row}, 1, 1).data]")
+    return colour[:3]
+
+
+def see(page: Any, hub: Hub, selector: str, text: str) -> None:
+    """Wait until the page says something, while the mission goes on."""
+    t = 0.0 if hub._latest is None else hub._latest.t
+    for _ in range(100):
+        if text in page.inner_text(selector):
+            return
+        t += 0.05
+        if hub.live and not hub.closed:
+            hub.show(picture(SCENE, snapshot(t)))
+        page.wait_for_timeout(50)
+    raise AssertionError(f"{selector} says {page.inner_text(selector)!r}, not {text!r}")
+
+
+def test_a_live_mission_is_followed_and_a_lost_robot_stays_on_the_screen(page: Any) -> None:
+    hub = shown(range(8))
+    with WindowServer(hub) as window:
+        page.goto(window.address)
+        see(page, hub, "#state", "live")
+        assert page.inner_text("#name") == "hall"
+        assert "covered" in page.inner_text("#figures")
+        assert page.inner_text("#robots").split()[:3] == ["1", "scout", "driving"]
+        assert pixel(page, 2, 30) == FREE
+        assert pixel(page, 90, 30) == [
+            216,
+            219,
+            222,
+        ]
+        assert pixel(page, 2, 69) == [
+            28,
+            30,
+            33,
+        ]
+        lost = snapshot(9.0, ("driving", "dead"))
+        hub.show(picture(SCENE, lost, Beside(silent={2: 12.0})))
+        page.wait_for_selector("tr.gone")
+        assert "silent 12 s" in page.inner_text("#robots")
+        assert "mule: lost" in page.inner_text("#alerts")
+        assert "mule: dead" in page.inner_text("#log")
+        hub.close()
+        see(page, hub, "#state", "the mission is over")
+        assert page.is_disabled("text=Pause")
+
+
+def test_a_record_is_scrubbed_and_played(page: Any) -> None:
+    hub = shown(range(40), live=False)
+    with WindowServer(hub) as window:
+        page.goto(window.address)
+        see(page, hub, "#state", "recorded")
+        assert page.inner_text("#clock") == "0.0 s"
+        assert not page.is_visible("#commands")
+        page.evaluate("$('bar').value = 30; $('bar').oninput()")
+        until(page, "$('clock').textContent === '30.0 s'")
+        assert pixel(page, 28, 30) == [
+            255,
+            255,
+            255,
+        ]
+        page.evaluate("$('bar').value = 5; $('bar').oninput()")
+        until(page, "$('clock').textContent === '5.0 s'")
+        assert pixel(page, 28, 30) == [
+            216,
+            219,
+            222,
+        ]
+        page.click("#play")
+        until(page, "parseFloat($('clock').textContent) >= 8")
+        page.click("#play")
+
+
+ORDERS: list[tuple[str, str, Order]] = [
+    ("p", "Pause", Pause()),
+    ("r", "Resume", Resume()),
+    ("h", "Recall", Recall()),
+    ("s", "Stay", Stay()),
+    ("", "End", End()),
+]
+
+
+def test_each_order_is_given_by_a_click_or_a_key_after_one_question(page: Any) -> None:
+    given: list[Order] = []
+    hub = shown(range(5), lambda order: given.append(order) or "taken by scout")
+    with WindowServer(hub) as window:
+        page.goto(window.address)
+        see(page, hub, "#state", "live")
+        for key, button, order in ORDERS:
+            see(page, hub, "#state", "live")
+            page.keyboard.press(key) if key else page.click(f"#commands >> text={button}")
+            assert "for the whole team?" in page.inner_text("#question")
+            hub.show(picture(SCENE, snapshot(hub.history.span[1] + 1.0)))
+            page.wait_for_timeout(100)
+            page.click("#yes")
+            see(page, hub, "#hint", "taken by scout")
+            assert given[-1] == order
+            page.evaluate("hint('')")
+        assert len(given) == len(ORDERS)
+        page.click("tr.robot >> text=mule")
+        see(page, hub, "#whom", "mule")
+        page.click("#commands >> text=Pause")
+        assert "for mule?" in page.inner_text("#question")
+        page.click("#no")
+        assert len(given) == len(ORDERS)
+
+
+def test_places_and_areas_are_drawn_by_clicks(page: Any) -> None:
+    given: list[Order] = []
+    hub = shown(range(5), lambda order: given.append(order) or "taken by scout")
+    with WindowServer(hub) as window:
+        page.goto(window.address)
+        see(page, hub, "#state", "live")
+
+        def click(x: float, y: float) -> None:
+            px, py = page.evaluate(f"place({x}, {y}).map((v) => v / (window.devicePixelRatio || 1))")
+            box = page.locator("#map").bounding_box()
+            page.mouse.click(box["x"] + px, box["y"] + py)
+
+        def confirm(words: str) -> Order:
+            assert words in page.inner_text("#question")
+            hub.show(picture(SCENE, snapshot(hub.history.span[1] + 1.0)))
+            page.wait_for_timeout(100)
+            page.click("#yes")
+            see(page, hub, "#hint", "taken by scout")
+            page.evaluate("hint('')")
+            return given[-1]
+
+        page.keyboard.press("2")
+        page.click("#commands >> text=Look there")
+        click(3.0, 4.0)
+        look = confirm("for mule?")
+        assert isinstance(look, LookThere)
+        assert look.robot == 2
+        assert look.at == pytest.approx((3.0, 4.0), abs=0.05)
+        page.keyboard.press("Escape")
+        for key, kind in (("n", NoGo), ("i", Priority)):
+            see(page, hub, "#state", "live")
+            page.keyboard.press(key)
+            for corner in ((1.0, 2.0), (4.0, 2.0), (4.0, 5.0)):
+                click(*corner)
+            page.keyboard.press("Enter")
+            area = confirm("for all robots?")
+            assert isinstance(area, kind)
+            assert [*area.corners[2]] == pytest.approx([4.0, 5.0], abs=0.05)
+        orders, areas = ordered([("scout", given[-2:])])
+        hub.show(picture(SCENE, snapshot(80.0), Beside(orders=orders, areas=areas)))
+        until(page, "$('orders').childElementCount === 2")
+        assert "held by scout" in page.inner_text("#orders")
+
+
+def test_an_order_asked_on_a_picture_that_has_grown_old_is_refused(page: Any) -> None:
+    given: list[Order] = []
+    hub = shown(range(5), lambda order: given.append(order) or "taken")
+    with WindowServer(hub) as window:
+        page.goto(window.address)
+        see(page, hub, "#state", "live")
+        page.click("#commands >> text=Pause")
+        page.wait_for_timeout(3200)
+        page.click("#yes")
+        until(page, "$('hint').textContent.startsWith('refused: the picture')")
+        assert given == []
+        assert page.is_disabled("text=Pause")
+        assert page.inner_text("#state") == "no news"
+
+
+def test_two_watch_and_one_whose_connection_breaks_comes_back(page: Any, browser: Any) -> None:
+    hub = shown(range(5))
+    second = browser.new_page()
+    with WindowServer(hub) as window:
+        for each in (page, second):
+            each.goto(window.address)
+            see(each, hub, "#state", "live")
+        page.evaluate("socket.close()")
+        until(page, "$('state').textContent.startsWith('connection lost')")
+        see(page, hub, "#state", "live")
+        see(second, hub, "#state", "live")
+        port, token = window.port, window.token
+    until(page, "$('state').textContent.startsWith('connection lost')")
+    hub = shown(range(3))
+    with WindowServer(hub, port=port, token=token):
+        see(page, hub, "#state", "live")
+    second.close()
+
+
+def test_a_phone_has_all_of_it_and_nothing_beyond_its_edge(page: Any) -> None:
+    hub = shown(range(5), lambda order: "taken")
+    with WindowServer(hub) as window:
+        page.set_viewport_size({"width": 390, "height": 844})
+        page.goto(window.address)
+        see(page, hub, "#state", "live")
+        assert page.evaluate("document.documentElement.scrollWidth") <= 390
+        for selector in ("#map", "#robots", "#commands", "#bar", "#log"):
+            assert page.locator(selector).count() == 1
+        box = page.locator("#map").bounding_box()
+        assert box["width"] > 350
+        assert box["height"] > 300
