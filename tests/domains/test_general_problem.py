@@ -16,6 +16,12 @@ from vedette.domains.mapping import layers
 from vedette.domains.mapping.impact import Impact as MapImpact
 from vedette.domains.mapping.impact import quantise as quantise_share
 from vedette.domains.mapping.objective import MappingObjective
+from vedette.domains.monitoring.belief import FieldBelief
+from vedette.domains.monitoring.field import FieldModel
+from vedette.domains.monitoring.impact import impact_of as monitoring_impact
+from vedette.domains.monitoring.objective import MonitoringBelief, MonitoringObjective
+from vedette.domains.monitoring.spots import Spots
+from vedette.domains.monitoring.worth import Patrol
 from vedette.domains.search import worth
 from vedette.domains.search.belief import TargetPdf, freeze
 from vedette.domains.search.impact import Impact as SearchImpact
@@ -196,6 +202,30 @@ def test_the_tracking_objective_is_exact_for_places() -> None:
     assert platform.candidates is not None
     both = TrackingObjective().combine(platform.candidates[0], platform.candidates[0])
     assert TrackingObjective().value(belief, both) == pytest.approx(2.0 * model.value((0, 0)), rel=1e-4)
+
+
+def test_the_monitoring_objective_is_exact_for_a_field_that_stands_still_up_to_the_unit_of_information() -> (
+    None
+):
+    frame = GridFrame(1.0, 2, 2)
+    field = FieldBelief.prior(FieldModel(frame, deviation=1.0, length=2.0, lasting=100.0), Spots(frame, (1,)))
+    covariance = np.linalg.inv(field.precision.toarray())[:2, :2]  # of the two cells that are measured
+    precision = np.linalg.inv(covariance)
+    axis = np.linspace(-4.5, 4.5, 41)
+    points = np.stack(np.meshgrid(axis, axis), -1).reshape(-1, 2)
+    prior = np.exp(-0.5 * np.einsum("ni,ij,nj->n", points, precision, points))
+    noises = (0.5, 0.8)  # of one robot in each cell
+    likelihoods = [[bins(lattice(x, noise), x, noise)] for x, noise in zip(points.T, noises, strict=True)]
+    model = FiniteModel(prior / prior.sum(), likelihoods)
+    unit = 0.02
+    looks = [
+        monitoring_impact(np.array([cell]), np.array([0]), round(noise**-2 / unit), 1)
+        for cell, noise in enumerate(noises)
+    ]
+    belief = MonitoringBelief(field, Patrol(30.0, 1, 1.0), unit)
+    value = MonitoringObjective().value(belief, MonitoringObjective().combine(*looks))
+    assert value == pytest.approx(model.value((0, 0)), rel=5e-3)
+    assert covariance[0, 1] > 0.3  # each says something of the other's cell
 
 
 # -- search: where a target is ----------------------------------------------------------------------------

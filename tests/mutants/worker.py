@@ -10,6 +10,7 @@ from tests.mutants.cover import Cover
 from tests.mutants.trial import Trial, run
 
 _FIRST = 10.0  # the quickest tests, so long together, are run before the others are even collected [s]
+_MOST = 60.0  # of tests for a mutant [s]
 
 
 @dataclass(frozen=True)
@@ -32,19 +33,20 @@ class Worker:
             tree.restore(self.tree, name)
 
     def _trial(self, tests: list[str]) -> Trial:
-        """Run the quickest tests that come by; if none notices, all tests of all files with such a test."""
-        first = self._quickest(tests)
+        """Run the quickest tests that come by; if none notices, whole files with such tests, for a minute."""
+        first = self._until(tests, _FIRST)
         trial = run(self.tree, first, self._seconds(first))
         if trial.verdict != "survived":
             return trial
-        rest = self.cover.whole_files(tests)
+        rest = self._until(self.cover.whole_files(tests), _MOST)
         return run(self.tree, rest, self._seconds(rest))
 
-    def _quickest(self, tests: list[str]) -> list[str]:
+    def _until(self, tests: list[str], seconds: float) -> list[str]:
+        """Return the first of them that take no longer together, one at least."""
         total, first = 0.0, []
         for test in tests:
             total += self.cover.seconds[test]
-            if first and total > _FIRST:
+            if first and total > seconds:
                 break
             first.append(test)
         return first
