@@ -30,6 +30,7 @@ SCHEMES = ("token", "fork", "async")
 HOPS = (1.0, 20.0, 100.0)  # [ms]
 SIZES, QUICK_SIZES = (8, 16, 64, 256, 1024), (8, 16)
 JUDGED, JUDGED_HOP = 64, 20.0
+WHOLE = (JUDGED, 256)  # sizes with a star and a chain
 ASYNC_UP_TO = 256
 SEEDS = 3  # of what is judged
 RADIO = 2.0  # [lots]
@@ -168,7 +169,7 @@ def _depth(tree: Tree, root: int) -> int:
 def cases(sizes: Sequence[int]) -> Iterator[tuple[str, str, int]]:
     """Yield domain, tree and size of each group of rows."""
     for n in sizes:
-        for tree in ("radio", "balanced", "random", *(("star", "chain") if n == JUDGED else ())):
+        for tree in ("radio", "balanced", "random", *(("star", "chain") if n in WHOLE else ())):
             for domain in DOMAINS if (n, tree) == (JUDGED, "radio") else ("tracking",):
                 yield domain, tree, n
 

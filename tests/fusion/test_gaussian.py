@@ -287,8 +287,8 @@ def test_after_partition_restart_and_rejoining_nothing_counts_twice_and_new_evid
     net.run(30)
     for robot, before in zip(net.robots.values(), tracks, strict=True):
         after = robot.estimate()[1]
-        assert np.allclose(after.matrix, before.matrix + news.matrix, rtol=1e-9)
-        assert np.allclose(after.vector, before.vector + news.vector, rtol=1e-9)
+        assert np.allclose(after.matrix, before.matrix + news.matrix, rtol=1e-9, atol=1e-12)
+        assert np.allclose(after.vector, before.vector + news.vector, rtol=1e-9, atol=1e-12)
 
 
 def test_two_that_share_a_secret_and_meet_through_others_do_not_count_it_twice() -> None:
@@ -302,7 +302,7 @@ def test_two_that_share_a_secret_and_meet_through_others_do_not_count_it_twice()
     net.connect(chain(4))
     net.run(20)
     for robot in net.robots.values():
-        assert np.allclose(robot.estimate()[1].matrix, secret.matrix, rtol=1e-6)
+        assert np.allclose(robot.estimate()[1].matrix, secret.matrix, rtol=1e-6, atol=1e-12)
 
 
 def test_a_robot_that_restarts_gets_its_own_old_evidence_back_and_counts_it_once() -> None:
@@ -361,7 +361,8 @@ def test_the_weight_maximises_the_determinant(seed: int) -> None:
     for w in np.linspace(0.0, 1.0, 101):
         assert (best >= np.linalg.slogdet(w * a + (1.0 - w) * b)[1] - 1e-9).all()
     weight = merged.vector[:, 0]
-    assert np.allclose(merged.matrix, weight[:, None, None] * a + (1.0 - weight)[:, None, None] * b)
+    expected = weight[:, None, None] * a + (1.0 - weight)[:, None, None] * b
+    np.testing.assert_allclose(merged.matrix, expected, rtol=1e-9, atol=1e-12)
 
 
 def test_the_larger_of_two_tracks_comes_out_unchanged() -> None:

@@ -94,9 +94,9 @@ def test_a_failed_write_leaves_the_old_file_and_no_scrap(tmp_path: Path) -> None
     def fail_half_way() -> None:
         with atomic_path(target) as temporary:
             temporary.write_text("half")
-            raise RuntimeError
+            raise RuntimeError("the disk is full")
 
-    with pytest.raises(RuntimeError):
+    with pytest.raises(RuntimeError, match="the disk is full"):
         fail_half_way()
     assert target.read_text() == "old"
     assert [path.name for path in tmp_path.iterdir()] == ["summary.json"]

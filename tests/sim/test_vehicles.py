@@ -184,5 +184,5 @@ def test_what_a_vehicle_cannot_do_is_refused() -> None:
     vehicles = Vehicles([(0.0, 0.0, 0.0)], 1.0, 0.5, 1.0, lambda i, pose, now: None)
     with pytest.raises(ValueError, match="turns at most"):
         vehicles.carry_out(0, Fly(FlightPlan(0.0, 1.0, np.array([0.6]))), 0.0)
-    with pytest.raises(AssertionError):
+    with pytest.raises(AssertionError, match="vehicles do not drive"):
         vehicles.carry_out(0, Drive(None), 0.0)

@@ -114,7 +114,11 @@ class RoundLaw:
         if any(mate.last is None or mate.last.stamp != stamp for mate in team):
             return
         after = np.prod([cast(Impact, mate.present).miss for mate in team], axis=0)
-        check(np.allclose(after, whole.miss), "the team's impact is not what its robots chose", stamp)
+        check(
+            np.allclose(after, whole.miss, atol=1e-12),
+            "the team's impact is not what its robots chose",
+            stamp,
+        )
         if len({cast(Belief, mate.last).digest for mate in team}) > 1:
             return
         self.rounds += 1
