@@ -175,6 +175,8 @@ def test_a_belief_that_cannot_be_is_refused() -> None:
     ):
         with pytest.raises(InputError, match=line):
             FieldBelief(belief.model, belief.spots, information, np.zeros(70))
+    with pytest.raises(InputError, match="vector of spot 0 is not finite"):
+        FieldBelief(belief.model, belief.spots, np.zeros(70), wrong * math.nan)
     with pytest.raises(InputError, match="another grid"):
         FieldBelief.prior(belief.model, Spots(GridFrame(1.0, 7, 5)))
     with pytest.raises(InputError, match="dt must be > 0 s; got 0"):
