@@ -125,17 +125,17 @@ def footprints(
     factor: int,
     floor: float,
 ) -> tuple[NDArray[np.int64], NDArray[np.uint32], NDArray[np.float32]]: ...
+def components(cells: NDArray[np.bool_]) -> NDArray[np.int64]: ...
 def combine(
     keys_a: NDArray[np.uint32],
     misses_a: NDArray[np.uint8],
     keys_b: NDArray[np.uint32],
     misses_b: NDArray[np.uint8],
+    layers: int,
 ) -> tuple[NDArray[np.uint32], NDArray[np.uint8]]: ...
-def pack_misses(
-    keys: NDArray[np.uint32], misses: NDArray[np.uint8], cells: int, layers: int, runs: int
-) -> bytes: ...
+def pack_misses(keys: NDArray[np.uint32], misses: NDArray[np.uint8], cells: int, layers: int) -> bytes: ...
 def unpack_misses(
-    body: bytes, cells: int, layers: int, runs: int
+    data: bytes, cells: int, layers: int, most: int
 ) -> tuple[NDArray[np.uint32], NDArray[np.uint8]]: ...
 def marginals(
     worth: _Worth,

@@ -207,14 +207,31 @@ def test_footprints_equal_their_twin(seed: int, by_distance: bool) -> None:
     np.testing.assert_allclose(shares, twin_shares, rtol=1e-5)
 
 
-@settings(deadline=None, max_examples=60)
-@given(seeds)
-def test_combine_equals_a_dictionary_of_saturating_sums(seed: int) -> None:
+@settings(deadline=None, max_examples=100)
+@given(seeds, st.sampled_from([1, 7, LAYERS]))
+def test_combine_equals_a_dictionary_of_saturating_sums(seed: int, layers: int) -> None:
     rng = np.random.default_rng(seed)
-    a, b = random_impact(rng), random_impact(rng)
-    (keys, misses), (twin_keys, twin_misses) = coverage.combine(*a, *b), reference.combine(*a, *b)
-    np.testing.assert_array_equal(keys, twin_keys, strict=True)
-    np.testing.assert_array_equal(misses, twin_misses, strict=True)
+    nothing = np.empty(0, np.uint32), np.empty(0, np.uint8)
+    a, b = (reference.combine(*random_impact(rng), *nothing, layers) for _ in range(2))
+    together = coverage.combine(*a, *b, layers)
+    for part, twin in zip(together, reference.combine(*a, *b, layers), strict=True):
+        np.testing.assert_array_equal(part, twin, strict=True)
+    for whole, alone in zip(coverage.combine(*a, *nothing, layers), a, strict=True):
+        np.testing.assert_array_equal(whole, alone, strict=True)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_what_follows_certainty_in_a_cell_changes_no_value_and_no_order_of_combining(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    nothing = np.empty(0, np.uint32), np.empty(0, np.uint8)
+    raw = random_impact(rng)
+    cut = reference.combine(*raw, *nothing)
+    weights, layers = random_worth(rng), rng.uniform(0, 1, LAYERS)
+    assert reference.value(weights, layers, cut) == reference.value(weights, layers, raw)
+    a, b = (reference.combine(*random_impact(rng), *nothing) for _ in range(2))
+    left = coverage.combine(*coverage.combine(*cut, *a), *b)
+    right = coverage.combine(*cut, *coverage.combine(*b, *a))
+    assert all(np.array_equal(x, y) for x, y in zip(left, right, strict=True))
 
 
 @settings(deadline=None, max_examples=60)

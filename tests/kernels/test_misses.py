@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import zlib
+import heapq
+from collections import Counter
 from collections.abc import Callable
 
 import numpy as np
@@ -15,37 +16,31 @@ from vedette.kernels.misses import MissesCodec, SparseMisses
 from vedette.kernels.reference import misses as reference
 
 
-def written_by_loops(impact: SparseMisses, cells: int, layers: int, runs: int) -> bytes:
-    entries = zip(impact.keys.tolist(), impact.misses.tolist(), strict=True)
-    places = sorted((key % layers * cells + key // layers, miss) for key, miss in entries)
-    counts, gaps, last = [0] * runs, [], [0] * runs
-    for place, _ in places:
-        run, within = divmod(place, cells * layers // runs)
-        gaps.append(within - last[run])
-        counts[run], last[run] = counts[run] + 1, within
-    numbers = [n.to_bytes(4, "little") for n in (*counts, *(gap for gap in gaps if gap >= 255))]
-    small = bytes(min(gap, 255) for gap in gaps)
-    return b"".join((*numbers[:runs], small, bytes(miss for _, miss in places), *numbers[runs:]))
-
-
-@settings(deadline=None, max_examples=100)
-@given(
-    seed=st.integers(0, 2**32 - 1),
-    cells=st.integers(1, 900),
-    layers=st.integers(1, 40),
-    share=st.sampled_from([0.0, 0.002, 0.05, 1.0]),
-    by_layer=st.booleans(),
-)
-def test_an_impact_has_the_bytes_that_plain_loops_write_and_comes_back(
-    seed: int, cells: int, layers: int, share: float, by_layer: bool
-) -> None:
+def drawn(seed: int, cells: int, layers: int, share: float, levels: int) -> SparseMisses:
+    """Return an impact in patches: runs, and few log-misses if so many levels are few."""
     rng = np.random.default_rng(seed)
     keys = np.flatnonzero(rng.random(cells * layers) < share).astype(np.uint32)
-    impact = SparseMisses(keys, rng.integers(1, 256, len(keys)).astype(np.uint8))
-    runs = layers if by_layer else 1
-    codec = MissesCodec(cells, layers, runs=runs, level=6)
+    return SparseMisses(keys, rng.choice(rng.integers(1, 256, levels), len(keys)).astype(np.uint8))
+
+
+IMPACTS = {
+    "seed": st.integers(0, 2**32 - 1),
+    "cells": st.integers(1, 300),
+    "layers": st.integers(1, 40),
+    "share": st.sampled_from([0.0, 0.002, 0.05, 0.7, 1.0]),
+    "levels": st.sampled_from([1, 2, 9, 255]),
+}
+
+
+@settings(deadline=None, max_examples=200)
+@given(**IMPACTS)
+def test_an_impact_has_its_twins_bytes_and_comes_back(
+    seed: int, cells: int, layers: int, share: float, levels: int
+) -> None:
+    impact = drawn(seed, cells, layers, share, levels)
+    codec = MissesCodec(cells, layers)
     data = codec.encode(impact)
-    assert zlib.decompress(data, wbits=-15) == written_by_loops(impact, cells, layers, runs)
+    assert data == reference.pack_misses(impact, cells, layers)
     assert codec.decode(data) == impact
     assert len(data) <= codec.bound
 
@@ -57,35 +52,54 @@ def outcome(unpack: Callable[[], SparseMisses]) -> SparseMisses | str:
         return str(error)
 
 
-@settings(deadline=None, max_examples=300)
-@given(
-    seed=st.integers(0, 2**32 - 1),
-    cells=st.integers(1, 300),
-    layers=st.integers(1, 8),
-    share=st.sampled_from([0.01, 0.3]),
-    by_layer=st.booleans(),
-)
+@settings(deadline=None, max_examples=200)
+@given(**IMPACTS)
 def test_damaged_bytes_are_read_or_refused_as_their_twin_reads_or_refuses_them(
-    seed: int, cells: int, layers: int, share: float, by_layer: bool
+    seed: int, cells: int, layers: int, share: float, levels: int
 ) -> None:
     rng = np.random.default_rng(seed)
-    keys = np.flatnonzero(rng.random(cells * layers) < share).astype(np.uint32)
-    impact = SparseMisses(keys, rng.integers(1, 256, len(keys)).astype(np.uint8))
-    grid = cells, layers, layers if by_layer else 1
-    body = _kernels.pack_misses(*impact.sparse, *grid)
-    assert body == reference.pack_misses(impact, *grid)
+    body = _kernels.pack_misses(*drawn(seed, cells, layers, share, levels).sparse, cells, layers)
+    limits = cells, layers, 3000
     for _ in range(8):
         damaged = bytearray(body)
         for at in rng.integers(0, len(damaged), rng.integers(0, 3)):
             damaged[at] = int(rng.choice([0, 1, 254, 255, damaged[at] ^ 1]))
         data = bytes(damaged[: rng.choice([len(damaged), rng.integers(len(damaged) + 1)])])
-        read = outcome(lambda data=data: SparseMisses(*_kernels.unpack_misses(data, *grid)))
-        assert read == outcome(lambda data=data: reference.unpack_misses(data, *grid))
+        read = outcome(lambda data=data: SparseMisses(*_kernels.unpack_misses(data, *limits)))
+        assert read == outcome(lambda data=data: reference.unpack_misses(data, *limits))
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_codes_are_huffmans_where_no_word_is_too_long(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    counts = Counter(dict(enumerate((rng.pareto(1.0, rng.integers(2, 200)) + 1.0).astype(int).tolist())))
+    lengths = reference.code_lengths(counts)
+    assert sum(2.0**-length for length in lengths.values()) == 1.0
+    assert max(lengths.values()) <= reference.LONGEST
+    least, heap = 0, sorted(counts.values())
+    while len(heap) > 1:
+        least += (joined := heapq.heappop(heap) + heapq.heappop(heap))
+        heapq.heappush(heap, joined)
+    bits = sum(lengths[symbol] * count for symbol, count in counts.items())
+    assert bits == least or (
+        max(reference.depths(counts).values()) > reference.LONGEST and bits < 1.05 * least
+    )
+
+
+def test_words_are_cut_to_twelve_bits_where_counts_grow_like_fibonaccis() -> None:
+    rng, counts = np.random.default_rng(0), [1, 1]
+    while len(counts) < 20:
+        counts.append(counts[-1] + counts[-2])
+    misses = rng.permutation(np.repeat(np.arange(1, 21), counts)).astype(np.uint8)
+    impact = SparseMisses(np.arange(len(misses), dtype=np.uint32), misses)
+    data = MissesCodec(len(misses), 1).encode(impact)
+    assert data == reference.pack_misses(impact, len(misses), 1)
+    assert MissesCodec(len(misses), 1).decode(data) == impact
 
 
 def test_a_key_outside_the_grid_is_not_packed() -> None:
     with pytest.raises(ValueError, match="outside the map"):
-        _kernels.pack_misses(np.array([12], np.uint32), np.array([9], np.uint8), 4, 3, 3)
+        _kernels.pack_misses(np.array([12], np.uint32), np.array([9], np.uint8), 4, 3)
 
 
 @pytest.mark.parametrize("seed", range(20))

@@ -12,12 +12,63 @@ pub(super) fn miss_table() -> [f64; 256] {
     table
 }
 
-/// `a * b`: log-misses add, saturating.  docs/mapping.md (V20)
-pub fn combine(a: (&[u32], &[u8]), b: (&[u32], &[u8])) -> Sparse {
+/// `a * b`: log-misses add, saturating; within a cell of so many layers nothing is left after certainty.
+/// docs/mapping.md (V20)
+///
+/// Of each of them this has to hold already.
+pub fn combine(a: (&[u32], &[u8]), b: (&[u32], &[u8]), layers: u32) -> Sparse {
     let mut keys = Vec::with_capacity(a.0.len() + b.0.len());
     let mut misses = Vec::with_capacity(a.0.len() + b.0.len());
+    let mut take = |from: (&[u32], &[u8]), first: usize, end: usize| {
+        keys.extend_from_slice(&from.0[first..end]);
+        misses.extend_from_slice(&from.1[first..end]);
+    };
     let (mut i, mut j) = (0, 0);
-    while i < a.0.len() || j < b.0.len() {
+    let mut cell: Sparse = (Vec::new(), Vec::new());
+    while i < a.0.len() && j < b.0.len() {
+        let (cell_a, cell_b) = (a.0[i] / layers, b.0[j] / layers);
+        if cell_a < cell_b {
+            let end = i + before(&a.0[i..], cell_b * layers);
+            take(a, i, end);
+            i = end;
+        } else if cell_b < cell_a {
+            let end = j + before(&b.0[j..], cell_a * layers);
+            take(b, j, end);
+            j = end;
+        } else {
+            let last = (cell_a * layers).saturating_add(layers - 1);
+            let (end_a, end_b) = (i + up_to(&a.0[i..], last), j + up_to(&b.0[j..], last));
+            cell.0.clear();
+            cell.1.clear();
+            combine_cell((&a.0[i..end_a], &a.1[i..end_a]), (&b.0[j..end_b], &b.1[j..end_b]), &mut cell);
+            take((&cell.0, &cell.1), 0, cell.0.len());
+            (i, j) = (end_a, end_b);
+        }
+    }
+    take(a, i, a.0.len());
+    take(b, j, b.0.len());
+    (keys, misses)
+}
+
+/// How many keys at the head are below a bound that the first of them is below.
+fn before(keys: &[u32], bound: u32) -> usize {
+    let mut most = 1;
+    while most < keys.len() && keys[most] < bound {
+        most = 2 * most + 1;
+    }
+    let least = most / 2;
+    least + keys[least..most.min(keys.len())].partition_point(|&key| key < bound)
+}
+
+/// How many keys at the head are no greater than a key; they are few.
+fn up_to(keys: &[u32], last: u32) -> usize {
+    keys.iter().position(|&key| key > last).unwrap_or(keys.len())
+}
+
+/// The same for the entries of one cell.
+fn combine_cell(a: (&[u32], &[u8]), b: (&[u32], &[u8]), cell: &mut Sparse) {
+    let (mut i, mut j, mut so_far) = (0, 0, 0_u8);
+    while (i < a.0.len() || j < b.0.len()) && so_far < u8::MAX {
         let key_a = a.0.get(i).copied().unwrap_or(u32::MAX);
         let key_b = b.0.get(j).copied().unwrap_or(u32::MAX);
         let mut miss = 0_u8;
@@ -29,10 +80,11 @@ pub fn combine(a: (&[u32], &[u8]), b: (&[u32], &[u8])) -> Sparse {
             miss = miss.saturating_add(b.1[j]);
             j += 1;
         }
-        keys.push(key_a.min(key_b));
-        misses.push(miss);
+        let more = miss.min(u8::MAX - so_far);
+        so_far += more;
+        cell.0.push(key_a.min(key_b));
+        cell.1.push(more);
     }
-    (keys, misses)
 }
 
 /// What a certain sighting is worth by layer, in units of its cell's weight: suffix sums of the layers' weights.

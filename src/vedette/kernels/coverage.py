@@ -176,9 +176,15 @@ def footprints(
     )
 
 
-def combine(keys_a: Keys, misses_a: Misses, keys_b: Keys, misses_b: Misses) -> tuple[Keys, Misses]:
-    """``a * b``: log-misses add, saturating; exactly associative and commutative.  docs/mapping.md (V20)"""
-    return _kernels.combine(keys_a, misses_a, keys_b, misses_b)
+def combine(
+    keys_a: Keys, misses_a: Misses, keys_b: Keys, misses_b: Misses, layers: int = LAYERS
+) -> tuple[Keys, Misses]:
+    """``a * b``: log-misses add, saturating; exactly associative and commutative.  docs/mapping.md (V20)
+
+    Within a cell of so many layers nothing is left after certainty, as in ``a`` and ``b`` already; 1: each
+    entry is by itself.
+    """
+    return _kernels.combine(keys_a, misses_a, keys_b, misses_b, layers)
 
 
 def marginals(

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import zlib
 from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette import _kernels, wire
+from vedette import _kernels
 
 STEPS_PER_NAT = 16.0
 MOST_ENTRIES = 1 << 24  # of an impact, whatever the grid; more are refused
 CERTAIN = 255  # log-misses saturate here
+_TABLES = 400  # at most, of an encoding: the number of runs and three tables [bytes]
 
 Keys = NDArray[np.uint32]
 Misses = NDArray[np.uint8]
@@ -52,30 +52,27 @@ class SparseMisses:
 
 
 class MissesCodec:
-    """Log-misses as bytes: places layer by layer as gaps, log-misses apart, deflated.
+    """Log-misses as bytes: runs of equal ones, layer by layer, under prefix codes of their own.
 
-    A place is ``layer * cells + cell``. Gaps start anew with each of ``runs`` equal parts of all places. The
-    body: the number of entries in each run (``<u4``), all gaps in a byte each, all log-misses, and the gaps
-    of 255 and more once again (``<u4``).
+    A place is ``layer * cells + cell``. A run is places in a row with one log-miss; gaps between runs, their
+    lengths and log-misses have a code each (Huffman's), whose tables come first. What the bits are:
+    ``rust/src/misses.rs``.
     """
 
-    def __init__(self, cells: int, layers: int, *, runs: int, level: int) -> None:
-        """Take the grid's size, the layers, and how hard to deflate (zlib's level)."""
-        self._cells, self._layers, self._runs, self._level = cells, layers, runs, level
-        places = cells * layers // runs  # of a run
-        # two bytes an entry, four more a wide gap: a run's gaps sum to less than its places
-        entries = min(runs * places, MOST_ENTRIES)
-        self._largest = 4 * runs + 2 * entries + 4 * min(runs * (places // 255), entries)
+    def __init__(self, cells: int, layers: int) -> None:
+        """Take the grid's size and the layers."""
+        self._cells, self._layers = cells, layers
 
     @property
     def bound(self) -> int:
         """Largest encoding of any impact over these cells and layers [bytes]; no team size in it."""
-        return self._largest + 5 * (self._largest // 16383 + 1) + 64  # deflate at its worst
+        places = self._cells * self._layers
+        words = 3 * 12 * min(places, MOST_ENTRIES)  # bits, if every place were a run
+        return _TABLES + (words + places) // 8  # gaps and lengths sum to less than all places
 
     def encode(self, impact: SparseMisses) -> bytes:
         """Return at most ``bound`` bytes."""
-        body = _kernels.pack_misses(*impact.sparse, self._cells, self._layers, self._runs)
-        return zlib.compress(body, self._level, wbits=-15)
+        return _kernels.pack_misses(*impact.sparse, self._cells, self._layers)
 
     def decode(self, payload: bytes) -> SparseMisses:
         """Return the impact.
@@ -83,5 +80,4 @@ class MissesCodec:
         Raises:
             ValueError: the payload is not an impact over these cells and layers.
         """
-        body = wire.inflate(payload, self._largest, "impact")
-        return SparseMisses(*_kernels.unpack_misses(body, self._cells, self._layers, self._runs))
+        return SparseMisses(*_kernels.unpack_misses(payload, self._cells, self._layers, MOST_ENTRIES))

@@ -14,7 +14,7 @@ from vedette.maps.swept import most_cells_swept
 from vedette.number import many
 from vedette.team import Most
 
-# Shares are rounded to eighths: neighbouring cells then mostly agree, and messages deflate well.
+# Shares are rounded to eighths: neighbouring cells then mostly agree, and messages are short.
 _LEVELS = np.array([round(-np.log1p(-k / 8) * STEPS_PER_NAT) for k in range(8)] + [64], np.uint8)
 MIN_SHARE = 1 / 16  # a smaller share rounds to nothing
 _EVEN_ODDS = 11  # log-misses from which a cell is more likely seen than missed
@@ -118,5 +118,4 @@ class MapImpactCodec(MissesCodec):
     """Impacts over so many planning cells as bytes, layer by layer."""
 
     def __init__(self, cells: int) -> None:
-        # a twentieth more bytes than by the default level, in half the time
-        super().__init__(cells, LAYERS, runs=LAYERS, level=4)
+        super().__init__(cells, LAYERS)

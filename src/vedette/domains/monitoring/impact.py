@@ -48,7 +48,4 @@ def check_claim(impact: Impact, most: int, robots: int) -> None:
 
 
 class FieldImpactCodec(MissesCodec):
-    """Impacts over so many spots and layers as bytes, all layers in one go."""
-
-    def __init__(self, spots: int, layers: int) -> None:
-        super().__init__(spots, layers, runs=1, level=6)
+    """Impacts over so many spots and layers as bytes."""

@@ -65,7 +65,7 @@ class MonitoringObjective(Objective[MonitoringBelief, Impact]):
 
     def combine(self, a: Impact, b: Impact) -> Impact:
         """``a * b``: sums of information, saturating."""
-        return Impact(*coverage.combine(*a.sparse, *b.sparse))
+        return Impact(*coverage.combine(*a.sparse, *b.sparse, layers=1))
 
     def value(self, belief: MonitoringBelief, impact: Impact) -> float:
         """Return the entropy taken off, discounted."""

@@ -70,7 +70,4 @@ def check_claim(
 
 
 class SearchImpactCodec(MissesCodec):
-    """Impacts over so many cells and layers as bytes, all layers in one go."""
-
-    def __init__(self, cells: int, layers: int) -> None:
-        super().__init__(cells, layers, runs=1, level=6)
+    """Impacts over so many cells and layers as bytes."""

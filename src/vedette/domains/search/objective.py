@@ -37,7 +37,7 @@ class SearchObjective(Objective[SearchBelief, Impact]):
 
     def combine(self, a: Impact, b: Impact) -> Impact:
         """``a * b``: products of misses, as saturating sums of log-misses; paper, eq. (40); (V44)."""
-        return Impact(*coverage.combine(*a.sparse, *b.sparse))
+        return Impact(*coverage.combine(*a.sparse, *b.sparse, layers=1))
 
     def clip(self, belief: SearchBelief, impact: Impact, reach: Reach) -> Impact:
         """Return what can matter to platforms that look within ``reach`` only; docs/theory.md (V14)."""

@@ -152,13 +152,19 @@ def _blocks(values: NDArray[np.float64] | NDArray[np.bool_], factor: int) -> Flo
 # -- impacts ------------------------------------------------------------------------------------------
 
 
-def combine(keys_a: Keys, misses_a: Misses, keys_b: Keys, misses_b: Misses) -> Sparse:
-    """Twin of ``coverage.combine``: a dictionary of sums."""
+def combine(keys_a: Keys, misses_a: Misses, keys_b: Keys, misses_b: Misses, layers: int = LAYERS) -> Sparse:
+    """Twin of ``coverage.combine``: a dictionary of sums, and in each cell what they add up to."""
     total: dict[int, int] = {}
     for key, miss in [*zip(keys_a, misses_a, strict=True), *zip(keys_b, misses_b, strict=True)]:
-        total[int(key)] = min(CERTAIN, total.get(int(key), 0) + int(miss))
-    keys = sorted(total)
-    return np.array(keys, np.uint32), np.array([total[key] for key in keys], np.uint8)
+        total[int(key)] = total.get(int(key), 0) + int(miss)
+    so_far: dict[int, int] = {}
+    left: dict[int, int] = {}
+    for key in sorted(total):
+        before = so_far.get(key // layers, 0)
+        so_far[key // layers] = min(CERTAIN, before + total[key])
+        if so_far[key // layers] > before:
+            left[key] = so_far[key // layers] - before
+    return np.array(list(left), np.uint32), np.array(list(left.values()), np.uint8)
 
 
 def missed(impact: Sparse, cells: int) -> Floats:
