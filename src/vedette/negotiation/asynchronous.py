@@ -225,9 +225,9 @@ class AsyncNode(Generic[ImpactT]):
     def _add(self, pending: Pending[ImpactT], k: int, child: Child[ImpactT], offer: Offer[ImpactT]) -> None:
         """Take a child's offer among those to pass on, or refuse it."""
         child.offer = None
-        old = pending.branches.pop(k, Branch(self._own.nothing(), 0, 0.0, 0.0))
+        old = pending.branches.pop(k, Branch.of(self._own, self._own.nothing(), 0, 0.0, 0.0))
         impact = self._own.impact if pending.own else self._present[1]
-        new, rest = old.after(offer), self._together(pending.branches.values(), impact)
+        new, rest = old.after(self._own, offer), self._together(pending.branches.values(), impact)
         if offer.fact or old.is_raised_by(new, rest, self._own):
             pending.offers[k], pending.branches[k] = offer, new
         else:
@@ -345,7 +345,8 @@ class AsyncNode(Generic[ImpactT]):
 
     def _value(self, impact: ImpactT, branches: Mapping[int, Branch[ImpactT]]) -> float:
         """Return what this part of the tree is worth by itself; docs/theory.md (V15)."""
-        return value_alone(self._own, impact, branches.values(), self._own.strategy is None)
+        together = self._together(branches.values(), impact, beyond=False)
+        return value_alone(self._own, together, branches.values())
 
     def _ceiling(self, branches: Mapping[int, Branch[ImpactT]]) -> float:
         own = self._own.slack(self._own.nothing())

@@ -22,18 +22,27 @@ class Branch(Generic[ImpactT]):
     size: int
     ceiling: float
     value: float  # by itself
+    shown: float  # psi(mu): what of that its mu shows
 
-    def after(self, joined: Joined[ImpactT] | Offer[ImpactT]) -> Branch[ImpactT]:
+    @classmethod
+    def of(
+        cls, own: Participant[ImpactT], mu: ImpactT, size: int, ceiling: float, value: float
+    ) -> Branch[ImpactT]:
+        """Return a part that says so much of itself."""
+        return cls(mu, size, ceiling, value, own.value(mu))
+
+    def after(self, own: Participant[ImpactT], joined: Joined[ImpactT] | Offer[ImpactT]) -> Branch[ImpactT]:
         """Return the part as it says that it would be."""
-        mu = self.mu if joined.mu is None else joined.mu
-        return Branch(mu, joined.size, joined.ceiling, joined.value)
+        if joined.mu is None:
+            return Branch(self.mu, joined.size, joined.ceiling, joined.value, self.shown)
+        return Branch.of(own, joined.mu, joined.size, joined.ceiling, joined.value)
 
     def worth_with(self, rest: ImpactT, own: Participant[ImpactT]) -> float:
         """``V + psi(rest * mu) - psi(mu)``: the team's value but for what all the rest are by themselves.
 
         So values add up although messages leave out what interacts with nobody here; docs/theory.md (V15).
         """
-        return self.value + own.value(own.combine(rest, self.mu)) - own.value(self.mu)
+        return self.value + own.value(own.combine(rest, self.mu)) - self.shown
 
     def is_raised_by(self, new: Branch[ImpactT], rest: ImpactT, own: Participant[ImpactT]) -> bool:
         """Whether the team is worth no less with the new part in the place of this one."""
@@ -41,16 +50,11 @@ class Branch(Generic[ImpactT]):
         return attains(then, now, _ROUNDING)
 
 
-def value_alone(
-    own: Participant[ImpactT], impact: ImpactT, branches: Collection[Branch[ImpactT]], idle: bool
-) -> float:
-    """Return what a platform of this impact and the branches below it are worth; docs/theory.md (V15).
+def value_alone(own: Participant[ImpactT], together: ImpactT, branches: Collection[Branch[ImpactT]]) -> float:
+    """Return what a platform and the branches below it are worth, all impacts combined; docs/theory.md (V15).
 
-    ``idle``: it has no strategy, so that alone it is worth nothing.
+    Without a strategy it is worth nothing alone.
     """
-    if idle and not branches:
+    if own.strategy is None and not branches:
         return 0.0
-    together = impact
-    for branch in branches:
-        together = own.combine(together, branch.mu)
-    return own.value(together) + sum(branch.value - own.value(branch.mu) for branch in branches)
+    return own.value(together) + sum(branch.value - branch.shown for branch in branches)

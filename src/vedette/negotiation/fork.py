@@ -111,7 +111,9 @@ class ForkNode(RootedNode[ImpactT]):
         """Hold what a child's part of the tree is and does."""
         self._check_size(child, report.size)
         self._links.receive(child, report.mu)
-        self._branches[child] = Branch(self._links.held(child), report.size, report.ceiling, report.value)
+        self._branches[child] = Branch.of(
+            self._own, self._links.held(child), report.size, report.ceiling, report.value
+        )
         return self._gather()
 
     def _gather(self) -> list[Outgoing[ImpactT]]:
@@ -133,8 +135,7 @@ class ForkNode(RootedNode[ImpactT]):
 
     def _value(self) -> float:
         """Return what this part of the tree is worth by itself; docs/theory.md (V15)."""
-        idle = self._own.strategy is None
-        return value_alone(self._own, self._own.impact, self._branches.values(), idle)
+        return value_alone(self._own, self._links.all_but(self._parent), self._branches.values())
 
     # -- sweeping -----------------------------------------------------------------------------------------
 
@@ -152,7 +153,9 @@ class ForkNode(RootedNode[ImpactT]):
         self._moved = self._own.reply(others)
         if self._moved:
             self._links.changed()
-        self._slack = self._own.slack(self._own.combine(others, self._own.impact))
+        self._slack = math.inf  # counts only if nobody moves
+        if not self._moved:
+            self._slack = self._own.slack(self._own.combine(others, self._own.impact))
         self._forked = True
         onwards = [
             Outgoing(child, Fork(self._links.outgoing(child), child not in self._refused))
@@ -203,7 +206,7 @@ class ForkNode(RootedNode[ImpactT]):
     def _take(self, child: int, joined: Joined[ImpactT]) -> None:
         """Take a child's changes if they do not lower the team's value; a first choice in any case."""
         old = self._branches[child]
-        new = old.after(joined)
+        new = old.after(self._own, joined)
         forced = joined.first or joined.size < old.size or not joined.moved
         if not (forced or old.is_raised_by(new, self._links.all_but(child), self._own)):
             self._refused.add(child)

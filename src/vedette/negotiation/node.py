@@ -135,6 +135,7 @@ class TreeLinks(Generic[ImpactT]):
         self._own = own
         self._place = {k: place for place, k in enumerate(self.neighbours)}
         self._held = Fold(len(self.neighbours), own.combine)  # the last mu from each neighbour
+        self._rests = dict[int | None, ImpactT]()  # all but a neighbour's, since the last change
         self._stale = set(neighbours)  # those that have yet to hear of a change
 
     def check(self, sender: int) -> None:
@@ -165,12 +166,14 @@ class TreeLinks(Generic[ImpactT]):
     def hold(self, sender: int, mu: ImpactT) -> None:
         """Hold a mu that has been admitted."""
         self._held.put(self._place[sender], mu)
+        self._rests.clear()
         self._stale.update(k for k in self.neighbours if k != sender)
 
     def cut(self, neighbour: int) -> None:
         """Hold nothing of a neighbour, and count it as one no more."""
         self.neighbours = tuple(k for k in self.neighbours if k != neighbour)
         self._held.put(self._place[neighbour], self._own.nothing())
+        self._rests.clear()
         self._stale.discard(neighbour)
         self._stale.update(self.neighbours)
 
@@ -182,6 +185,7 @@ class TreeLinks(Generic[ImpactT]):
 
     def changed(self) -> None:
         """Note that the own impact has changed."""
+        self._rests.clear()
         self._stale.update(self.neighbours)
 
     def outgoing(self, receiver: int) -> ImpactT | None:
@@ -192,10 +196,13 @@ class TreeLinks(Generic[ImpactT]):
         mu, reach = self.all_but(receiver), self._reaches.get(receiver)
         return mu if reach is None else self._own.clip(mu, reach)
 
-    def all_but(self, neighbour: int) -> ImpactT:
-        """Return what is held of everybody not behind a neighbour, the own impact included."""
-        rest = self._held.without(self._place[neighbour])
-        return self._own.impact if rest is None else self._own.combine(self._own.impact, rest)
+    def all_but(self, neighbour: int | None) -> ImpactT:
+        """Return what is held of everybody not behind a neighbour, the own impact included; None: of all."""
+        if neighbour not in self._rests:
+            held, own = self._held, self._own
+            rest = held.total if neighbour is None else held.without(self._place[neighbour])
+            self._rests[neighbour] = own.impact if rest is None else own.combine(own.impact, rest)
+        return self._rests[neighbour]
 
     @property
     def heard_all(self) -> bool:
