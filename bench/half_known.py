@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.kernels.components import largest
 from vedette.kernels.distance import distance_field
 from vedette.kernels.lidar import cast_rays, integrate_scan
 from vedette.kernels.tiles import TiledGrid, Tiling
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.maps.world import World, standable
 from vedette.missions.explore.evidence import CLAMP, GAIN_HIT, GAIN_MISS, NUDGE
-from vedette.sim.components import largest
 from vedette.team import PlatformSpec
 
 SPACING = 0.5  # from one scan to the next [m]

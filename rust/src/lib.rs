@@ -2,6 +2,7 @@
 
 use pyo3::prelude::*;
 
+pub mod components;
 pub mod coverage;
 pub mod distance;
 pub mod frontier;
@@ -16,6 +17,7 @@ pub mod visibility;
 
 #[pymodule]
 fn _kernels(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    components::register(m)?;
     coverage::register(m)?;
     distance::register(m)?;
     frontier::register(m)?;

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from vedette.errors import InputError
+from vedette.kernels.components import largest
 from vedette.maps import GridFrame
 from vedette.maps.world import World, reachable_poses, standable
-from vedette.sim.components import largest
 from vedette.sim.indoors import indoors
 from vedette.sim.starts import choose_starts, clearance, parse_starts
 from vedette.sim.worlds import GENERATORS, office

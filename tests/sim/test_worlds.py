@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from vedette.cli.world import world as world_command
 from vedette.errors import InputError
+from vedette.kernels.components import components, largest
 from vedette.maps import FREE, GridFrame, read_map, write_map
 from vedette.maps.world import World, reachable_poses, standable
-from vedette.sim.components import components, largest
 from vedette.sim.worlds import GENERATORS, cave, maze, office
 from vedette.sim.worlds.floor_plan import draw_plan
 from vedette.sim.worlds.size import WorldScale

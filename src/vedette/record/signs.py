@@ -9,9 +9,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
 from matplotlib.legend_handler import HandlerTuple
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.path import Path
+from matplotlib.textpath import TextPath
 from matplotlib.transforms import ScaledTranslation
 
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
@@ -114,9 +117,15 @@ def badge(index: int, vehicle: VehicleSample | None = None) -> tuple[Line2D, ...
     disc = Line2D((), (), ls="", marker="o" if alive else "X", ms=10, mec="white", color=palette.unit(rgb))
     if not alive:
         return (disc,)
-    digits = f"$\\mathbf{{{index + 1}}}$"
     ink = palette.unit(palette.text_on(rgb))
-    return disc, Line2D((), (), ls="", marker=digits, ms=4.5, mew=0.1, color=ink)
+    return disc, Line2D((), (), ls="", marker=_digits(index + 1), ms=4.5, mew=0.1, color=ink)
+
+
+def _digits(number: int) -> Path:
+    """Return a number's outline about the origin."""
+    text = TextPath((0.0, 0.0), str(number), prop=FontProperties("DejaVu Sans", weight="bold"))
+    middle = text.get_extents().get_points().mean(axis=0)
+    return Path(text.vertices - middle, text.codes)
 
 
 def legend_line(figure: Figure, x: float, y: float, handles: Sequence[Any], labels: Sequence[str]) -> None:

@@ -3,11 +3,15 @@
 ``explore``, ``track`` and ``search`` with no arguments run the missions of the commands without options.
 """
 
-from vedette.run.domain import DomainMission
-from vedette.run.exploring import Explore, ExploreResult, explore
-from vedette.run.mission import Deciding
-from vedette.run.searching import Search, SearchResult, search
-from vedette.run.tracking import Track, TrackResult, track
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from vedette.run.domain import DomainMission
+    from vedette.run.exploring import Explore, ExploreResult, explore
+    from vedette.run.mission import Deciding
+    from vedette.run.searching import Search, SearchResult, search
+    from vedette.run.tracking import Track, TrackResult, track
 
 __all__ = [
     "Deciding",
@@ -22,3 +26,19 @@ __all__ = [
     "search",
     "track",
 ]
+
+_MODULES = {
+    "domain": ("DomainMission",),
+    "exploring": ("Explore", "ExploreResult", "explore"),
+    "mission": ("Deciding",),
+    "searching": ("Search", "SearchResult", "search"),
+    "tracking": ("Track", "TrackResult", "track"),
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import a mission when it is asked for: who explores does not wait for what searches."""
+    for module, names in _MODULES.items():
+        if name in names:
+            return getattr(import_module(f"{__name__}.{module}"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

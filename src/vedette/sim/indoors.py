@@ -7,10 +7,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.kernels.components import components, largest
 from vedette.kernels.frontier import traversable
 from vedette.maps import FREE
 from vedette.maps.world import World, standable
-from vedette.sim.components import components, largest
 
 
 def indoors(world: World, radius: float) -> NDArray[np.bool_]:

@@ -25,6 +25,7 @@ _COVERAGE = palette.unit((0, 114, 178))
 _ENTROPY = palette.unit((140, 90, 0))
 _APART = palette.unit((213, 94, 0))
 _FAINT = palette.unit((200, 203, 207))
+_LOWERED = {ord(digit): chr(0x2080 + int(digit)) for digit in "0123456789"}
 _DASHES = ((), (6, 2), (2, 1.5), (6, 2, 2, 2), (1, 1))  # a robot's line differs in more than its colour
 
 
@@ -65,7 +66,7 @@ def _coverage(axes: Axes, log: ExploreLog, summary: ExploreSummary) -> list[Any]
         told = "not reached" if t is None else f"= {t:.1f} s"
         sign = Line2D(
             (), (), ls="", marker=marker, color="white", mec=_FAINT if t is None else _COVERAGE, ms=6.5,
-            mew=1.0 if t is None else 1.6, label=f"$t_{{{level}}}$  {told}",
+            mew=1.0 if t is None else 1.6, label=f"t{level.translate(_LOWERED)}  {told}",
         )  # fmt: skip
         signs.append(sign)
         if t is not None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.kernels.components import components, largest
 from vedette.maps.world import World, standable
-from vedette.sim.components import components, largest
 from vedette.sim.worlds.size import world_frame
 
 _COARSE = 0.5  # side of an automaton's cell [m]

@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from vedette.errors import InputError
 from vedette.kernels import lidar
+from vedette.kernels.components import components, largest
 from vedette.kernels.tiles import TiledGrid, Tiling
 from vedette.logs import RecordedLog, RecordedMap, RecordedScan
 from vedette.maps import FREE, GridFrame
 from vedette.maps.world import World
 from vedette.missions.explore.evidence import CLAMP, GAIN_HIT, GAIN_MISS, NUDGE
 from vedette.missions.explore.own_map import OwnMap
-from vedette.sim.components import components, largest
 from vedette.sim.worlds.size import RESOLUTIONS, check_cells, check_length
 
 NO_RETURNS = ("ignore", "free")

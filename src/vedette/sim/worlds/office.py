@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from vedette.kernels.components import largest
 from vedette.maps.world import World, standable
-from vedette.sim.components import largest
 from vedette.sim.worlds.floor_plan import FloorPlan, draw_plan
 from vedette.sim.worlds.furnishing import furnish
 from vedette.sim.worlds.furniture import Floor
