@@ -24,34 +24,34 @@ pub fn footprints(
 ) -> (Vec<i64>, Vec<u32>, Vec<f32>) {
     let coarse_cols = cols.div_ceil(factor);
     let coarse_rows = rows.div_ceil(factor);
-    let mut seen = vec![0.0_f32; rows * cols];
+    let ground = Ground::of(classes, rows, cols);
+    let mut seen = vec![0.0_f32; ground.codes.len()];
     let mut touched: Vec<u32> = Vec::new();
     let mut share = vec![0.0_f32; coarse_rows * coarse_cols];
     let mut coarse_touched: Vec<usize> = Vec::new();
     let mut unknown = vec![0_u32; coarse_rows * coarse_cols]; // cells, once it was needed
     let (mut starts, mut cells, mut shares) = (vec![0_i64], Vec::new(), Vec::new());
-    let room = room(classes, rows, cols);
     for (&view, &heading) in views.iter().zip(facing) {
         for ray in 0..sensor.rays {
             let turn = std::f64::consts::TAU * ((ray as f64 + 0.5) / sensor.rays as f64 - 0.5);
             if turn.abs() <= 0.5 * sensor.view {
-                trace(classes, &room, rows, cols, view as usize, heading + turn, sensor, |cell, p| {
-                    let best = &mut seen[cell];
+                ground.trace(view as usize, heading + turn, sensor, |at, p| {
+                    let best = &mut seen[at];
                     if *best == 0.0 {
-                        touched.push(cell as u32);
+                        touched.push(at as u32);
                     }
                     *best = larger(*best, p);
                 });
             }
         }
-        for cell in touched.drain(..) {
-            let (row, col) = (cell / cols as u32, cell % cols as u32);
+        for at in touched.drain(..) {
+            let (row, col) = (at / ground.wide as u32 - 1, at % ground.wide as u32 - 1);
             let coarse = (row / factor as u32) as usize * coarse_cols + (col / factor as u32) as usize;
             if share[coarse] == 0.0 {
                 coarse_touched.push(coarse);
             }
-            share[coarse] += seen[cell as usize];
-            seen[cell as usize] = 0.0;
+            share[coarse] += seen[at as usize];
+            seen[at as usize] = 0.0;
         }
         coarse_touched.sort_unstable();
         for coarse in coarse_touched.drain(..) {
@@ -85,9 +85,99 @@ fn unknown_in(
     lines.flatten().map(|&class| u32::from(class == UNKNOWN)).sum()
 }
 
-/// Chebyshev distance [cells] from each free cell to the nearest that is not, outside included; at most 255.
+/// What a ray meets: the grid with a cell of padding all round, which stops it.
+struct Ground {
+    codes: Vec<u8>,
+    cols: usize, // of the grid without padding
+    wide: usize, // cells of a padded row
+}
+
+const DARK: u8 = 0; // unknown
+const WALL: u8 = 1;
+/// Of a free cell with others all round at least: one more for each further ring of free cells about it.
+const ROOMY: u8 = 3;
+
+impl Ground {
+    fn of(classes: &[u8], rows: usize, cols: usize) -> Ground {
+        let wide = cols + 2;
+        let mut codes = room(classes, rows, cols);
+        for row in 0..rows {
+            for (class, code) in
+                classes[row * cols..(row + 1) * cols].iter().zip(&mut codes[(row + 1) * wide + 1..])
+            {
+                *code = match *class {
+                    FREE => code.saturating_add(1),
+                    OCCUPIED => WALL,
+                    _ => DARK,
+                };
+            }
+        }
+        for row in 0..rows + 2 {
+            (codes[row * wide], codes[(row + 1) * wide - 1]) = (WALL, WALL);
+        }
+        let last = codes.len() - wide;
+        codes[..wide].fill(WALL);
+        codes[last..].fill(WALL);
+        Ground { codes, cols, wide }
+    }
+
+    /// Walk one ray from a cell's centre, reporting each unknown cell (padded) with its probability of being seen.
+    fn trace(&self, from: usize, angle: f64, sensor: &Sensor, mut report: impl FnMut(usize, f32)) {
+        let (dx, dy) = (angle.cos(), angle.sin());
+        let mut at = (from / self.cols + 1) * self.wide + from % self.cols + 1;
+        let wide = self.wide as isize;
+        let (row_step, col_step) = (if dy > 0.0 { wide } else { -wide }, if dx > 0.0 { 1 } else { -1 });
+        let (per_row, per_col) = (1.0 / dy.abs(), 1.0 / dx.abs());
+        let (mut next_row, mut next_col) = (0.5 * per_row, 0.5 * per_col);
+        let (mut travelled, mut unknown) = (0.0_f64, 0.0_f64);
+        loop {
+            let code = self.codes[at];
+            if code > ROOMY {
+                // All cells this near are free: leap to the last crossing inside them.
+                let more = f64::from(code - ROOMY);
+                let end = smaller(next_row + more * per_row, next_col + more * per_col);
+                if end >= sensor.range_cells {
+                    return;
+                }
+                let crossed_rows = ((end - next_row) / per_row + 1.0) as isize; // 0 if the first is beyond
+                let crossed_cols = ((end - next_col) / per_col + 1.0) as isize; // 0 if the first is beyond
+                at = at.wrapping_add_signed(row_step * crossed_rows + col_step * crossed_cols);
+                next_row += crossed_rows as f64 * per_row;
+                next_col += crossed_cols as f64 * per_col;
+                travelled = end;
+                continue;
+            }
+            if code == WALL {
+                return;
+            }
+            let leave = smaller(smaller(next_row, next_col), sensor.range_cells);
+            if code == DARK {
+                let depth = if sensor.by_distance { 0.5 * (travelled + leave) } else { unknown };
+                let p = sensor.table[(depth as usize).min(sensor.table.len() - 1)];
+                if p <= 0.0 || p < sensor.floor {
+                    return; // deeper cells are seen less still
+                }
+                report(at, p);
+                unknown += leave - travelled;
+            }
+            if leave >= sensor.range_cells {
+                return;
+            }
+            travelled = leave;
+            if next_row < next_col {
+                at = at.wrapping_add_signed(row_step);
+                next_row += per_row;
+            } else {
+                at = at.wrapping_add_signed(col_step);
+                next_col += per_col;
+            }
+        }
+    }
+}
+
+/// Chebyshev distance [cells] from each free cell to the nearest that is not, outside included; at most 255. In a
+/// grid with a cell of padding all round, which stands for the outside.
 fn room(classes: &[u8], rows: usize, cols: usize) -> Vec<u8> {
-    // One cell of padding all round stands for the outside.
     let wide = cols + 2;
     let mut padded = vec![0_u8; (rows + 2) * wide];
     for row in 0..rows {
@@ -100,17 +190,15 @@ fn room(classes: &[u8], rows: usize, cols: usize) -> Vec<u8> {
             }
         }
     }
-    let mut room = vec![0_u8; rows * cols];
     for row in (0..rows).rev() {
         let start = (row + 1) * wide + 1;
         for col in (0..cols).rev() {
             let at = start + col;
             let below = padded[at + wide - 1].min(padded[at + wide]).min(padded[at + wide + 1]);
             padded[at] = padded[at].min(below.min(padded[at + 1]).saturating_add(1));
-            room[row * cols + col] = padded[at];
         }
     }
-    room
+    padded
 }
 
 /// ``f64::min`` and ``f32::max`` of numbers, without a thought for what is none.
@@ -129,71 +217,5 @@ fn larger(a: f32, b: f32) -> f32 {
         a
     } else {
         b
-    }
-}
-
-/// Walk one ray from a cell's centre, reporting each unknown cell with its probability of being seen.
-fn trace(
-    classes: &[u8],
-    room: &[u8],
-    rows: usize,
-    cols: usize,
-    from: usize,
-    angle: f64,
-    sensor: &Sensor,
-    mut report: impl FnMut(usize, f32),
-) {
-    let (dx, dy) = (angle.cos(), angle.sin());
-    let (mut row, mut col) = ((from / cols) as i64, (from % cols) as i64);
-    let (row_step, col_step) = (if dy > 0.0 { 1 } else { -1 }, if dx > 0.0 { 1 } else { -1 });
-    let (per_row, per_col) = (1.0 / dy.abs(), 1.0 / dx.abs());
-    let (mut next_row, mut next_col) = (0.5 * per_row, 0.5 * per_col);
-    let (mut travelled, mut unknown) = (0.0_f64, 0.0_f64);
-    loop {
-        let cell = row as usize * cols + col as usize;
-        if room[cell] > 2 {
-            // All cells this near are free: leap to the last crossing inside them.
-            let more = f64::from(room[cell] - 2);
-            let end = smaller(next_row + more * per_row, next_col + more * per_col);
-            if end >= sensor.range_cells {
-                return;
-            }
-            let crossed_rows = ((end - next_row) / per_row + 1.0) as i64; // 0 if the first is beyond
-            let crossed_cols = ((end - next_col) / per_col + 1.0) as i64; // 0 if the first is beyond
-            row += row_step * crossed_rows;
-            col += col_step * crossed_cols;
-            next_row += crossed_rows as f64 * per_row;
-            next_col += crossed_cols as f64 * per_col;
-            travelled = end;
-            continue;
-        }
-        let leave = smaller(smaller(next_row, next_col), sensor.range_cells);
-        if room[cell] == 0 {
-            if classes[cell] == OCCUPIED {
-                return;
-            } else {
-                let depth = if sensor.by_distance { 0.5 * (travelled + leave) } else { unknown };
-                let p = sensor.table[(depth as usize).min(sensor.table.len() - 1)];
-                if p <= 0.0 || p < sensor.floor {
-                    return; // deeper cells are seen less still
-                }
-                report(cell, p);
-                unknown += leave - travelled;
-            }
-        }
-        if leave >= sensor.range_cells {
-            return;
-        }
-        travelled = leave;
-        if next_row < next_col {
-            row += row_step;
-            next_row += per_row;
-        } else {
-            col += col_step;
-            next_col += per_col;
-        }
-        if row < 0 || col < 0 || row >= rows as i64 || col >= cols as i64 {
-            return;
-        }
     }
 }

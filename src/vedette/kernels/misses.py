@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from weakref import WeakValueDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,6 +52,10 @@ class SparseMisses:
         return self if inside.all() else SparseMisses(self.keys[inside], self.misses[inside])
 
 
+# What was written in this process, as long as anybody holds it: robots simulated together read it once.
+_WRITTEN: WeakValueDictionary[tuple[int, int, bytes], SparseMisses] = WeakValueDictionary()
+
+
 class MissesCodec:
     """Log-misses as bytes: runs of equal ones, layer by layer, under prefix codes of their own.
 
@@ -72,7 +77,9 @@ class MissesCodec:
 
     def encode(self, impact: SparseMisses) -> bytes:
         """Return at most ``bound`` bytes."""
-        return _kernels.pack_misses(*impact.sparse, self._cells, self._layers)
+        data = _kernels.pack_misses(*impact.sparse, self._cells, self._layers)
+        _WRITTEN[self._cells, self._layers, data] = impact
+        return data
 
     def decode(self, payload: bytes) -> SparseMisses:
         """Return the impact.
@@ -80,4 +87,7 @@ class MissesCodec:
         Raises:
             ValueError: the payload is not an impact over these cells and layers.
         """
+        written = _WRITTEN.get((self._cells, self._layers, payload))
+        if written is not None:
+            return written
         return SparseMisses(*_kernels.unpack_misses(payload, self._cells, self._layers, MOST_ENTRIES))

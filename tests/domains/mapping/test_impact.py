@@ -23,7 +23,7 @@ def random_impact(rng: np.random.Generator, cells: int) -> Impact:
 @given(seeds, st.sampled_from([1, 2, 30, 254, 255, 256, 257, 3000]))
 def test_the_codec_gives_back_any_impact_within_its_bound(seed: int, cells: int) -> None:
     codec, impact = MapImpactCodec(cells), random_impact(np.random.default_rng(seed), cells)
-    payload = codec.encode(impact)
+    payload = codec.encode(Impact(*impact.sparse))  # which nobody holds: it has to be read
     assert len(payload) <= codec.bound
     again = codec.decode(payload)
     assert again == impact
@@ -39,7 +39,7 @@ def test_the_fullest_and_the_emptiest_impact_travel() -> None:
     )
     far = Impact(np.array([1999 * LAYERS + 15], np.uint32), np.array([255], np.uint8))
     for impact in (full, far, NOTHING):
-        assert codec.decode(codec.encode(impact)) == impact
+        assert codec.decode(codec.encode(Impact(*impact.sparse))) == impact
         assert len(codec.encode(impact)) <= codec.bound
 
 
