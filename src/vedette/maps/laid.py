@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.maps.bounds import Bounds, Extent
 from vedette.maps.frame import GridFrame
 
 CellT = TypeVar("CellT", np.bool_, np.uint8, np.float32)
@@ -24,9 +26,28 @@ def part_laid(
     grid: NDArray[CellT], frame: GridFrame, onto: GridFrame
 ) -> tuple[tuple[slice, slice], NDArray[CellT]]:
     """Return the rows and columns of ``onto`` that have something under their middles, and what that is."""
-    to_rows, rows = _matching(onto.origin_y, onto, onto.rows, frame.origin_y, frame, frame.rows)
-    to_cols, cols = _matching(onto.origin_x, onto, onto.cols, frame.origin_x, frame, frame.cols)
+    (to_rows, rows), (to_cols, cols) = _matching_axes(frame, onto)
     return (to_rows, to_cols), grid[rows][:, cols]
+
+
+def under(frames: Iterable[GridFrame], onto: GridFrame) -> Extent:
+    """Return the rows and columns of ``onto`` outside of which none of some frames is under any middle."""
+    bounds = Bounds()
+    for frame in frames:
+        (rows, _), (cols, _) = _matching_axes(frame, onto)
+        if rows.stop > rows.start and cols.stop > cols.start:
+            bounds.hold(rows.start, rows.stop, cols.start, cols.stop)
+    return bounds.extent
+
+
+def _matching_axes(
+    frame: GridFrame, onto: GridFrame
+) -> tuple[tuple[slice, slice | NDArray[np.int64]], tuple[slice, slice | NDArray[np.int64]]]:
+    """Return along rows and columns what has something under its middle, and what that is."""
+    return (
+        _matching(onto.origin_y, onto, onto.rows, frame.origin_y, frame, frame.rows),
+        _matching(onto.origin_x, onto, onto.cols, frame.origin_x, frame, frame.cols),
+    )
 
 
 def _matching(

@@ -17,6 +17,8 @@ from vedette.domains.mapping.impact import cells_missed, moved
 from vedette.domains.mapping.stops import unknown_near
 from vedette.maps import UNKNOWN
 from vedette.maps.area import Area
+from vedette.maps.bounds import Extent
+from vedette.maps.laid import under
 from vedette.maps.lattice import Lattice
 from vedette.maps.world import World
 from vedette.missions.explore.options import ExploreOptions
@@ -103,7 +105,8 @@ class ExploreObserver:
         self, now: float, views: Sequence[RobotView], links: Sequence[Link] | None, log: bool
     ) -> None:
         classes = union_map(views, self._world.frame)
-        share = None if self._open else coverage(self._reference, classes)
+        known = under((view.frame for view in views), self._world.frame)
+        share = None if self._open else coverage(self._reference, classes, known)
         if self._apart:
             self.apart_s += now - self._now
         self._now = now
@@ -112,20 +115,25 @@ class ExploreObserver:
         self._views = tuple(views)
         self._apart = len(parts([view.sample.alive for view in views], links)) > 1
         if log and now > self._logged:
-            self.log.add(self._snapshot(now, classes, share, links))
+            self.log.add(self._snapshot(now, classes, known, share, links))
             self._logged = now
 
     def _snapshot(
-        self, now: float, classes: NDArray[np.uint8], share: float | None, links: Sequence[Link] | None
+        self,
+        now: float,
+        classes: NDArray[np.uint8],
+        known: Extent,
+        share: float | None,
+        links: Sequence[Link] | None,
     ) -> ExploreSnapshot:
-        unknown = int(np.count_nonzero(classes == UNKNOWN))
+        unknown = classes.size - int(np.count_nonzero(classes[known] != UNKNOWN))
         return ExploreSnapshot(
             t=now,
             robots=tuple(replace(view.sample, driven=view.figures.travelled_m) for view in self._views),
             coverage=share,
             known_fraction=None if self._open else 1.0 - unknown / classes.size,
             entropy=None if self._open else unknown * LN2,
-            known_m2=self._known_m2(classes),
+            known_m2=self._known_m2(classes[known]),
             classes=classes,
             impact=None if self.log.curves_only else self._team_impact(),
             links=None if links is None else tuple(links),

@@ -13,6 +13,7 @@ from vedette.domains.mapping.stops import SURE_CLEARANCE
 from vedette.kernels.visibility import visible_cells
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.maps.area import Area
+from vedette.maps.bounds import EVERYWHERE, Extent
 from vedette.maps.leave import Leave
 from vedette.maps.world import World, reachable_poses
 from vedette.team import PlatformSpec
@@ -56,10 +57,13 @@ class Reference:
         return int(np.count_nonzero(self.coverable))
 
 
-def coverage(reference: Reference, classes: NDArray[np.uint8]) -> float:
-    """Return the share of coverable cells that ``classes[rows, cols]`` knows; 1 where none is coverable."""
-    known = np.count_nonzero((classes != UNKNOWN) & reference.coverable)
-    return known / reference.cells if reference.cells else 1.0
+def coverage(reference: Reference, classes: NDArray[np.uint8], known: Extent = EVERYWHERE) -> float:
+    """Return the share of coverable cells that ``classes[rows, cols]`` knows; 1 where none is coverable.
+
+    Outside the rows and columns ``known`` it knows nothing.
+    """
+    found = np.count_nonzero((classes[known] != UNKNOWN) & reference.coverable[known])
+    return found / reference.cells if reference.cells else 1.0
 
 
 def map_errors(world: World, classes: NDArray[np.uint8]) -> tuple[int, int]:
