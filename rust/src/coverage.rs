@@ -93,8 +93,7 @@ fn py_combine<'py>(
     misses_b: PyReadonlyArray1<'py, u8>,
     layers: u32,
 ) -> PyResult<PySparse<'py>> {
-    let (a, b) =
-        ((keys_a.as_slice()?, misses_a.as_slice()?), (keys_b.as_slice()?, misses_b.as_slice()?));
+    let (a, b) = ((keys_a.as_slice()?, misses_a.as_slice()?), (keys_b.as_slice()?, misses_b.as_slice()?));
     let (keys, misses) = combine(a, b, layers.max(1));
     Ok((keys.into_pyarray(py), misses.into_pyarray(py)))
 }

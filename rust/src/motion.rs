@@ -3,8 +3,16 @@
 //! `steer` rolls out a small family of path followers (sideways offset, speed, look-ahead) and returns the first
 //! command of the cheapest one. All costs are seconds, so that progress, turning and courtesy trade off openly.
 
-use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2, PyUntypedArrayMethods};
+mod remaining;
+
+use numpy::{
+    IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadwriteArray2,
+    PyUntypedArrayMethods,
+};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+
+use remaining::remaining;
 
 /// Steps of a roll-out.
 const STEPS: usize = 20;
@@ -385,9 +393,26 @@ fn py_steer(
     Ok((c.speed, c.turn, c.arc, c.offset, c.cost))
 }
 
+#[pyfunction(name = "remaining")]
+fn py_remaining<'py>(
+    py: Python<'py>,
+    path: PyReadonlyArray2<'py, f64>,
+    here: (f64, f64),
+    length: f64,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    if path.shape()[0] < 2 || path.shape()[1] != 2 {
+        return Err(PyValueError::new_err(format!("a path has 2 points or more; got {:?}", path.shape())));
+    }
+    let path: Vec<(f64, f64)> = path.as_slice()?.chunks_exact(2).map(|point| (point[0], point[1])).collect();
+    let rest: Vec<f64> = remaining(&path, here, length).into_iter().flat_map(|(x, y)| [x, y]).collect();
+    let points = rest.len() / 2;
+    rest.into_pyarray(py).reshape([points, 2])
+}
+
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(py_clearance, m)?)?;
     m.add_function(wrap_pyfunction!(py_block_discs, m)?)?;
     m.add_function(wrap_pyfunction!(py_steer, m)?)?;
+    m.add_function(wrap_pyfunction!(py_remaining, m)?)?;
     Ok(())
 }

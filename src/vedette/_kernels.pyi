@@ -98,6 +98,7 @@ def steer(
     others: NDArray[np.float64],
     limits: tuple[float, float, float, float, float],
 ) -> tuple[float, float, float, float, float]: ...
+def remaining(path: NDArray[np.float64], here: tuple[float, float], length: float) -> NDArray[np.float64]: ...
 
 # coverage
 LAYERS: int

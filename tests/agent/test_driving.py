@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 from tests.support.agent_team import FRAME, Team, ground, state, toy, toy_agent, toy_team
 from vedette import Tree
 from vedette.agent import State
-from vedette.agent.driving import ON_ITS_WAY, YIELD_LIMIT, Driver, remaining
+from vedette.agent.driving import ON_ITS_WAY, YIELD_LIMIT, Driver
 from vedette.agent.effects import Drive, Route
 from vedette.agent.events import Arrived, Event, Pose, Stuck
 from vedette.agent.mates import Mate
+from vedette.kernels.motion import remaining
 from vedette.team import PlatformSpec
 
 

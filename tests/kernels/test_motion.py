@@ -223,3 +223,13 @@ def test_a_robot_turns_on_the_spot_at_its_paths_end_and_has_arrived_when_it_face
         assert taken - there[1] <= turn / 1.5 + 0.2  # ... the shorter way, as fast as it can
         assert np.exp(1j * bodies.poses[0, 2]) == pytest.approx(np.exp(1j * facing))
         assert bodies.stuck_for(0) == 0.0
+
+
+@settings(deadline=None, max_examples=200)
+@given(seed=st.integers(0, 10**6), length=st.one_of(st.floats(0.0, 6.0), st.just(float("inf"))))
+def test_what_remains_of_a_path_is_what_its_twin_leaves_to_the_bit(seed: int, length: float) -> None:
+    rng = np.random.default_rng(seed)
+    path = rng.uniform(0.0, 4.0, size=(int(rng.integers(1, 9)), 2))
+    x, y = rng.uniform(0.0, 4.0, size=2).tolist()
+    left, twins = motion.remaining(path, x, y, length), twin.remaining(path, x, y, length)
+    np.testing.assert_array_equal(left, twins)

@@ -14,6 +14,7 @@ from vedette.agent.intents import HORIZON, Intent
 from vedette.agent.mates import Mate
 from vedette.agent.refuges import WINDOW
 from vedette.agent.rightofway import give_way, queues
+from vedette.kernels.motion import remaining
 from vedette.team import PlatformSpec
 
 YIELD_LIMIT = 12.0  # a robot that had to make room for so long looks for other work [s]
@@ -112,25 +113,3 @@ class Driver:
 def _intent(mate: Mate, corner: NDArray[np.float64]) -> Intent:
     x, y = (mate.x, mate.y) - corner
     return Intent(mate.robot, x, y, mate.path - corner, mate.radius, mate.speed, mate.slowed)
-
-
-def remaining(path: NDArray[np.float64], x: float, y: float, length: float) -> NDArray[np.float64]:
-    """Return the path from its point nearest (x, y) on, at most ``length`` [m] of it."""
-    if len(path) < 2:
-        return path
-    here = np.array((x, y))
-    start, step = path[:-1], path[1:] - path[:-1]
-    square = np.maximum(np.einsum("ij,ij->i", step, step), 1e-12)
-    along = np.minimum(np.maximum(np.einsum("ij,ij->i", here - start, step) / square, 0.0), 1.0)
-    foot = start + along[:, None] * step
-    away = foot - here
-    leg = int(np.einsum("ij,ij->i", away, away).argmin())
-    rest = path[leg:].copy()
-    rest[0] = foot[leg]
-    arc = np.zeros(len(rest))
-    np.cumsum(np.hypot(*(rest[1:] - rest[:-1]).T), out=arc[1:])
-    if arc[-1] <= length:
-        return rest
-    inside = arc < length
-    last = [np.interp(length, arc, rest[:, 0]), np.interp(length, arc, rest[:, 1])]
-    return np.vstack((rest[inside], last))

@@ -89,3 +89,10 @@ def steer(
     return Command(
         *_kernels.steer(solid, traversable, first, resolution, pose, path, arc, progress, others, limits)
     )
+
+
+def remaining(path: NDArray[np.float64], x: float, y: float, length: float) -> NDArray[np.float64]:
+    """Return the path ``(L, 2)`` [m] from its point nearest (x, y) on, at most ``length`` [m] of it."""
+    if len(path) < 2:
+        return path
+    return _kernels.remaining(np.ascontiguousarray(path), (x, y), length)

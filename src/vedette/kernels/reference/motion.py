@@ -236,3 +236,25 @@ def _norm(x: float, y: float) -> float:
 
 def _wrap(angle: float) -> float:
     return math.atan2(math.sin(angle), math.cos(angle))
+
+
+def remaining(path: NDArray[np.float64], x: float, y: float, length: float) -> NDArray[np.float64]:
+    """Twin of ``motion.remaining``, by whole arrays."""
+    if len(path) < 2:
+        return path
+    here = np.array((x, y))
+    start, step = path[:-1], path[1:] - path[:-1]
+    square = np.maximum(np.einsum("ij,ij->i", step, step), 1e-12)
+    along = np.minimum(np.maximum(np.einsum("ij,ij->i", here - start, step) / square, 0.0), 1.0)
+    foot = start + along[:, None] * step
+    away = foot - here
+    leg = int(np.einsum("ij,ij->i", away, away).argmin())
+    rest = path[leg:].copy()
+    rest[0] = foot[leg]
+    arc = np.zeros(len(rest))
+    np.cumsum(np.hypot(*(rest[1:] - rest[:-1]).T), out=arc[1:])
+    if arc[-1] <= length:
+        return rest
+    inside = arc < length
+    last = [np.interp(length, arc, rest[:, 0]), np.interp(length, arc, rest[:, 1])]
+    return np.vstack((rest[inside], last))

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from vedette.agent.driving import remaining
+from vedette.kernels.motion import remaining
 from vedette.maps.world import World
 from vedette.outcome import Outcome
 from vedette.record.explore.log import ExploreSnapshot, RobotSample
