@@ -123,7 +123,7 @@ def badge(index: int, vehicle: VehicleSample | None = None) -> tuple[Line2D, ...
 
 def _digits(number: int) -> Path:
     """Return a number's outline about the origin."""
-    text = TextPath((0.0, 0.0), str(number), prop=FontProperties("DejaVu Sans", weight="bold"))
+    text = TextPath((0.0, 0.0), str(number), prop=FontProperties(family="DejaVu Sans", weight="bold"))
     middle = text.get_extents().get_points().mean(axis=0)
     return Path(text.vertices - middle, text.codes)
 
