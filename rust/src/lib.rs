@@ -2,6 +2,7 @@
 
 use pyo3::prelude::*;
 
+pub mod align;
 pub mod components;
 pub mod coverage;
 pub mod distance;
@@ -17,6 +18,7 @@ pub mod visibility;
 
 #[pymodule]
 fn _kernels(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    align::register(m)?;
     components::register(m)?;
     coverage::register(m)?;
     distance::register(m)?;

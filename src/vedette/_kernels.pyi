@@ -246,3 +246,17 @@ def path_gains(
     cells: NDArray[np.uint32],
     misses: NDArray[np.uint8],
 ) -> NDArray[np.float64]: ...
+
+# align
+def align_peaks(
+    a: tuple[NDArray[np.float32], ...],
+    b: tuple[NDArray[np.float64], ...],
+    angles: NDArray[np.float64],
+    weights: tuple[float, ...],
+    wanted: tuple[int, int],
+) -> NDArray[np.float64]: ...
+def align_counts(
+    grid: tuple[NDArray[np.uint8], NDArray[np.uint8]],
+    faces: tuple[NDArray[np.float64], NDArray[np.uint8]],
+    transforms: NDArray[np.float64],
+) -> NDArray[np.int64]: ...

@@ -1,0 +1,129 @@
+"""Where one map may lie on another, best first, with what speaks for and against each place."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.align.charted import Charted
+from vedette.align.fitted import Fit, fitted
+from vedette.align.pose import Pose
+from vedette.align.shifts import likely
+from vedette.kernels.align import CLEAR, SAME, align_counts
+from vedette.maps import UNKNOWN
+
+Floats = NDArray[np.float64]
+
+LIKELY = 24  # places from the large cells that are looked at closely
+ROUGHLY, FINELY = 800, 8000  # walls used to fit a candidate, and the best of them
+DISTINCT = 0.75, math.radians(6.0)  # closer candidates are one [m, rad]
+CLASH = 5.0  # metres of wall that one metre of wall on clear ground costs
+_PLACES = 4000  # of free ground are looked at for what both know
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """One place of B on A."""
+
+    pose: Pose  # T_a_b between the maps' own frames
+    score: float  # walls that both have less those that the other contradicts [m]
+    same: float  # walls of each that lie on the other's, in the mean [m]
+    contradicted: float  # of the walls that the other could see, the share on its clear ground, 0..1
+    common: float  # ground that both know [m^2]
+    overlap: float  # its share of what the map that knows less knows, 0..1
+    covariance: Floats  # (3, 3) of the pose [m, m, rad]^2, as B's middle moves
+
+    @property
+    def deviation(self) -> float:
+        """Standard deviation in the direction in which B's middle is least certain [m]."""
+        return math.sqrt(max(0.0, float(np.linalg.eigvalsh(self.covariance[:2, :2])[-1])))
+
+
+@dataclass(frozen=True, eq=False)
+class Alignment:
+    """All that speaks for and against laying B onto A."""
+
+    candidates: tuple[Candidate, ...]  # by score, best first; none if no wall met another
+
+    @property
+    def rivalry(self) -> float:
+        """Score of the second best over that of the best, (V143), 0..1; 1 where nothing has a score."""
+        first, second = self._scores
+        return min(1.0, second / first) if first > 0.0 else 1.0
+
+    @property
+    def lead(self) -> float:
+        """Score of the best less that of the second best [m of wall]."""
+        first, second = self._scores
+        return first - second
+
+    @property
+    def _scores(self) -> tuple[float, float]:
+        first, second, *_ = [max(0.0, candidate.score) for candidate in self.candidates] + [0.0, 0.0]
+        return first, second
+
+
+def align(a: Charted, b: Charted) -> Alignment:
+    """Return where B may lie on A: likely places from a correlation, each fitted and weighed."""
+    rough = [fitted(a, b, guess, ROUGHLY) for guess in likely(a, b, LIKELY)]
+    found = _distinct([(_weighed(a, b, fit), fit) for fit in rough], b.middle)
+    if not found:
+        return Alignment(())
+    fine = _weighed(a, b, fitted(a, b, found[0][1].pose, FINELY))
+    return Alignment((fine, *(candidate for candidate, _ in found[1:])))
+
+
+def _distinct(found: Sequence[tuple[Candidate, Fit]], at: Floats) -> list[tuple[Candidate, Fit]]:
+    """Return the candidates by score, of those that came to the same place the best."""
+    kept: list[tuple[Candidate, Fit]] = []
+    for candidate, fit in sorted(found, key=lambda each: -each[0].score):
+        gaps = [candidate.pose.apart(other.pose, at) for other, _ in kept]
+        if all(shift > DISTINCT[0] or turn > DISTINCT[1] for shift, turn in gaps):
+            kept.append((candidate, fit))
+    return kept
+
+
+def _weighed(a: Charted, b: Charted, fit: Fit) -> Candidate:
+    """Return a fit with what speaks for and against it."""
+    on_a = _counts(a, b, fit.pose) * b.cell
+    on_b = _counts(b, a, fit.pose.inverse()) * a.cell
+    same = float(on_a[SAME] + on_b[SAME]) / 2.0
+    against = float(on_a[CLEAR] + on_b[CLEAR]) / 2.0
+    common = _common(a, b, fit.pose)
+    least = min(len(a.free) * a.cell**2, len(b.free) * b.cell**2)
+    return Candidate(
+        pose=_own_frames(a, b, fit.pose),
+        score=same - CLASH * against,
+        same=same,
+        contradicted=against / (same + against) if same + against else 1.0,
+        common=common,
+        overlap=min(1.0, common / least),
+        covariance=fit.covariance,
+    )
+
+
+def _counts(on: Charted, of: Charted, pose: Pose) -> NDArray[np.int64]:
+    """Return how many faces of a map fall on each label of the other."""
+    x, y = ((pose.x, pose.y) - on.corner) / on.cell
+    moved = np.array([[x, y, pose.angle]])
+    counts: NDArray[np.int64] = align_counts(on.labels, on.looks_at, of.walls / on.cell, of.looks, moved)[0]
+    return counts
+
+
+def _common(a: Charted, b: Charted, pose: Pose) -> float:
+    """Return how much ground that B has seen free A knows too, from some thousand places [m^2]."""
+    step = max(1, len(b.free) // _PLACES)
+    col, row = np.floor((pose.places(b.free[::step]) - a.corner) / a.cell).astype(np.int64).T
+    inside = (row >= 0) & (col >= 0) & (row < a.frame.rows) & (col < a.frame.cols)
+    known = np.count_nonzero(a.classes[row[inside], col[inside]] != UNKNOWN)
+    return float(known) * step * b.cell**2
+
+
+def _own_frames(a: Charted, b: Charted, between_middles: Pose) -> Pose:
+    """Return T_a_b between the maps' own frames."""
+    (a_x, a_y), (b_x, b_y) = a.middle.tolist(), b.middle.tolist()
+    return Pose(a_x, a_y, 0.0).after(between_middles).after(Pose(-b_x, -b_y, 0.0))

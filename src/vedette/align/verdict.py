@@ -1,0 +1,105 @@
+"""Whether two maps may be joined: the rule, and whether it holds too where parts of them are missing."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from vedette.align.candidates import Alignment, Candidate, align
+from vedette.align.charted import Charted, charted
+from vedette.maps import UNKNOWN
+
+THINNINGS = 3
+THINNED = 0.3  # share of the ground that a thinning takes out
+BLOCK = 2.0  # side of what it takes out at once [m]
+STEADY = 0.3, math.radians(2.0)  # how far thinned maps may come from the whole ones' pose [m, rad]
+
+
+@dataclass(frozen=True)
+class Rule:
+    """What a best candidate must have to be believed."""
+
+    rivalry: float  # at most: score of the second best over its own
+    lead: float  # at least: its score less that of the second best [m of wall]
+    contradicted: float = 0.1  # at most: share of the walls seen
+    same: float = 20.0  # at least: walls that both have [m]
+    common: float = 20.0  # at least: ground that both know [m^2]
+    deviation: float = 0.1  # at most, in the worst direction [m]
+
+    def doubt(self, alignment: Alignment) -> str | None:
+        """Return why the best candidate is not believed, in words for people; None: it is."""
+        if not alignment.candidates:
+            return "no wall of one fits any of the other"
+        best = alignment.candidates[0]
+        if best.same < self.same or best.common < self.common:
+            return f"what both have is little: {best.same:.0f} m of walls, {best.common:.0f} m2 of ground"
+        if best.contradicted > self.contradicted:
+            return f"where they fit best they contradict each other in {best.contradicted:.0%} of the walls"
+        if best.deviation > self.deviation:
+            return f"along one direction nothing tells where they lie, by {best.deviation:.2f} m"
+        if alignment.rivalry > self.rivalry or alignment.lead < self.lead:
+            return f"another place fits {alignment.rivalry:.0%} as well: they look alike in more than one way"
+        return None
+
+
+SAVED = Rule(rivalry=0.5, lead=25.0)
+OF_THINNED = Rule(rivalry=0.6, lead=10.0, same=10.0, common=10.0, deviation=0.2)
+
+
+@dataclass(frozen=True, eq=False)
+class Verdict:
+    """What came of the rule for two maps."""
+
+    alignment: Alignment
+    doubt: str | None  # why they are not joined; None: they are
+
+    @property
+    def joined(self) -> Candidate | None:
+        """Where B lies on A, if that is safe."""
+        return None if self.doubt is not None else self.alignment.candidates[0]
+
+
+def judged(a: Charted, b: Charted, seed: int) -> Verdict:
+    """Return whether two maps that will not change can be joined.
+
+    The rule must hold for them whole, and for each of `THINNINGS` copies with parts missing, and all at about
+    one pose: what depends on a few walls is not believed.
+
+    Args:
+        a: first map.
+        b: the map that is laid on it.
+        seed: of what the copies lack.
+    """
+    whole = align(a, b)
+    doubt = SAVED.doubt(whole)
+    for number in range(THINNINGS):
+        if doubt is not None:
+            break
+        rng = np.random.default_rng([seed, number])
+        doubt = _doubt_of_thinned(whole.candidates[0], thinned(a, rng), thinned(b, rng))
+    return Verdict(whole, doubt)
+
+
+def _doubt_of_thinned(best: Candidate, a: Charted | None, b: Charted | None) -> str | None:
+    if a is None or b is None:
+        return "they are too small to be looked at in parts"
+    alignment = align(a, b)
+    doubt = OF_THINNED.doubt(alignment)
+    if doubt is None:
+        shift, turn = alignment.candidates[0].pose.apart(best.pose, b.middle)
+        if shift > STEADY[0] or turn > STEADY[1]:
+            doubt = "they come to lie elsewhere"
+    return None if doubt is None else f"where parts are left out, {doubt}"
+
+
+def thinned(whole: Charted, rng: np.random.Generator) -> Charted | None:
+    """Return a map without a share of its ground, block by block; None if nothing is left to go by."""
+    side = max(1, round(BLOCK / whole.cell))
+    rows, cols = whole.frame.shape
+    first = rng.integers(side, size=2)
+    blocks = rng.random((rows // side + 2, cols // side + 2)) < THINNED
+    gone = blocks[np.ix_((np.arange(rows) + first[0]) // side, (np.arange(cols) + first[1]) // side)]
+    classes = np.where(gone, np.uint8(UNKNOWN), whole.classes)
+    return charted(whole.frame, classes)
