@@ -25,6 +25,7 @@ from bench.stonesoup.__main__ import StoneSoupReport
 from vedette.net.results import RobotSummary, TracksFound
 from vedette.net.status import TeamStatus
 from vedette.record.explore.summary import ExploreSummary
+from vedette.record.merge.summary import MergeSummary
 from vedette.record.monitor.summary import MonitorSummary
 from vedette.record.replay.summary import ReplaySummary
 from vedette.record.search.summary import SearchSummary
@@ -38,6 +39,7 @@ KINDS: Mapping[str, type] = {
     "search-summary": SearchSummary,
     "monitor-summary": MonitorSummary,
     "replay-summary": ReplaySummary,
+    "merge": MergeSummary,
     "timing": Timing,
     "status": TeamStatus,
     "robot-summary": RobotSummary,

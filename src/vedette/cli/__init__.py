@@ -27,6 +27,7 @@ COMMANDS = {
     "explore": "Let a team of robots explore a building in simulation.",
     "keys": "Make the keys of a team.",
     "map": "Fetch the map of a team on the network.",
+    "merge": "Join maps whose frames are not known to each other.",
     **{name: domain.line for name, domain in DOMAINS.items()},
     "order": "Give a team on the network an order: pause, recall, a no-go area ...",
     "plot": "Draw the pictures of a run anew.",
