@@ -11,7 +11,7 @@ import numpy as np
 
 from bench.frames.places import corridor, hotel, racks, symmetric
 from bench.frames.robots import REACH, Mapped, anywhere, looked, mapped
-from vedette.align.pose import Pose
+from vedette.align.pose import FramePose
 from vedette.kernels.distance import distance_field
 from vedette.logs import RecordedLog, read_carmen
 from vedette.maps import FREE
@@ -33,7 +33,7 @@ class Pair:
     together: bool  # of one place, whose frames lie as the maps' poses say
 
     @property
-    def truth(self) -> Pose:
+    def truth(self) -> FramePose:
         """T_a_b, if they are of one place."""
         return self.a.pose.inverse().after(self.b.pose)
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.align.pose import Pose
+from vedette.align.pose import FramePose
 from vedette.kernels import lidar
 from vedette.kernels.distance import distance_field
 from vedette.kernels.tiles import TiledGrid, Tiling
@@ -34,16 +34,16 @@ class Mapped:
 
     frame: GridFrame
     classes: NDArray[np.uint8]  # (R, C)
-    pose: Pose  # of its frame in the place's own
+    pose: FramePose  # of its frame in the place's own
 
 
-def anywhere(rng: np.random.Generator) -> Pose:
+def anywhere(rng: np.random.Generator) -> FramePose:
     """Return a frame that lies anywhere, turned by any angle."""
     x, y = rng.uniform(-30.0, 30.0, 2).tolist()
-    return Pose.of(x, y, rng.uniform(-math.pi, math.pi))
+    return FramePose.of(x, y, rng.uniform(-math.pi, math.pi))
 
 
-def mapped(scans: Sequence[RecordedScan], reach: float, pose: Pose) -> Mapped:
+def mapped(scans: Sequence[RecordedScan], reach: float, pose: FramePose) -> Mapped:
     """Return the map of some scans, whose poses are in the place's frame, in the frame of a robot."""
     to_own = pose.inverse()
     own = to_own.places(np.array([[scan.x, scan.y] for scan in scans]))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from bench.frames.pairs import Pair
-from vedette.align import Charted, Verdict, charted, judged
+from vedette.align import Charted, JoinVerdict, charted, judged
 from vedette.record.summary import SCHEMA_VERSION
 
 RIGHT = 0.5, math.radians(3.0)  # a join farther from the truth is wrong [m, rad]
@@ -74,7 +74,7 @@ def tried(sort: str, number: int, pair: Pair, commit: str) -> Trial | None:
     )
 
 
-def _off(verdict: Verdict, pair: Pair, b: Charted) -> tuple[float | None, float | None]:
+def _off(verdict: JoinVerdict, pair: Pair, b: Charted) -> tuple[float | None, float | None]:
     """Return how far a join is from the truth [m, rad]; None without one."""
     if verdict.joined is None or not pair.together:
         return None, None

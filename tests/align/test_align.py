@@ -9,12 +9,12 @@ import pytest
 from numpy.typing import NDArray
 
 from tests.support.frames import Part, building, off, part, shell
-from vedette.align import Pose, align, charted, judged, shifts
+from vedette.align import FramePose, align, charted, judged, shifts
 from vedette.align.fitted import fitted
 from vedette.kernels.reference import align as reference
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
 
-HERE = Pose(0.0, 0.0, 0.0)
+HERE = FramePose(0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3])
@@ -22,7 +22,7 @@ def test_parts_with_a_third_in_common_lie_within_5_cm_and_0_3_degrees_of_the_tru
     rng = np.random.default_rng(seed)
     x, y, turn = rng.uniform(-20, 20), rng.uniform(-20, 20), rng.uniform(-math.pi, math.pi)
     classes = building(seed)
-    a, b = part(classes, 0.0, 16.0, HERE), part(classes, 8.0, 24.0, Pose.of(x, y, turn))
+    a, b = part(classes, 0.0, 16.0, HERE), part(classes, 8.0, 24.0, FramePose.of(x, y, turn))
     verdict = judged(a.charted, b.charted, seed=0)
     assert verdict.joined is not None, verdict.doubt
     shift, aside = off(verdict.joined.pose, a, b)
@@ -34,7 +34,10 @@ def test_parts_with_a_third_in_common_lie_within_5_cm_and_0_3_degrees_of_the_tru
 
 def test_maps_of_other_cells_are_laid_on_each_other() -> None:
     classes = building(4)
-    a, b = part(classes, 0.0, 18.0, HERE), part(classes, 6.0, 24.0, Pose.of(3.0, 1.0, 0.7), resolution=0.05)
+    a, b = (
+        part(classes, 0.0, 18.0, HERE),
+        part(classes, 6.0, 24.0, FramePose.of(3.0, 1.0, 0.7), resolution=0.05),
+    )
     joined = judged(a.charted, b.charted, seed=0).joined
     assert joined is not None
     assert off(joined.pose, a, b)[0] <= 0.05
@@ -43,7 +46,7 @@ def test_maps_of_other_cells_are_laid_on_each_other() -> None:
 @pytest.mark.parametrize(("first", "second"), [(1, 2), (3, 4), (5, 6)])
 def test_parts_of_different_buildings_are_not_joined(first: int, second: int) -> None:
     a = part(building(first), 0.0, 16.0, HERE)
-    b = part(building(second), 0.0, 16.0, Pose.of(1.0, 2.0, 1.0))
+    b = part(building(second), 0.0, 16.0, FramePose.of(1.0, 2.0, 1.0))
     assert judged(a.charted, b.charted, seed=0).joined is None
 
 
@@ -58,7 +61,7 @@ def hotel() -> NDArray[np.uint8]:
 
 
 def test_equal_rooms_in_a_row_are_refused_for_another_place_fits_as_well() -> None:
-    a, b = part(hotel(), 0.0, 15.0, HERE), part(hotel(), 6.0, 21.0, Pose.of(2.0, 0.0, 0.4))
+    a, b = part(hotel(), 0.0, 15.0, HERE), part(hotel(), 6.0, 21.0, FramePose.of(2.0, 0.0, 0.4))
     verdict = judged(a.charted, b.charted, seed=0)
     assert verdict.joined is None
     assert verdict.doubt is not None
@@ -72,7 +75,7 @@ def corridor() -> NDArray[np.uint8]:
 
 
 def test_along_a_bare_corridor_nothing_tells_where_maps_lie() -> None:
-    a, b = part(corridor(), 5.0, 30.0, HERE), part(corridor(), 15.0, 45.0, Pose.of(2.0, 0.0, 0.4))
+    a, b = part(corridor(), 5.0, 30.0, HERE), part(corridor(), 15.0, 45.0, FramePose.of(2.0, 0.0, 0.4))
     assert judged(a.charted, b.charted, seed=0).joined is None
     fit = fitted(a.charted, a.charted, HERE, 2000)
     along, across = math.sqrt(fit.covariance[0, 0]), math.sqrt(fit.covariance[1, 1])
@@ -84,7 +87,7 @@ def test_a_building_symmetric_about_a_point_is_refused() -> None:
     half = building(7)[:, :-1]
     whole = np.hstack([half, half[::-1, ::-1]])
     middle = part(whole, 8.0, whole.shape[1] * 0.1 - 8.0, HERE)
-    again = part(whole, 8.0, whole.shape[1] * 0.1 - 8.0, Pose.of(1.0, 1.0, 0.3))
+    again = part(whole, 8.0, whole.shape[1] * 0.1 - 8.0, FramePose.of(1.0, 1.0, 0.3))
     verdict = judged(middle.charted, again.charted, seed=0)
     assert verdict.alignment.rivalry > 0.9
     assert verdict.joined is None
@@ -92,7 +95,7 @@ def test_a_building_symmetric_about_a_point_is_refused() -> None:
 
 def test_the_verdict_is_the_same_for_the_same_seed() -> None:
     classes = building(5)
-    a, b = part(classes, 0.0, 16.0, HERE), part(classes, 8.0, 24.0, Pose.of(1.0, 2.0, 2.0))
+    a, b = part(classes, 0.0, 16.0, HERE), part(classes, 8.0, 24.0, FramePose.of(1.0, 2.0, 2.0))
     first, second = (judged(a.charted, b.charted, seed=3) for _ in range(2))
     assert first.doubt == second.doubt
     assert [c.pose for c in first.alignment.candidates] == [c.pose for c in second.alignment.candidates]
@@ -102,7 +105,7 @@ def test_with_the_twin_in_the_place_of_the_kernel_the_best_place_is_the_same(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     classes = building(6, 12.0, 10.0)
-    a, b = part(classes, 0.0, 9.0, HERE), part(classes, 3.0, 12.0, Pose.of(4.0, 0.0, -1.0))
+    a, b = part(classes, 0.0, 9.0, HERE), part(classes, 3.0, 12.0, FramePose.of(4.0, 0.0, -1.0))
     compiled = align(a.charted, b.charted)
     monkeypatch.setattr(shifts, "align_peaks", reference.align_peaks)
     plain = align(a.charted, b.charted)

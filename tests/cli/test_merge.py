@@ -10,10 +10,10 @@ from PIL import Image
 from tests.support.commands import Command, refused
 from tests.support.frames import Part, building, part
 from tests.support.schemas import valid
-from vedette.align import Pose
+from vedette.align import FramePose
 from vedette.maps import read_map, write_map
 
-HERE = Pose(0.0, 0.0, 0.0)
+HERE = FramePose(0.0, 0.0, 0.0)
 
 
 @pytest.fixture
@@ -29,7 +29,7 @@ def save(name: str, of: Part) -> None:
 
 def test_two_maps_leave_a_map_a_picture_and_where_they_lie(vedette: Command) -> None:
     classes = building(1)
-    save("east", part(classes, 8.0, 24.0, Pose.of(4.0, 1.0, 0.5)))
+    save("east", part(classes, 8.0, 24.0, FramePose.of(4.0, 1.0, 0.5)))
     save("run/map", part(classes, 0.0, 16.0, HERE))  # a run's folder
     ran = vedette("run", "east.yaml", "--out", "both", "--json")
     assert ran.status == 0, ran.err

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from tests.support.frames import Part, building, off, part
-from vedette.align import Pose
+from vedette.align import FramePose
 from vedette.errors import InputError
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame, write_map
 from vedette.run.merging import SavedMap, merge, read
 
-HERE = Pose(0.0, 0.0, 0.0)
+HERE = FramePose(0.0, 0.0, 0.0)
 
 
 def saved(name: str, of: Part) -> SavedMap:
@@ -24,7 +24,7 @@ def saved(name: str, of: Part) -> SavedMap:
 @pytest.fixture(scope="module")
 def parts() -> list[Part]:
     classes = building(1)
-    poses = HERE, Pose.of(5.0, -3.0, 2.2), Pose.of(-8.0, 1.0, -0.6)
+    poses = HERE, FramePose.of(5.0, -3.0, 2.2), FramePose.of(-8.0, 1.0, -0.6)
     return [part(classes, *at, pose) for at, pose in zip(((0, 13), (5, 19), (11, 24)), poses, strict=True)]
 
 
@@ -73,12 +73,12 @@ def test_a_large_map_with_a_small_one_in_it_is_done() -> None:
     classes = np.full((4000, 4000), UNKNOWN, np.uint8)
     fine = building(1).repeat(2, axis=0).repeat(2, axis=1)
     classes[1000 : 1000 + fine.shape[0], 2000 : 2000 + fine.shape[1]] = fine
-    small = part(building(1), 3.0, 18.0, Pose.of(1.0, 1.0, 1.0))
+    small = part(building(1), 3.0, 18.0, FramePose.of(1.0, 1.0, 1.0))
     merged = merge([SavedMap("large", GridFrame(0.05, 4000, 4000), classes), saved("small", small)])
     assert merged.joined.whole
     pose = merged.joined.poses[1]
     assert pose is not None
-    corner = Pose(100.0, 50.0, 0.0)  # of the building in the large map
+    corner = FramePose(100.0, 50.0, 0.0)  # of the building in the large map
     shift, turn = pose.apart(corner.after(small.pose), small.charted.middle)
     assert shift < 0.1
     assert turn < math.radians(0.5)

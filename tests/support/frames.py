@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.align import Charted, Pose, charted
+from vedette.align import Charted, FramePose, charted
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
 from vedette.missions.explore.own_map import OwnMap
 from vedette.sim.worlds import office
@@ -19,7 +19,7 @@ class Part:
 
     frame: GridFrame
     classes: NDArray[np.uint8]  # (R, C)
-    pose: Pose  # of its frame in the building's
+    pose: FramePose  # of its frame in the building's
 
     @property
     def charted(self) -> Charted:
@@ -46,7 +46,9 @@ def shell(solid: NDArray[np.bool_]) -> NDArray[np.uint8]:
     return np.where(~solid, FREE, np.where(beside, OCCUPIED, UNKNOWN)).astype(np.uint8)
 
 
-def part(classes: NDArray[np.uint8], left: float, right: float, pose: Pose, resolution: float = 0.1) -> Part:
+def part(
+    classes: NDArray[np.uint8], left: float, right: float, pose: FramePose, resolution: float = 0.1
+) -> Part:
     """Return what lies between two x [m] of a building whose corner is the origin, in an own frame."""
     kept = classes[:, round(left / 0.1) : round(right / 0.1)]
     rows = len(kept)
@@ -60,6 +62,6 @@ def part(classes: NDArray[np.uint8], left: float, right: float, pose: Pose, reso
     return Part(frame, OwnMap(kept, 0.1, corner_x, corner_y, own.angle).laid(frame), pose)
 
 
-def off(found: Pose, a: Part, b: Part) -> tuple[float, float]:
+def off(found: FramePose, a: Part, b: Part) -> tuple[float, float]:
     """Return how far a found T_a_b is from the true one at the middle of b, and by which angle [m, rad]."""
     return found.apart(a.pose.inverse().after(b.pose), b.charted.middle)

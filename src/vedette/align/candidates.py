@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from vedette.align.charted import Charted
 from vedette.align.fitted import Fit, fitted
-from vedette.align.pose import Pose
+from vedette.align.pose import FramePose
 from vedette.align.shifts import likely
 from vedette.kernels.align import CLEAR, SAME, align_counts
 from vedette.maps import UNKNOWN
@@ -26,10 +26,10 @@ _PLACES = 4000  # of free ground are looked at for what both know
 
 
 @dataclass(frozen=True, eq=False)
-class Candidate:
+class PossibleJoin:
     """One place of B on A."""
 
-    pose: Pose  # T_a_b between the maps' own frames
+    pose: FramePose  # T_a_b between the maps' own frames
     score: float  # walls that both have less those that the other contradicts [m]
     same: float  # walls of each that lie on the other's, in the mean [m]
     contradicted: float  # of the walls that the other could see, the share on its clear ground, 0..1
@@ -47,7 +47,7 @@ class Candidate:
 class Alignment:
     """All that speaks for and against laying B onto A."""
 
-    candidates: tuple[Candidate, ...]  # by score, best first; none if no wall met another
+    candidates: tuple[PossibleJoin, ...]  # by score, best first; none if no wall met another
 
     @property
     def rivalry(self) -> float:
@@ -77,9 +77,9 @@ def align(a: Charted, b: Charted) -> Alignment:
     return Alignment((fine, *(candidate for candidate, _ in found[1:])))
 
 
-def _distinct(found: Sequence[tuple[Candidate, Fit]], at: Floats) -> list[tuple[Candidate, Fit]]:
+def _distinct(found: Sequence[tuple[PossibleJoin, Fit]], at: Floats) -> list[tuple[PossibleJoin, Fit]]:
     """Return the candidates by score, of those that came to the same place the best."""
-    kept: list[tuple[Candidate, Fit]] = []
+    kept: list[tuple[PossibleJoin, Fit]] = []
     for candidate, fit in sorted(found, key=lambda each: -each[0].score):
         gaps = [candidate.pose.apart(other.pose, at) for other, _ in kept]
         if all(shift > DISTINCT[0] or turn > DISTINCT[1] for shift, turn in gaps):
@@ -87,7 +87,7 @@ def _distinct(found: Sequence[tuple[Candidate, Fit]], at: Floats) -> list[tuple[
     return kept
 
 
-def _weighed(a: Charted, b: Charted, fit: Fit) -> Candidate:
+def _weighed(a: Charted, b: Charted, fit: Fit) -> PossibleJoin:
     """Return a fit with what speaks for and against it."""
     on_a = _counts(a, b, fit.pose) * b.cell
     on_b = _counts(b, a, fit.pose.inverse()) * a.cell
@@ -95,7 +95,7 @@ def _weighed(a: Charted, b: Charted, fit: Fit) -> Candidate:
     against = float(on_a[CLEAR] + on_b[CLEAR]) / 2.0
     common = _common(a, b, fit.pose)
     least = min(len(a.free) * a.cell**2, len(b.free) * b.cell**2)
-    return Candidate(
+    return PossibleJoin(
         pose=_own_frames(a, b, fit.pose),
         score=same - CLASH * against,
         same=same,
@@ -106,7 +106,7 @@ def _weighed(a: Charted, b: Charted, fit: Fit) -> Candidate:
     )
 
 
-def _counts(on: Charted, of: Charted, pose: Pose) -> NDArray[np.int64]:
+def _counts(on: Charted, of: Charted, pose: FramePose) -> NDArray[np.int64]:
     """Return how many faces of a map fall on each label of the other."""
     x, y = ((pose.x, pose.y) - on.corner) / on.cell
     moved = np.array([[x, y, pose.angle]])
@@ -114,7 +114,7 @@ def _counts(on: Charted, of: Charted, pose: Pose) -> NDArray[np.int64]:
     return counts
 
 
-def _common(a: Charted, b: Charted, pose: Pose) -> float:
+def _common(a: Charted, b: Charted, pose: FramePose) -> float:
     """Return how much ground that B has seen free A knows too, from some thousand places [m^2]."""
     step = max(1, len(b.free) // _PLACES)
     col, row = np.floor((pose.places(b.free[::step]) - a.corner) / a.cell).astype(np.int64).T
@@ -123,7 +123,7 @@ def _common(a: Charted, b: Charted, pose: Pose) -> float:
     return float(known) * step * b.cell**2
 
 
-def _own_frames(a: Charted, b: Charted, between_middles: Pose) -> Pose:
+def _own_frames(a: Charted, b: Charted, between_middles: FramePose) -> FramePose:
     """Return T_a_b between the maps' own frames."""
     (a_x, a_y), (b_x, b_y) = a.middle.tolist(), b.middle.tolist()
-    return Pose(a_x, a_y, 0.0).after(between_middles).after(Pose(-b_x, -b_y, 0.0))
+    return FramePose(a_x, a_y, 0.0).after(between_middles).after(FramePose(-b_x, -b_y, 0.0))

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.align.charted import Charted
-from vedette.align.pose import Pose
+from vedette.align.pose import FramePose
 
 Floats = NDArray[np.float64]
 
@@ -35,12 +35,12 @@ _SINGULAR = 1e-6  # walls' worth of information that every direction is taken to
 class Fit:
     """Where B lies on A by the walls that both have."""
 
-    pose: Pose  # T_a_b between the middles
+    pose: FramePose  # T_a_b between the middles
     covariance: Floats  # (3, 3) of x, y, angle [m, m, rad]^2
     paired: int  # walls of B that had one of A
 
 
-def fitted(a: Charted, b: Charted, guess: Pose, walls: int) -> Fit:
+def fitted(a: Charted, b: Charted, guess: FramePose, walls: int) -> Fit:
     """Return the pose of least squares over the distances along A's normals, (V141), with its covariance.
 
     Args:
@@ -68,7 +68,7 @@ def fitted(a: Charted, b: Charted, guess: Pose, walls: int) -> Fit:
         x, y, turn = np.linalg.solve(
             matrix + _DAMPING * np.trace(matrix) * np.eye(3), rows.T @ (weight * off)
         )
-        pose = Pose.of(pose.x + float(x), pose.y + float(y), pose.angle + float(turn))
+        pose = FramePose.of(pose.x + float(x), pose.y + float(y), pose.angle + float(turn))
         squares = float(weight @ off**2 / weight.sum())
     spread = (FLOOR**2 + squares) * max(1.0, INDEPENDENT / (b.cell * step))
     covariance = np.asarray(np.linalg.inv(matrix + _SINGULAR * np.eye(3)) * spread, np.float64)

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
-from vedette.align.candidates import Candidate
+from vedette.align.candidates import PossibleJoin
 from vedette.align.charted import Charted
-from vedette.align.pose import Pose
-from vedette.align.verdict import Verdict, judged
+from vedette.align.pose import FramePose
+from vedette.align.verdict import JoinVerdict, judged
 
 CLOSED = 0.3, math.radians(2.0)  # how far a match may be from what the others say [m, rad]
 
@@ -21,14 +21,14 @@ class Match:
 
     a: int
     b: int
-    candidate: Candidate  # T_a_b
+    candidate: PossibleJoin  # T_a_b
 
 
 @dataclass(frozen=True, eq=False)
-class Joined:
+class JoinedMaps:
     """Where the maps lie, and what they are held together by."""
 
-    poses: tuple[Pose | None, ...]  # of each map in the first one's frame; None: it could not be joined
+    poses: tuple[FramePose | None, ...]  # of each map in the first one's frame; None: it could not be joined
     tree: tuple[Match | None, ...]  # by which each map is held; None: the first, and those not joined
     doubts: tuple[str | None, ...]  # why a map could not be joined
 
@@ -38,7 +38,7 @@ class Joined:
         return all(pose is not None for pose in self.poses)
 
 
-def joined(maps: Sequence[Charted], seed: int) -> Joined:
+def joined(maps: Sequence[Charted], seed: int) -> JoinedMaps:
     """Return where maps lie in the frame of the first: along a tree of the best matches, whose cycles close.
 
     All pairs are judged. A match that contradicts the tree is a doubt about all maps of that cycle, and none
@@ -53,7 +53,7 @@ def joined(maps: Sequence[Charted], seed: int) -> Joined:
         (Match(i, j, verdict.joined) for (i, j), verdict in verdicts.items() if verdict.joined is not None),
         key=lambda match: -match.candidate.score,
     )
-    poses: list[Pose | None] = [Pose(0.0, 0.0, 0.0), *[None] * (len(maps) - 1)]
+    poses: list[FramePose | None] = [FramePose(0.0, 0.0, 0.0), *[None] * (len(maps) - 1)]
     tree: list[Match | None] = [None] * len(maps)
     while (match := _next(matches, poses)) is not None:
         known, new = (match.a, match.b) if poses[match.a] is not None else (match.b, match.a)
@@ -65,15 +65,15 @@ def joined(maps: Sequence[Charted], seed: int) -> Joined:
     for number in _torn(matches, poses, maps) - {0}:
         poses[number] = tree[number] = None
         doubts[number] = "the matches with the others contradict each other"
-    return Joined(tuple(poses), tuple(tree), tuple(doubts))
+    return JoinedMaps(tuple(poses), tuple(tree), tuple(doubts))
 
 
-def _next(matches: Sequence[Match], poses: Sequence[Pose | None]) -> Match | None:
+def _next(matches: Sequence[Match], poses: Sequence[FramePose | None]) -> Match | None:
     """Return the best match between a map that is placed and one that is not."""
     return next((m for m in matches if (poses[m.a] is None) != (poses[m.b] is None)), None)
 
 
-def _torn(matches: Sequence[Match], poses: Sequence[Pose | None], maps: Sequence[Charted]) -> set[int]:
+def _torn(matches: Sequence[Match], poses: Sequence[FramePose | None], maps: Sequence[Charted]) -> set[int]:
     """Return the maps whose matches do not close."""
     torn: set[int] = set()
     for match in matches:
@@ -86,7 +86,7 @@ def _torn(matches: Sequence[Match], poses: Sequence[Pose | None], maps: Sequence
     return torn
 
 
-def _doubt(number: int, verdicts: dict[tuple[int, int], Verdict]) -> str | None:
+def _doubt(number: int, verdicts: dict[tuple[int, int], JoinVerdict]) -> str | None:
     """Return the doubt about the pair in which a map fitted best."""
     own = [verdict for pair, verdict in verdicts.items() if number in pair and verdict.doubt is not None]
     best = max(own, key=lambda v: v.alignment.candidates[0].score if v.alignment.candidates else -math.inf)

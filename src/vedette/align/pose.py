@@ -12,7 +12,7 @@ Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Pose:
+class FramePose:
     """Turns by ``angle`` about the origin, then moves by ``x, y``: ``T_a_b`` takes places of b to a's."""
 
     x: float  # [m]
@@ -20,7 +20,7 @@ class Pose:
     angle: float  # [rad], counter-clockwise, in (-pi, pi]
 
     @classmethod
-    def of(cls, x: float, y: float, angle: float) -> Pose:
+    def of(cls, x: float, y: float, angle: float) -> FramePose:
         """Return the pose with its angle brought into (-pi, pi]."""
         return cls(x, y, math.pi - (math.pi - angle) % (2.0 * math.pi))
 
@@ -34,17 +34,17 @@ class Pose:
         """Return where points ``(n, 2)`` [m] lie in the other frame."""
         return points @ self.rotation.T + (self.x, self.y)
 
-    def after(self, first: Pose) -> Pose:
+    def after(self, first: FramePose) -> FramePose:
         """Return this motion after another: ``T_a_c = T_a_b.after(T_b_c)``."""
         (x, y) = self.places(np.array([[first.x, first.y]]))[0].tolist()
-        return Pose.of(x, y, self.angle + first.angle)
+        return FramePose.of(x, y, self.angle + first.angle)
 
-    def inverse(self) -> Pose:
+    def inverse(self) -> FramePose:
         """Return ``T_b_a``."""
         x, y = (-(self.rotation.T @ (self.x, self.y))).tolist()
-        return Pose.of(x, y, -self.angle)
+        return FramePose.of(x, y, -self.angle)
 
-    def apart(self, other: Pose, at: Floats) -> tuple[float, float]:
+    def apart(self, other: FramePose, at: Floats) -> tuple[float, float]:
         """Return how far apart two poses take the place ``at`` (2,), and the angle between them [m, rad]."""
         (dx, dy) = (self.places(at[None]) - other.places(at[None]))[0].tolist()
         turn = abs((self.angle - other.angle + math.pi) % (2.0 * math.pi) - math.pi)

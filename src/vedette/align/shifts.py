@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy import fft, ndimage
 
 from vedette.align.charted import Charted
-from vedette.align.pose import Pose
+from vedette.align.pose import FramePose
 from vedette.kernels.align import QUARTERS, Weights, align_peaks
 
 WEIGHTS = Weights(walls=1.0, clash=0.6, free=0.03)
@@ -22,7 +22,7 @@ PEAKS = 6  # of each angle
 APART = 1.0  # peaks of one angle, at least [m]
 
 
-def likely(a: Charted, b: Charted, most: int) -> list[Pose]:
+def likely(a: Charted, b: Charted, most: int) -> list[FramePose]:
     """Return the places of B's middle from A's middle, with B's angle, that count most by (V140).
 
     Of places within `APART` and two angles of each other the best stands for all.
@@ -44,7 +44,7 @@ def likely(a: Charted, b: Charted, most: int) -> list[Pose]:
     x, y = (_unwrapped(k.ravel()[order], size) * cell for k in (col, row))
     left, low = (a.corner + cell / 2.0).tolist()
     places = np.stack([x + left, y + low, angle.ravel()[order]], axis=1)
-    return [Pose.of(*place) for place in _distinct(places, 2.5 * turn, most).tolist()]
+    return [FramePose.of(*place) for place in _distinct(places, 2.5 * turn, most).tolist()]
 
 
 def _torus(a: Charted, cell: float, size: int) -> tuple[NDArray[np.float32], NDArray[np.float32]]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vedette.align.candidates import Alignment, Candidate, align
+from vedette.align.candidates import Alignment, PossibleJoin, align
 from vedette.align.charted import Charted, charted
 from vedette.maps import UNKNOWN
 
@@ -18,7 +18,7 @@ STEADY = 0.3, math.radians(2.0)  # how far thinned maps may come from the whole 
 
 
 @dataclass(frozen=True)
-class Rule:
+class JoinRule:
     """What a best candidate must have to be believed."""
 
     rivalry: float  # at most: score of the second best over its own
@@ -44,24 +44,24 @@ class Rule:
         return None
 
 
-SAVED = Rule(rivalry=0.5, lead=25.0)
-OF_THINNED = Rule(rivalry=0.6, lead=10.0, same=10.0, common=10.0, deviation=0.2)
+SAVED = JoinRule(rivalry=0.5, lead=25.0)
+OF_THINNED = JoinRule(rivalry=0.6, lead=10.0, same=10.0, common=10.0, deviation=0.2)
 
 
 @dataclass(frozen=True, eq=False)
-class Verdict:
+class JoinVerdict:
     """What came of the rule for two maps."""
 
     alignment: Alignment
     doubt: str | None  # why they are not joined; None: they are
 
     @property
-    def joined(self) -> Candidate | None:
+    def joined(self) -> PossibleJoin | None:
         """Where B lies on A, if that is safe."""
         return None if self.doubt is not None else self.alignment.candidates[0]
 
 
-def judged(a: Charted, b: Charted, seed: int) -> Verdict:
+def judged(a: Charted, b: Charted, seed: int) -> JoinVerdict:
     """Return whether two maps that will not change can be joined.
 
     The rule must hold for them whole, and for each of `THINNINGS` copies with parts missing, and all at about
@@ -79,10 +79,10 @@ def judged(a: Charted, b: Charted, seed: int) -> Verdict:
             break
         rng = np.random.default_rng([seed, number])
         doubt = _doubt_of_thinned(whole.candidates[0], thinned(a, rng), thinned(b, rng))
-    return Verdict(whole, doubt)
+    return JoinVerdict(whole, doubt)
 
 
-def _doubt_of_thinned(best: Candidate, a: Charted | None, b: Charted | None) -> str | None:
+def _doubt_of_thinned(best: PossibleJoin, a: Charted | None, b: Charted | None) -> str | None:
     if a is None or b is None:
         return "they are too small to be looked at in parts"
     alignment = align(a, b)

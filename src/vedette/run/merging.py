@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.align import Pose, charted
-from vedette.align.joining import Joined, joined
+from vedette.align import FramePose, charted
+from vedette.align.joining import JoinedMaps, joined
 from vedette.errors import InputError
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame, read_map
 from vedette.missions.explore.own_map import OwnMap
@@ -38,7 +38,7 @@ class Merged:
     """All maps that could be joined, as one in the first one's frame; nothing where some could not."""
 
     maps: tuple[SavedMap, ...]
-    joined: Joined
+    joined: JoinedMaps
     frame: GridFrame
     classes: NDArray[np.uint8]  # (R, C)
     whose: NDArray[np.uint8]  # (R, C) the number, from 1 on, of the map that alone knows a cell, or `SEVERAL`
@@ -93,7 +93,7 @@ def _name(path: Path) -> str:
     return path.parent.name if path.name == MAP else path.stem
 
 
-def _placed(each: SavedMap, pose: Pose) -> OwnMap:
+def _placed(each: SavedMap, pose: FramePose) -> OwnMap:
     """Return the known part of a map where it lies in the first one's frame."""
     rows, cols = np.nonzero(each.classes != UNKNOWN)
     top, left = int(rows.min()), int(cols.min())
@@ -110,7 +110,7 @@ def _around(first: GridFrame, placed: Sequence[OwnMap]) -> GridFrame:
     for each in placed:
         rows, cols = np.array(each.classes.shape) * each.resolution
         edges = np.array([[0.0, 0.0], [cols, 0.0], [0.0, rows], [cols, rows]])
-        corners.append(Pose(each.x, each.y, each.heading).places(edges))
+        corners.append(FramePose(each.x, each.y, each.heading).places(edges))
     side, origin = first.resolution, (first.origin_x, first.origin_y)
     low = np.floor((np.vstack(corners).min(axis=0) - origin) / side - 1e-6).astype(int)
     high = np.ceil((np.vstack(corners).max(axis=0) - origin) / side + 1e-6).astype(int)

@@ -6,9 +6,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from vedette.align.candidates import Candidate
-from vedette.align.joining import Joined
-from vedette.align.pose import Pose
+from vedette.align.candidates import PossibleJoin
+from vedette.align.joining import JoinedMaps
+from vedette.align.pose import FramePose
 from vedette.record.summary import Figures
 
 
@@ -26,7 +26,7 @@ class Confidence:
     yaw_deviation_deg: float
 
     @classmethod
-    def of(cls, candidate: Candidate, other: str) -> Confidence:
+    def of(cls, candidate: PossibleJoin, other: str) -> Confidence:
         """Return what is told of a match."""
         x, y, turn = (math.sqrt(max(0.0, variance)) for variance in candidate.covariance.diagonal().tolist())
         return cls(
@@ -52,7 +52,7 @@ class PlacedMap:
     confidence: Confidence | None  # None: it is the first
 
     @classmethod
-    def of(cls, name: str, pose: Pose, confidence: Confidence | None) -> PlacedMap:
+    def of(cls, name: str, pose: FramePose, confidence: Confidence | None) -> PlacedMap:
         """Return what is told of a map."""
         return cls(name, pose.x, pose.y, math.degrees(pose.angle), confidence)
 
@@ -64,7 +64,7 @@ class MergeSummary(Figures):
     maps: tuple[PlacedMap, ...]
 
     @classmethod
-    def told(cls, names: Sequence[str], joined: Joined) -> MergeSummary:
+    def told(cls, names: Sequence[str], joined: JoinedMaps) -> MergeSummary:
         """Return the figures of maps that are all joined."""
         placed = []
         for number, (name, pose, match) in enumerate(zip(names, joined.poses, joined.tree, strict=True)):
