@@ -83,7 +83,7 @@ def test_a_hello_is_too_short_to_nest_anything() -> None:
 
 def test_a_report_of_a_small_packet_never_becomes_a_large_grid() -> None:
     side = 1 << 26
-    huge = content.MapContent(0, 0, side, side, b"", b"", None, 0.1, 0.0, 0.0)
+    huge = content.MapContent(0, 0, side, side, b"", b"", None, 0.1, 0.0, 0.0, (side, side))
     for read in (content.classes_of, content.seen_of):
         with pytest.raises(ValueError, match=rf"a map of {side**2} cells; at most"):
             read(huge)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from tests.support.windows import SCENE, needs_chromium, shown, snapshot
 from vedette.agent.orders import End, LookThere, NoGo, Order, Pause, Priority, Recall, Resume, Stay
 from vedette.record import palette
+from vedette.record.explore.log import Ahead
 from vedette.window.hub import Hub
 from vedette.window.picture import Beside, ordered, picture
 from vedette.window.server import WindowServer
@@ -95,6 +97,23 @@ def test_a_live_mission_is_followed_and_a_lost_robot_stays_on_the_screen(page: A
         hub.close()
         see(page, hub, "#state", "the mission is over")
         assert page.is_disabled("text=Pause")
+
+
+def test_why_a_robot_goes_where_it_goes_is_told_when_it_is_selected(page: Any) -> None:
+    hub = shown(range(3))
+    told = snapshot(3.0)
+    tour = (Ahead(2.0, 3.0, 4.0, 1.5), Ahead(5.0, 3.0, 9.0, 0.5))
+    robots = tuple(replace(robot, tour=tour[i:]) for i, robot in enumerate(told.robots))
+    with WindowServer(hub) as window:
+        page.goto(window.address)
+        see(page, hub, "#state", "live")
+        hub.show(picture(SCENE, replace(told, t=9.0, robots=robots)))
+        until(page, "$('clock').textContent === '9.0 s'")
+        page.keyboard.press("1")
+        lines = page.inner_text("#why")
+        assert "1. at 2.0, 3.0 m in 4 s: 1.5 m² unknown there" in lines
+        assert "2. at 5.0, 3.0 m in 9 s" in lines
+        assert "mule sees to 0.5 m² at 1 places of the rest" in lines
 
 
 def test_a_record_is_scrubbed_and_played(page: Any) -> None:

@@ -7,6 +7,7 @@ import urllib.error
 import urllib.request
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,7 @@ from vedette.errors import InputError
 from vedette.maps import GridFrame
 from vedette.window.history import History
 from vedette.window.hub import FRESH, Hub
-from vedette.window.picture import TILE, Picture, changes, ordered, picture
+from vedette.window.picture import SHADES, TILE, Picture, changes, ordered, picture, shaded
 from vedette.window.server import WindowServer
 
 
@@ -198,6 +199,17 @@ def test_changes_make_one_map_of_another(rows: int, cols: int, chance: Any) -> N
         page._lay(data)
         np.testing.assert_array_equal(page.map, classes)
     assert changes(frame, second, second) == (False, b"")
+
+
+def test_what_is_about_to_be_seen_is_shaded_where_it_is_unknown_and_nowhere_else() -> None:
+    told = snapshot(10.0)
+    impact = np.zeros(SCENE.planning.shape, np.float32)
+    impact[:, 4:8] = 0.5  # columns 8 to 15, of which 0 to 10 are known
+    shades = shaded(SCENE, replace(told, impact=impact))
+    known = told.classes > 0
+    np.testing.assert_array_equal(shades[known], told.classes[known])
+    assert set(shades[1:, 11:16].flat) == {2 + SHADES // 2}
+    assert not shades[1:, 16:].any()
 
 
 def test_history_thins_out_and_keeps_the_first_and_finds_what_was_before_a_time() -> None:

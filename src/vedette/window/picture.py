@@ -11,11 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.agent.orders import NoGo, Order, Priority
-from vedette.maps import GridFrame
+from vedette.maps import OCCUPIED, UNKNOWN, GridFrame
 from vedette.record import palette
 from vedette.record.explore.log import ExploreScene, ExploreSnapshot, RobotSample
 from vedette.record.explore.told import progress
 
+SHADES = 8  # of what is about to be seen, in the place of UNKNOWN: cells of the page's map from 3 on
+MOST_LEFT = 100  # frontiers that robots leave, of which each is shown
 TILE = 32  # cells a side, in which changes of the map travel
 MOST_PATH = 40  # points of a path that are drawn
 
@@ -84,9 +86,26 @@ def picture(scene: ExploreScene, snapshot: ExploreSnapshot, beside: Beside = NOT
         "orders": beside.orders,
         "areas": beside.areas,
         "alerts": [*_lost(scene, snapshot), *beside.alerts],
+        "left": [
+            [round(spot.x, 2), round(spot.y, 2), f"{spot.why.replace('_', ' ')}, says {spot.by}"]
+            for spot in snapshot.left_out[-MOST_LEFT:]
+        ],
     }
     text = msgspec.json.encode(told, enc_hook=lambda number: number.item())  # NumPy's
-    return Picture(snapshot.t, text, scene.frame, snapshot.classes.copy())
+    return Picture(snapshot.t, text, scene.frame, shaded(scene, snapshot))
+
+
+def shaded(scene: ExploreScene, snapshot: ExploreSnapshot) -> NDArray[np.uint8]:
+    """Return ``(R, C)`` the map, with a shade from 3 on where it is unknown and about to be seen."""
+    classes = snapshot.classes.copy()
+    if snapshot.impact is None or not snapshot.impact.any():
+        return classes
+    factor = round(scene.planning.resolution / scene.frame.resolution)
+    shade = np.ceil(np.clip(snapshot.impact, 0.0, 1.0) * SHADES - 0.5).astype(np.uint8)
+    fine = shade.repeat(factor, axis=0).repeat(factor, axis=1)[: classes.shape[0], : classes.shape[1]]
+    seen = (classes == UNKNOWN) & (fine > 0)
+    classes[seen] = OCCUPIED + fine[seen]
+    return classes
 
 
 def _robot(number: int, name: str, robot: RobotSample, silent: float | None) -> dict[str, Any]:
@@ -102,6 +121,7 @@ def _robot(number: int, name: str, robot: RobotSample, silent: float | None) -> 
         "silent": None if silent is None else round(silent, 1),
         "path": path,
         "driven": round(robot.driven, 1),
+        "tour": [[round(number, 2) for number in stop] for stop in robot.tour],
         "colour": palette.robot_colour(number - 1),
     }
 

@@ -70,6 +70,7 @@ class Exploring:
     own: OwnEvidence = field(init=False)
     frontiers: int | None = None  # of the latest round's map; None: there has been none
     _counts_due: float = 0.0
+    _t0: float = 0.0  # from which the tour's arrivals count [s]
     _at: tuple[float, float] = (np.inf, np.inf)  # where it last observed [m], team frame
     _looking: Looking = field(init=False)
     _resort: LastResort = field(init=False)
@@ -162,8 +163,17 @@ class Exploring:
         else:
             self.platform.told = [given_up_at(*note) for note in notes]
 
+    def ahead(self, now: float) -> list[tuple[float, float, float, float]]:
+        """Return the tour's stops: x, y [m], after how long [s], and the unknown ground near each [m^2]."""
+        tour, cell = self.strategy, self.frame.resolution**2
+        after = np.maximum(tour.arrivals + self._t0 - now, 0.0)
+        return list(
+            zip(*tour.targets.T.tolist(), after.tolist(), (tour.unknown * cell).tolist(), strict=True)
+        )
+
     def freeze(self, t0: float) -> MapBelief:
         """Snapshot the team map for a round; tours count time from when it is frozen."""
+        self._t0 = t0
         known = self.fusion.known
         belief = freeze(
             self.fusion.classes.window(*known),

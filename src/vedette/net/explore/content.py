@@ -39,7 +39,16 @@ class Spot(NamedTuple):
     why: Why
 
 
-class MapContent(msgspec.Struct, frozen=True, array_like=True, tag=4):
+class Stop(NamedTuple):
+    """A stop of its tour, as ``vedette.record.explore.log.Ahead``."""
+
+    x: Real  # [m], team frame
+    y: Real
+    after: Real  # [s]
+    reveals: Real  # [m^2]
+
+
+class MapContent(msgspec.Struct, frozen=True, array_like=True, tag=5):
     """A robot's map: the part of the team's lattice outside of which it knows nothing."""
 
     row: Cells  # of the lattice, where the part begins
@@ -52,7 +61,9 @@ class MapContent(msgspec.Struct, frozen=True, array_like=True, tag=4):
     resolution: Annotated[float, Meta(gt=0.0, le=FARTHEST)]  # [m]
     x: Real  # of the part's corner [m], team frame
     y: Real
+    lattice: tuple[Cells, Cells]  # rows and columns of all of it
     left_out: Annotated[tuple[Spot, ...], Meta(max_length=1024)] = ()
+    tour: Annotated[tuple[Stop, ...], Meta(max_length=64)] = ()
 
 
 _CONTENTS: msgspec.msgpack.Decoder[MapContent] = msgspec.msgpack.Decoder(MapContent)
@@ -92,7 +103,8 @@ class ExploreTeller:
         impact = None if decided is None else mission.codec.encode(decided)
         spots = tuple(Spot(each.x, each.y, each.unknown, each.why) for each in mission.left_out)
         grids = held(mission.fusion.classes, mission.own.log_odds, mission.known)
-        return content(mission.frame, mission.known, *grids, impact, spots[-1024:])
+        tour = tuple(Stop(*stop) for stop in mission.ahead(now))
+        return content(mission.frame, mission.known, *grids, impact, spots[-1024:], tour)
 
 
 def content(
@@ -102,13 +114,15 @@ def content(
     seen: NDArray[np.bool_],
     impact: bytes | None,
     left: tuple[Spot, ...] = (),
+    tour: tuple[Stop, ...] = (),
 ) -> bytes:
     """Return a map as bytes; ``classes`` and ``seen`` are ``(R, C)``, the known rows and columns."""
     (rows, cols), part = known, lattice.window(*known)
     packed = zlib.compress(np.ascontiguousarray(classes).tobytes(), 1)
     bits = zlib.compress(np.packbits(seen).tobytes(), 1)
     corner, place = (rows.start, cols.start), (part.resolution, part.origin_x, part.origin_y)
-    return _encode(MapContent(*corner, part.rows, part.cols, packed, bits, impact, *place, left))
+    size = part.rows, part.cols
+    return _encode(MapContent(*corner, *size, packed, bits, impact, *place, lattice.shape, left, tour))
 
 
 def read_content(payload: bytes) -> MapContent:

@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vedette.domains.mapping.belief import planning_factor
+from vedette.domains.mapping.impact import MapImpactCodec, cells_missed, moved
+from vedette.domains.mapping.leftovers import Leftover
 from vedette.maps import UNKNOWN, GridFrame
 from vedette.maps.laid import part_laid
 from vedette.net.explore.content import MOST_CELLS, MapContent, classes_of, frame_of, read_content
-from vedette.net.gather import path_of
+from vedette.net.gather import path_of, status_of
 from vedette.net.names import robot_name
 from vedette.net.report import Report
 from vedette.net.results import lasted
-from vedette.record.explore.log import ExploreScene, ExploreSnapshot, RobotSample
+from vedette.record.explore.log import Ahead, ExploreScene, ExploreSnapshot, RobotSample
+from vedette.record.explore.views import left_out
+from vedette.record.links import Link, links_of
 
 NOWHERE = GridFrame(1.0, 1, 1)
 
@@ -33,19 +38,29 @@ def picture_of(
     Raises:
         ValueError: a report is malformed.
     """
-    frame, classes = _together([read_content(report.content) for report in reports.values()])
+    contents = [read_content(report.content) for report in reports.values()]
+    frame, classes = _together(contents)
     planning = frame.coarse(planning_factor(frame.resolution))
     names = tuple(map(robot_name, reports))
     scene = ExploreScene(name=team, vehicles=names, frame=frame, planning=planning)
     told = [report.condition for report in reports.values()]
     snapshot = ExploreSnapshot(
         t=max((lasted(each) for each in told), default=0.0),
-        robots=tuple(_sample(report, states.get(robot)) for robot, report in reports.items()),
+        robots=tuple(
+            _sample(report, states.get(robot), content)
+            for (robot, report), content in zip(reports.items(), contents, strict=True)
+        ),
         coverage=None,
         known_fraction=max((each.known for each in told if each.known is not None), default=None),
         entropy=None,
         classes=classes,
-        impact=None,
+        impact=_impact(contents, planning),
+        links=_links(reports),
+        left_out=tuple(
+            spot
+            for name, each in zip(names, contents, strict=True)
+            for spot in left_out([Leftover(*leaves) for leaves in each.left_out], name)
+        ),
         known_m2=float(np.count_nonzero(classes != UNKNOWN)) * frame.resolution**2,
         frontiers=max((each.frontiers for each in told if each.frontiers is not None), default=None),
     )
@@ -65,6 +80,32 @@ def _together(maps: Sequence[MapContent]) -> tuple[GridFrame, NDArray[np.uint8]]
     return frame, whole
 
 
+def _links(reports: Mapping[int, Report]) -> tuple[Link, ...]:
+    """Return the links that both ends tell of, by the places of their robots among the reports."""
+    place = {robot: i for i, robot in enumerate(reports)}
+    told = [reports.get(robot) for robot in range(max(reports, default=-1) + 1)]
+    links = links_of([None if each is None else status_of(each.condition) for each in told])
+    return tuple(replace(link, a=place[link.a], b=place[link.b]) for link in links)
+
+
+def _impact(maps: Sequence[MapContent], planning: GridFrame) -> NDArray[np.float32]:
+    """Return ``(r, c)`` how likely the robots' strategies show each planning cell, together.
+
+    Raises:
+        ValueError: an impact is malformed.
+    """
+    miss = np.ones(planning.size, np.float32)
+    for each in maps:
+        if each.impact is None or not each.rows or not each.cols:
+            continue
+        side = each.resolution
+        corner = each.x - each.col * side, each.y - each.row * side
+        own = GridFrame(side, *each.lattice, *corner).coarse(planning_factor(side))
+        cells, missed = cells_missed(moved(MapImpactCodec(own.size).decode(each.impact), own, planning))
+        miss[cells] *= missed
+    return (1.0 - miss).reshape(planning.shape)
+
+
 def _around(frames: Sequence[GridFrame]) -> GridFrame:
     resolution = frames[0].resolution
     extents = np.array([frame.extent for frame in frames])
@@ -76,10 +117,9 @@ def _around(frames: Sequence[GridFrame]) -> GridFrame:
     return GridFrame(resolution, rows, cols, x, y)
 
 
-def _sample(report: Report, state: str | None) -> RobotSample:
+def _sample(report: Report, state: str | None, content: MapContent) -> RobotSample:
     told, path = report.condition, path_of(report.condition)
     goal = (float(path[-1, 0]), float(path[-1, 1])) if len(path) else None
     at = told.x, told.y, told.heading
-    return RobotSample(
-        *at, state or told.state, state is None, path, robot_name(told.robot), goal, told.travelled
-    )
+    name, tour = robot_name(told.robot), tuple(Ahead(*stop) for stop in content.tour)
+    return RobotSample(*at, state or told.state, state is None, path, name, goal, told.travelled, tour)

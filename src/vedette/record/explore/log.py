@@ -6,6 +6,7 @@ import math
 import zlib
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from vedette.domains.mapping.belief import planning_factor
 from vedette.maps import GridFrame
 from vedette.maps.world import World
+from vedette.record.explore.summary import LeftOut
 from vedette.record.links import Link, parts
 from vedette.record.log import MissionScene, Sink, VehicleSample
 
@@ -33,6 +35,15 @@ class ExploreScene(MissionScene):
         return cls(name=world.name, vehicles=tuple(robots), frame=world.frame, planning=planning)
 
 
+class Ahead(NamedTuple):
+    """A stop of a robot's tour, as it means to make it."""
+
+    x: float  # of the frontier that it goes to see [m], team frame
+    y: float
+    after: float  # so long from now [s]
+    reveals: float  # unknown ground near it, when it was planned [m^2]
+
+
 @dataclass(frozen=True, eq=False)
 class RobotSample(VehicleSample):
     """One robot at one moment."""
@@ -40,6 +51,7 @@ class RobotSample(VehicleSample):
     name: str
     goal: tuple[float, float] | None  # where it is going [m], team frame
     driven: float = 0.0  # the way that it has come [m]
+    tour: tuple[Ahead, ...] = ()  # where it means to look
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +70,7 @@ class ExploreSnapshot:
     links: tuple[Link, ...] | None = None  # None: the network is ideal
     known_m2: float = 0.0  # that the living robots know
     frontiers: int | None = None  # where to go on, as of the latest round; None: there has been none
+    left_out: tuple[LeftOut, ...] = ()  # where robots do not go on, and why
 
     @property
     def rate_m2_s(self) -> float:

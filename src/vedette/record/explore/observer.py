@@ -138,6 +138,7 @@ class ExploreObserver:
             impact=None if self.log.curves_only else self._team_impact(),
             links=None if links is None else tuple(links),
             frontiers=frontiers_left(self._views),
+            left_out=tuple(spot for view in self._views for spot in view.left_out if view.sample.alive),
         )
 
     def _known_m2(self, classes: NDArray[np.uint8]) -> float:

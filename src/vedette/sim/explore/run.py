@@ -9,7 +9,7 @@ import numpy as np
 from vedette.kernels.motion import remaining
 from vedette.maps.world import World
 from vedette.outcome import Outcome
-from vedette.record.explore.log import ExploreSnapshot, RobotSample
+from vedette.record.explore.log import Ahead, ExploreSnapshot, RobotSample
 from vedette.record.explore.observer import ExploreObserver, ExploreReport
 from vedette.record.explore.views import GroundFigures, RobotView, held, left_out
 from vedette.record.log import Sink
@@ -118,4 +118,6 @@ def _sample(simulation: ExploreSimulation, i: int, ways: bool) -> RobotSample:
     path = NOWHERE if wanted is None else remaining(wanted.path, x, y, np.inf)
     goal = (float(path[-1, 0]), float(path[-1, 1])) if len(path) else None
     name = simulation.specs[i].name
-    return RobotSample(x, y, heading, state(simulation, i), alive, path, name, goal)
+    stops = simulation.missions[i].ahead(simulation.now) if alive and ways else ()
+    tour = tuple(Ahead(*stop) for stop in stops)
+    return RobotSample(x, y, heading, state(simulation, i), alive, path, name, goal, tour=tour)
