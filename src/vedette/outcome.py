@@ -33,6 +33,7 @@ class Outcome(StrEnum):
     TEAM_LOST = "team_lost", 1, "none of the team is alive"
     MAPS_DIFFER = "maps_differ", 1, "all are done, but they hold different maps"
     UNHEARD = "unheard", 1, "all who are heard are done, but others that run are not heard any more"
+    SPENT = "spent", 1, "work is left, but all who could do it turned back while they could come home"
     ORDERED = "ordered", 0, "the operator ordered the end"
     INTERRUPTED = "interrupted", 130, "it was interrupted; the files hold what was done until then"
 
@@ -56,12 +57,15 @@ def together(endings: Iterable[str]) -> Outcome:
     """Return how a mission ends for a team of which all who live are done, each with its own ending.
 
     What one could not get to is left, whatever the others did; who cannot move keeps nobody from it, nor does
-    whom the operator has called off.
+    whom the operator has called off, or who has turned back for want of energy.
     """
     said = set(endings)
     if said == {Outcome.ORDERED}:
         return Outcome.ORDERED
     said.discard(Outcome.ORDERED)
+    if said == {Outcome.SPENT}:
+        return Outcome.SPENT
+    said.discard(Outcome.SPENT)
     if said == {Outcome.ENCLOSED}:
         return Outcome.ENCLOSED
     return Outcome.UNREACHED if Outcome.UNREACHED in said else Outcome.COMPLETE

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from math import inf
 from pathlib import Path
 from reprlib import repr as repr_short
 
@@ -13,6 +14,7 @@ from vedette.number import is_number, is_whole
 from vedette.scenario import as_scenario
 from vedette.yaml_file import read_yaml
 
+ENDLESS = 1e6  # energy of a robot of which nobody says how far it gets
 _LIMITS = {
     "speed": (0.01, 10.0, "m/s"),
     "turn_rate": (0.05, 20.0, "rad/s"),
@@ -24,6 +26,8 @@ _LIMITS = {
     "range_noise": (0.0, 1.0, "m"),
     "pose_std": (0.0, 1.0, "m"),
     "pose_std_heading": (0.0, 30.0, "deg"),
+    "energy": (1.0, ENDLESS, "m, or Wh"),
+    "drain": (1e-3, 1e4, "Wh/m"),
 }
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}")
 
@@ -48,6 +52,8 @@ class PlatformSpec:
     start: tuple[float, ...] | None = None  # x, y[, heading] [m, m, deg], team frame; None: chosen
     pose_std: float = 0.0  # standard deviation of each coordinate of the place that it is told [m]
     pose_std_heading: float = 0.0  # and of the heading [deg]
+    energy: float = ENDLESS  # way that it can drive [m]; with ``drain``, what its battery holds [Wh]
+    drain: float = 1.0  # [Wh/m]
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not _NAME.fullmatch(self.name):
@@ -60,6 +66,11 @@ class PlatformSpec:
         if self.start is not None and not _is_start(self.start):
             got = list(self.start) if isinstance(self.start, tuple) else self.start
             raise InputError(f"start must be [x, y] or [x, y, heading in deg]; got {repr_short(got)}")
+
+    @property
+    def way(self) -> float:
+        """The way that its energy is good for [m]; inf: nobody says."""
+        return inf if self.energy == ENDLESS else self.energy / self.drain
 
 
 def _is_start(start: object) -> bool:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from vedette.agent.driving import YIELD_LIMIT, Driver
 from vedette.agent.effects import Drive, Effect
 from vedette.agent.events import Arrived, Pose, Scan, Sensed, Stuck
-from vedette.agent.mission import GroundMission, Heeding
+from vedette.agent.mission import Enduring, GroundMission, Heeding
 from vedette.agent.orders import End, Given, LookThere, Pause, Recall, Stay
 from vedette.agent.state import Agent, State
 from vedette.outcome import Outcome
@@ -43,11 +43,14 @@ class GroundBehaviour:
     held: Scan | Sensed | None = None  # the latest while listening
     obeyed: Given | None = None  # the order that keeps it from work
     called: tuple[float, float] | None = None  # where that wants it [m]; None: home
+    spent: bool = False  # it has turned back, lest it does not come home
 
     @property
     def ending(self) -> Outcome:
-        """The mission's own word, or that the operator has called the robot off."""
-        return self.mission.ending if self.obeyed is None else Outcome.ORDERED
+        """The mission's own word; or that the operator has called the robot off, or it has turned back."""
+        if self.obeyed is not None:
+            return Outcome.ORDERED
+        return Outcome.SPENT if self.spent else self.mission.ending
 
     def wake(self, agent: Agent, pose: Pose, now: float) -> bool:
         """Begin to map once the mates' places are known, so that they are not taken for obstacles."""
@@ -75,7 +78,8 @@ class GroundBehaviour:
 
     def departure(self, agent: Agent, pose: Pose, belief: object) -> Pose:
         """Return the pose itself: tours begin where the robot is."""
-        return pose if self.obeyed is None else replace(pose, at_work=False)
+        works = self.obeyed is None and not self.spent
+        return pose if works else replace(pose, at_work=False)
 
     def ahead(self, pose: Pose) -> NDArray[np.float64]:
         """Return the next few metres that the robot will really drive, ``(L, 2)`` [m], team frame."""
@@ -92,6 +96,13 @@ class GroundBehaviour:
             return out
         if self.obeyed is not None:
             return self._go_on_home(agent, pose, now)
+        if self._has_to_turn_back(agent, pose, now):
+            self.spent, self.home_tries = True, 0
+            self.mission.stand_by()
+            agent.rounds.want()
+            return self._go_home(agent, pose, now, blocked=False)
+        if self.spent:
+            return self._go_on_home(agent, pose, now)
         if not pose.at_work or self.state is State.PAUSED:
             return self._pause(agent, pose)
         effects = self._follow_decision(agent, pose, now) if news else []
@@ -103,6 +114,13 @@ class GroundBehaviour:
         if waiting and agent.is_due("home", HOME_AGAIN, now):
             return self._go_home(agent, pose, now, blocked=False)
         return []
+
+    def _has_to_turn_back(self, agent: Agent, pose: Pose, now: float) -> bool:
+        """Tell whether it is time to go home, lest the robot does not come there."""
+        works = not self.spent and self.state not in (State.DONE, State.WAITING) and pose.at_work
+        if not works or not isinstance(self.mission, Enduring) or not agent.is_due("turn", CHECK_PERIOD, now):
+            return False
+        return self.mission.turns_back(pose)
 
     # -- orders -------------------------------------------------------------------------------------
 
@@ -296,5 +314,5 @@ class GroundBehaviour:
 
     def _strayed(self, pose: Pose) -> bool:
         """Tell whether the robot, done, had to make room and could go home again."""
-        homing = self.return_home or self.obeyed is not None
+        homing = self.return_home or self.obeyed is not None or self.spent
         return homing and self.home_tries <= HOME_TRIES and not self._at_home(pose)

@@ -138,6 +138,14 @@ class Promising(Protocol[BeliefT_contra, ImpactT]):
 
 
 @runtime_checkable
+class Enduring(Protocol):
+    """A mission that minds how far its robot gets."""
+
+    def turns_back(self, pose: Pose) -> bool:
+        """Tell whether the robot has to drive home now, or can do nothing more and come home."""
+
+
+@runtime_checkable
 class Heeding(Protocol):
     """A mission whose plans heed orders about areas and about who is believed."""
 

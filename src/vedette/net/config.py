@@ -29,7 +29,7 @@ from vedette.net.names import MOST_ROBOTS
 from vedette.net.own import OwnSettings
 from vedette.ros2.settings import Ros2Settings
 from vedette.scenario import load_scenario
-from vedette.team import PlatformSpec
+from vedette.team import ENDLESS, PlatformSpec
 
 OF_BODY = tuple(field.name for field in fields(PlatformSpec) if field.name not in ("name", "start"))
 MISSIONS = ("explore", "track", "search", "domain")
@@ -80,6 +80,8 @@ class BodySettings(Struct, forbid_unknown_fields=True, frozen=True):
     range_noise: float = 0.01  # [m]
     pose_std: float = 0.0  # of the pose that the robot is told [m]
     pose_std_heading: float = 0.0  # [deg]
+    energy: float = ENDLESS  # way that it can drive [m]; with ``drain``, what its battery holds [Wh]
+    drain: float = 1.0  # [Wh/m]
 
     def spec(self, name: str) -> PlatformSpec:
         """Return the platform.

@@ -15,7 +15,9 @@ MOST_BYTES = 1 << 24
 Count = Annotated[int, Meta(ge=0, le=2**53)]
 FARTHEST = 1e9
 Real = Annotated[float, Meta(ge=-FARTHEST, le=FARTHEST)]
-Ending = Literal["complete", "unreached", "enclosed", "ordered"]  # words of ``vedette.outcome.Outcome``
+Ending = Literal[
+    "complete", "unreached", "enclosed", "ordered", "spent"
+]  # words of ``vedette.outcome.Outcome``
 PRINTABLE = r"^[^\x00-\x1f\x7f-\x9f\[\]]*\Z"  # what a terminal shows as it is, markup left out
 Word = Annotated[str, Meta(max_length=64, pattern=PRINTABLE)]
 MOST_WORDS = 500  # characters of a sentence

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.domains.mapping.belief import MapBelief
+from vedette.domains.mapping.budget import WayLeft
 from vedette.domains.mapping.impact import NOTHING, Impact
 from vedette.domains.mapping.sightings import SightingModel, beam_model, measured_model
 from vedette.domains.mapping.stops import (
@@ -119,13 +120,17 @@ class MappingPlatform:
     daring: bool = False  # the round's stops are behind what is doubtful
     in_vain: int = 0  # doubts in a row that led nowhere
     stops: Stops | None = None
+    budget: WayLeft = field(init=False)  # of way
+    short: bool = field(
+        init=False, default=False
+    )  # there are stops, and none that leaves enough to come home
     considered: NDArray[np.float64] = field(init=False)  # (N, 2) frontiers of stops, those left alone too [m]
     cut_short: bool = field(init=False, default=False)  # the round's work ended before all was looked at
     patience: int = field(init=False, default=PATIENCE)
     ahead: int = field(init=False, default=1)  # stops of a tour in this round, at most
 
     def __post_init__(self) -> None:
-        self.considered = _NOWHERE
+        self.considered, self.budget = _NOWHERE, WayLeft(self.spec.way)
 
     def place(
         self,
@@ -162,7 +167,7 @@ class MappingPlatform:
         """
         self._update_given_up(belief)
         self.ahead = self.max_stops if belief.gathering else 1
-        self.cut_short = self.daring = False
+        self.cut_short = self.daring = self.short = False
         model = self.model(belief)
         if self._finds_anything(belief, model):
             return
@@ -177,6 +182,7 @@ class MappingPlatform:
         """Look for stops on ground that is less and less wide; tell if one can be visited."""
         for clearance in CLEARANCES:
             self.ground = survey(belief, self.spec, self.x, self.y, self.obstacles, clearance)
+            self.budget.look(belief.frame, self.ground.passable)
             if self._leads_on(belief, self.ground, model, last=clearance == CLEARANCES[-1]):
                 return True
         return False
@@ -227,7 +233,8 @@ class MappingPlatform:
                     stall=self.stall,
                 )
                 self.considered = np.concatenate((self.considered, stops.targets))
-                self.stops = self._without_left_alone(stops, LEFT_ALONE_AT_LAST if last else LEFT_ALONE)
+                stops = self._without_left_alone(stops, LEFT_ALONE_AT_LAST if last else LEFT_ALONE)
+                self.stops = self._affordable(stops)
                 if self.leads_anywhere:
                     self.cut_short = found.cut_short
                     return True
@@ -302,6 +309,18 @@ class MappingPlatform:
             legs[:, near] = np.inf
         return replace(stops, first_leg=first_leg, legs=legs)
 
+    def _affordable(self, stops: Stops) -> Stops:
+        """Make the stops unreachable from which the robot could not come home."""
+        if not self.budget.limited:
+            return stops
+        open_ = np.isfinite(stops.first_leg)
+        dear = ~self.budget.affords(stops.views, stops.first_leg.astype(np.float64) * self.spec.speed)
+        self.short |= bool((open_ & dear).any())
+        first_leg, legs = stops.first_leg.copy(), stops.legs.copy()
+        first_leg[dear] = np.inf
+        legs[:, dear] = np.inf
+        return replace(stops, first_leg=first_leg, legs=legs)
+
     def carry_over(self, strategy: Tour) -> Tour:
         """Restate last round's tour over this round's stops: same places, new arrival times."""
         assert self.stops is not None
@@ -317,13 +336,16 @@ class MappingPlatform:
         return self.tour(np.array(order, np.int64))
 
     def tour(self, order: NDArray[np.int64]) -> Tour:
-        """Return the tour over these stops, cut before the first that cannot be reached."""
+        """Return the tour over these stops, cut before the first that it cannot reach, or come home from."""
         assert self.stops is not None
         if not len(order):
             return STAY
         legs = np.concatenate(([self.stops.first_leg[order[0]]], self.stops.legs[order[:-1], order[1:]]))
         arrivals = np.cumsum(legs, dtype=np.float32).astype(np.float64)  # to the bit as the kernel's
         order = order[: int(np.isfinite(arrivals).sum())]
+        if self.budget.limited:
+            ways = arrivals[: len(order)] * self.spec.speed  # turns count as ways: never too little
+            order = order[: int(self.budget.affords(self.stops.views[order], ways).cumprod().sum())]
         return Tour(
             self.stops.targets[order],
             self.stops.views[order],
@@ -352,7 +374,11 @@ class MappingPlatform:
         """
         problem = self._problem(belief, others)
         order, gain, present = coverage.best_tour(problem, current.stops, self.ahead, STICKINESS)
-        return self.tour(order) if gain > present * (1.0 + HYSTERESIS) else current
+        tour = self.tour(order)
+        if len(tour) < len(order):  # too dear: what is cut off has been counted in the gain
+            order, gain, present = coverage.best_tour(problem, current.stops, 1, STICKINESS)
+            tour = self.tour(order)
+        return tour if gain > present * (1.0 + HYSTERESIS) else current
 
     def slack(self, belief: MapBelief, team: Impact) -> float:
         """No strategy of this robot adds more to the team's impact [nats]; docs/mapping.md (V26).

@@ -19,6 +19,7 @@ from vedette.domains.mapping.belief import (
     planning_factor,
     shortest_frontier,
 )
+from vedette.domains.mapping.budget import needed
 from vedette.domains.mapping.impact import Impact, MapImpactCodec, check_claim, discounted, promised
 from vedette.domains.mapping.leftovers import Leftover, given_up, leftovers
 from vedette.domains.mapping.objective import MappingObjective
@@ -108,6 +109,7 @@ class Exploring:
 
     def observe(self, seen: Scan | Sensed, pose: Pose, mates: Sequence[Mate], now: float) -> None:
         """Take in a scan, or a map that the robot has made itself."""
+        self.platform.budget.move(pose.x, pose.y)
         if self.signed is not None:
             row, col = self.frame.cell(pose.x, pose.y)
             self.signed.set_out(max(row, 0), max(col, 0))
@@ -275,7 +277,19 @@ class Exploring:
         """Return an impact that is so many times half as likely."""
         return discounted(impact, halvings)
 
-    # -- orders -------------------------------------------------------------------------------------
+    # -- energy and orders --------------------------------------------------------------------------
+
+    def turns_back(self, pose: Pose) -> bool:
+        """Tell whether the robot has to drive home now, or can do nothing more and come home."""
+        budget = self.platform.budget
+        if not budget.limited or budget.home is None:
+            return False
+        if self.platform.short and not self.platform.leads_anywhere:
+            return True
+        here = pose.x, pose.y
+        home = self._ways.find(here, budget.home, (), False)
+        legs = np.diff([here] if home is None else home.path, axis=0)
+        return float(needed(np.hypot(*legs.T).sum(dtype=np.float32))) >= budget.left
 
     def heed(self, book: OrderBook) -> None:
         """Leave alone what is forbidden, and go first where there is priority."""

@@ -21,6 +21,7 @@ from vedette.missions.explore.exploring import Exploring
 from vedette.net.gather import figures_of, path_of
 from vedette.net.report import FARTHEST, MOST_BYTES, Condition, Count, Real, inflated
 from vedette.net.witness import Known
+from vedette.outcome import Outcome
 from vedette.record.explore.log import RobotSample
 from vedette.record.explore.views import GroundFigures, RobotView, held, left_out
 
@@ -39,7 +40,7 @@ class Spot(NamedTuple):
     why: Why
 
 
-class Stop(NamedTuple):
+class StopAhead(NamedTuple):
     """A stop of its tour, as ``vedette.record.explore.log.Ahead``."""
 
     x: Real  # [m], team frame
@@ -63,7 +64,7 @@ class MapContent(msgspec.Struct, frozen=True, array_like=True, tag=5):
     y: Real
     lattice: tuple[Cells, Cells]  # rows and columns of all of it
     left_out: Annotated[tuple[Spot, ...], Meta(max_length=1024)] = ()
-    tour: Annotated[tuple[Stop, ...], Meta(max_length=64)] = ()
+    tour: Annotated[tuple[StopAhead, ...], Meta(max_length=64)] = ()
 
 
 _CONTENTS: msgspec.msgpack.Decoder[MapContent] = msgspec.msgpack.Decoder(MapContent)
@@ -103,7 +104,7 @@ class ExploreTeller:
         impact = None if decided is None else mission.codec.encode(decided)
         spots = tuple(Spot(each.x, each.y, each.unknown, each.why) for each in mission.left_out)
         grids = held(mission.fusion.classes, mission.own.log_odds, mission.known)
-        tour = tuple(Stop(*stop) for stop in mission.ahead(now))
+        tour = tuple(StopAhead(*stop) for stop in mission.ahead(now))
         return content(mission.frame, mission.known, *grids, impact, spots[-1024:], tour)
 
 
@@ -114,7 +115,7 @@ def content(
     seen: NDArray[np.bool_],
     impact: bytes | None,
     left: tuple[Spot, ...] = (),
-    tour: tuple[Stop, ...] = (),
+    tour: tuple[StopAhead, ...] = (),
 ) -> bytes:
     """Return a map as bytes; ``classes`` and ``seen`` are ``(R, C)``, the known rows and columns."""
     (rows, cols), part = known, lattice.window(*known)
@@ -165,6 +166,7 @@ def view_of(
         left_out=left_out([Leftover(*spot) for spot in told.left_out], name),
         frontiers=condition.frontiers,
         beyond=condition.beyond,
+        turned_back=condition.ending == Outcome.SPENT.value,
     )
 
 

@@ -191,6 +191,7 @@ class ExploreObserver:
             frontiers=frontiers_left(views),
             beyond=sum(view.beyond for view in views),
             no_go_m2=self._reference.forbidden_m2,
+            turned_back=tuple(view.sample.name for view in views if view.turned_back),
             map_errors=wrong,
             map_error_share=wrong / known if known else 0.0,
             overlap=overlap(view.seen_on(self._world.frame) for view in views),

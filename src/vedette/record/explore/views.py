@@ -41,6 +41,7 @@ class RobotView:
     left_out: tuple[LeftOut, ...] = ()
     frontiers: int | None = None  # of its latest round; None: there has been none
     beyond: int = 0  # beams, or cells of its own map, that told of ground where there is no room for any
+    turned_back: bool = False  # lest it does not come home
 
     def classes_on(self, frame: GridFrame) -> NDArray[np.uint8]:
         """Return its map as ``(R, C)`` of a grid of the observer's."""

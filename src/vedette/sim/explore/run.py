@@ -108,6 +108,7 @@ def _view(simulation: ExploreSimulation, i: int, ways: bool) -> RobotView:
         left_out(mission.left_out, sample.name),
         mission.frontiers,
         mission.own.beyond,
+        simulation.network.agents[i].ending is Outcome.SPENT,
     )
 
 
