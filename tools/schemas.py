@@ -20,6 +20,7 @@ from bench.crowds import CrowdResult
 from bench.decomposition import Shares
 from bench.large.cases import LargeResult
 from bench.latency import LatencyReport
+from bench.monitoring import FieldRun
 from bench.scale.report import ScaleReport
 from bench.stonesoup.__main__ import StoneSoupReport
 from vedette.net.results import RobotSummary, TracksFound
@@ -54,6 +55,7 @@ KINDS: Mapping[str, type] = {
     "bench-crowd": CrowdResult,
     "bench-decomposition": Shares,
     "bench-large": LargeResult,
+    "bench-monitoring": FieldRun,
 }
 
 

@@ -9,7 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
-from bench.scale import mapping, search, tracking, trees
+from bench.scale import mapping, monitoring, search, tracking, trees
 from bench.scale.edges import whole_sizes
 from bench.scale.post import Tally, run_round
 from bench.scale.team import Lots, Team
@@ -40,7 +40,12 @@ class Domain(Protocol):
         """Return a platform a lot."""
 
 
-DOMAINS: dict[str, Domain] = {"mapping": mapping, "tracking": tracking, "search": search}
+DOMAINS: dict[str, Domain] = {
+    "mapping": mapping,
+    "tracking": tracking,
+    "search": search,
+    "monitoring": monitoring,
+}
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ pub mod align;
 pub mod components;
 pub mod coverage;
 pub mod distance;
+pub mod field;
 pub mod frontier;
 pub mod lidar;
 pub mod misses;
@@ -22,6 +23,7 @@ fn _kernels(m: &Bound<'_, PyModule>) -> PyResult<()> {
     components::register(m)?;
     coverage::register(m)?;
     distance::register(m)?;
+    field::register(m)?;
     frontier::register(m)?;
     lidar::register(m)?;
     misses::register(m)?;

@@ -260,3 +260,25 @@ def align_counts(
     faces: tuple[NDArray[np.float64], NDArray[np.uint8]],
     transforms: NDArray[np.float64],
 ) -> NDArray[np.int64]: ...
+
+# field
+def field_factor(
+    band: NDArray[np.float64],
+    starts: NDArray[np.int64],
+    columns: NDArray[np.int64],
+    weights: NDArray[np.float64],
+    information: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], float]: ...
+def field_covariance(
+    factor: NDArray[np.float64],
+    starts: NDArray[np.int64],
+    columns: NDArray[np.int64],
+    weights: NDArray[np.float64],
+) -> NDArray[np.float64]: ...
+def field_gains(
+    covariance: NDArray[np.float64],
+    starts: NDArray[np.int64],
+    places: NDArray[np.int64],
+    roots: NDArray[np.float64],
+) -> NDArray[np.float64]: ...
+def field_variances(factor: NDArray[np.float64]) -> NDArray[np.float64]: ...

@@ -13,7 +13,7 @@ import yaml
 from tests.support.commands import FILES, Command, check_files, refused
 from tests.support.monitor_scenes import SMALL
 from tests.support.places import ROOT
-from vedette.missions.monitor.case import DEFAULT, default_case, read_case
+from vedette.domains.monitoring.case import DEFAULT, default_case, read_case
 
 QUICK = ("--no-compare", "--max-time", 6)
 
@@ -49,7 +49,7 @@ def test_a_mission_leaves_every_file_and_is_compared_with_all_other_ways(vedette
     assert {path.name for path in Path("out").iterdir()} == FILES["monitor"] | {"mission.gif"}
     told = summary("out")
     assert told["completed"] is True
-    assert set(told["comparison"]) == {"none", "shared", "negotiated", "lawnmower", "random"}
+    assert set(told["comparison"]) == {"none", "shared", "negotiated", "optimum", "lawnmower", "random"}
     own = told["comparison"]["negotiated"]
     assert own == {field: told[field] for field in own}
     assert own["rmse"] < 3.0  # the field's own deviation
@@ -117,7 +117,6 @@ VEHICLE = SMALL["vehicles"][0]
             ("vehicles[0].budget.per_metre: energy is never spent",),
         ),
         ({"vehicles": [VEHICLE | {"budget": {"path": 5, "energy": 5}}]}, ("vehicles[0].budget.energy",)),
-        ({"step": 0.25}, ("step: must be a multiple",)),
         ({"layers": 9}, ("layers: at most one a step",)),
         ({"gama": 0.5}, ("unknown field 'gama'", "gamma")),
     ],
@@ -130,6 +129,7 @@ def test_a_scenario_that_cannot_be_is_refused_in_a_line(
 
 def test_a_horizon_that_a_round_does_not_leave_time_for_is_refused_in_a_line(vedette: Command) -> None:
     refused(vedette(scenario(horizon=2)), "horizon: a round of 2 vehicles takes")
+    refused(vedette(scenario(step=0.25)), "step: must be a multiple of the simulator", "got 0.25")
 
 
 def test_a_field_that_cannot_be_measured_is_refused_in_a_line(vedette: Command) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from vedette.domains.monitoring.case import MonitorCase, made
 from vedette.domains.monitoring.scenario import MonitorScenario
-from vedette.missions.monitor.case import MonitorCase, made
 from vedette.scenario import as_scenario
 
 SMALL: dict[str, Any] = {

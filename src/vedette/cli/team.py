@@ -251,6 +251,11 @@ def _domain_command(declared: DomainEntry) -> click.Command:
         **how: Any,
     ) -> None:
         domain, options = declared.load(), DomainOptions(name=declared.name, **how)
+        if options.coordination in declared.simulated:
+            raise InputError(
+                f"--coordination {options.coordination}: nobody on a network can work it out; see `vedette "
+                f"{declared.name}`"
+            )
         case = domain.case(scenario_path)
         size = len(case.names)
         tell_unsaid(options.coordination, size, options.scheme, fusion=options.fusion, lease=lease)

@@ -11,8 +11,10 @@ from typing import Any, Generic, Protocol, TypeVar
 from msgspec import Struct
 
 from vedette.agent import Agent, FlightBehaviour, Pace
+from vedette.agent.body import TICK
 from vedette.agent.mission import FlightMission
 from vedette.agent.terms import Terms, flat
+from vedette.errors import InputError
 from vedette.fusion.seals import Notary
 from vedette.missions.flying import RoundTimes
 from vedette.missions.pairs import SCHEME
@@ -105,6 +107,14 @@ class FlightTeam(ABC, Generic[CaseT]):
     case: CaseT
     options: TeamOptions
     times: RoundTimes
+
+    def __post_init__(self) -> None:
+        """Raise InputError for a step that no simulator can make."""
+        ticks = self.case.step / TICK
+        if abs(ticks - round(ticks)) > 1e-6:
+            raise InputError(
+                f"step: must be a multiple of the simulator's tick of {TICK:g} s; got {self.case.step:g}"
+            )
 
     @property
     @abstractmethod

@@ -42,7 +42,7 @@ def vehicle(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robot
     """
     assert config.domain is not None
     domain = domain_of(config.domain.name)
-    check_word("domain.coordination", config.domain.coordination, domain.coordinations)
+    check_word("domain.coordination", config.domain.coordination, domain.networked)
     case = domain.case(None if config.scenario is None else folder / config.scenario)
     check_number(config.robot, len(case.names))
     team = domain.team(case, config.domain, round_times(config.links, speed))

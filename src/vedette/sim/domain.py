@@ -21,6 +21,7 @@ from vedette.record.log import Sink
 from vedette.record.mcap import Place
 from vedette.record.summary import Setting
 from vedette.sim.domains import DomainEntry
+from vedette.sim.network import Spawn
 from vedette.sim.vehicles import Vehicles
 
 ContentT = TypeVar("ContentT", bound=Struct)
@@ -41,6 +42,7 @@ class Domain(ABC, Generic[CaseT, ContentT, SceneT, SnapshotT, ReportT]):
     def __init__(self, declared: DomainEntry) -> None:
         """Take its name, and the ways of coordination that it knows."""
         self.name, self.coordinations = declared.name, declared.coordinations
+        self.networked = [word for word in declared.coordinations if word not in declared.simulated]
 
     # -- a mission ----------------------------------------------------------------------------------
 
@@ -59,6 +61,14 @@ class Domain(ABC, Generic[CaseT, ContentT, SceneT, SnapshotT, ReportT]):
         Raises:
             InputError: these options cannot be.
         """
+
+    def spawn(self, team: FlightTeam[CaseT]) -> Spawn:
+        """Return who makes agents in the simulator, where an oracle may look into all of them at once.
+
+        Raises:
+            InputError: the oracle cannot do what the team's options ask for.
+        """
+        return team.assemble
 
     @abstractmethod
     def vehicles(self, case: CaseT, seed: int, over: Callable[[float], Outcome | None]) -> Vehicles:

@@ -52,7 +52,7 @@ class DomainSimulation(Simulation, Generic[CaseT]):
         self.domain, self.case = domain, case
         self.team = domain.team(case, setup.options, setup.times)
         self.vehicles = domain.vehicles(case, setup.seed, self._over_at_the_end)
-        super().__init__(self.team.assemble, self.vehicles, setup)
+        super().__init__(domain.spawn(self.team), self.vehicles, setup)
 
     @property
     def missions(self) -> list[FlightMission[Any, Any, Any]]:

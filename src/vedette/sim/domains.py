@@ -23,6 +23,7 @@ class DomainEntry:
     seeds: str  # what the seed decides
     at: str  # "package.module:CLASS", a ``vedette.sim.domain.Domain``
     coordinations: tuple[str, ...] = ("none", "shared", "negotiated")
+    simulated: tuple[str, ...] = ()  # of these, those that only a simulator can have
 
     def load(self) -> Domain[Any, Any, Any, Any, Any]:
         """Return the domain itself."""
@@ -40,7 +41,8 @@ _ALL = (
         "Afterwards the same is done with every other way of coordination, to compare.",
         "a field that is drawn, and all chance",
         "vedette.sim.monitor.domain:Monitor",
-        ("none", "shared", "negotiated", "lawnmower", "random"),
+        ("none", "shared", "negotiated", "optimum", "lawnmower", "random"),
+        ("optimum",),
     ),
 )
 DOMAINS: Mapping[str, DomainEntry] = {each.name: each for each in _ALL}

@@ -35,8 +35,3 @@ class Factor:
         """Return ``A^-1 b``, for one right side (n,) or many (n, m)."""
         solution: Floats = self._lu.solve(right)
         return solution
-
-    def covariance(self, rows: sp.csr_matrix) -> Floats:
-        """Return ``H A^-1 H'``, dense (m, m), of a few sparse rows H (m, n)."""
-        product = rows @ self.solve(rows.toarray().T)
-        return np.asarray(0.5 * (product + product.T))

@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 
 from vedette.errors import InputError
 from vedette.kernels.misses import CERTAIN, Misses, MissesCodec, SparseMisses
+from vedette.maps import GridFrame
 from vedette.number import many
+from vedette.problem import Reach
 
 Impact: TypeAlias = SparseMisses  # keys spot * layers + layer, numbers in units of information; (V124)
 NOTHING = Impact(np.empty(0, np.uint32), np.empty(0, np.uint8))
@@ -36,6 +38,23 @@ def impact_of(spots: NDArray[np.int64], layers: NDArray[np.int64], each: int, of
     keys, counts = np.unique(spots * of + layers, return_counts=True)
     levels: Misses = np.minimum(counts * each, CERTAIN).astype(np.uint8)
     return Impact(keys.astype(np.uint32), levels)
+
+
+def clip(impact: Impact, frame: GridFrame, layers: int, reach: Reach) -> Impact:
+    """Keep what is measured in cells that any of the boxes touches; spots of all kinds.
+
+    Args:
+        impact: what to send.
+        frame: the belief's grid.
+        layers: the belief's.
+        reach: boxes lowest x, lowest y, highest x, highest y [m], team frame.
+    """
+    row, col = np.divmod(impact.keys // np.uint32(layers) % np.uint32(frame.size), np.uint32(frame.cols))
+    inside = np.zeros(len(row), np.bool_)
+    for x0, y0, x1, y1 in reach:
+        (row0, col0), (row1, col1) = frame.cell(x0, y0), frame.cell(x1, y1)
+        inside |= (row0 <= row) & (row <= row1) & (col0 <= col) & (col <= col1)
+    return impact if inside.all() else Impact(impact.keys[inside], impact.misses[inside])
 
 
 def check_claim(impact: Impact, most: int, robots: int) -> None:

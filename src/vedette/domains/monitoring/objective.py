@@ -9,17 +9,17 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.domains.monitoring.belief import FieldBelief, with_information
-from vedette.domains.monitoring.factor import Factor
-from vedette.domains.monitoring.impact import NOTHING, Impact
+from vedette.domains.monitoring.banded import BandedField, Looks, Posterior
+from vedette.domains.monitoring.belief import FieldBelief
+from vedette.domains.monitoring.impact import NOTHING, Impact, clip
 from vedette.domains.monitoring.worth import Patrol
 from vedette.kernels import coverage
-from vedette.kernels.misses import CERTAIN
-from vedette.problem import Objective
+from vedette.problem import Objective, Reach
 
 Floats = NDArray[np.float64]
+Units = NDArray[np.int64]
 
-_KEPT = 32  # factors of one round
+_KEPT = 32  # posteriors of one round
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,19 +31,31 @@ class MonitoringBelief:
     unit: float  # of information in impacts [1 / unit^2]
 
     @cached_property
-    def posteriors(self) -> dict[bytes, Factor]:
-        """Factors of ``L + W' diag(y) W`` found in this round, by y."""
+    def banded(self) -> BandedField:
+        """The field, ready to be factorised."""
+        return BandedField(self.field)
+
+    @cached_property
+    def posteriors(self) -> dict[bytes, Posterior]:
+        """The field with ``W' diag(y) W`` more, found in this round, by y."""
         return {}
 
-    def posterior(self, units: NDArray[np.int64]) -> Factor:
-        """Return the factor of ``L + W' diag(units unit) W``, (spots,), made once."""
-        key = np.packbits(units > 0).tobytes() + units[units > 0].tobytes()
+    def posterior(self, units: Units) -> Posterior:
+        """Return the field with ``W' diag(units unit) W`` more, (spots,), factorised once."""
+        some = np.flatnonzero(units)
+        key = some.tobytes() + units[some].tobytes()
         if key not in self.posteriors:
             if len(self.posteriors) >= _KEPT:
                 self.posteriors.clear()
-            more = self.field.information + self.unit * units
-            self.posteriors[key] = Factor(with_information(self.field, more))
+            self.posteriors[key] = self.banded.posterior(self.unit * units.astype(np.float64))
         return self.posteriors[key]
+
+    def by_layer(self, impact: Impact) -> Units:
+        """Return what an impact comes to by the end of each layer, (layers, spots)."""
+        out = np.zeros((self.patrol.layers, self.field.spots.count), np.int64)
+        for row, looks in zip(out, Looks.of([impact], self.patrol.layers), strict=True):
+            row[looks.spots[looks.places]] = looks.units
+        return out
 
 
 class MonitoringObjective(Objective[MonitoringBelief, Impact]):
@@ -67,55 +79,26 @@ class MonitoringObjective(Objective[MonitoringBelief, Impact]):
         """``a * b``: sums of information, saturating."""
         return Impact(*coverage.combine(*a.sparse, *b.sparse, layers=1))
 
+    def clip(self, belief: MonitoringBelief, impact: Impact, reach: Reach) -> Impact:
+        """Leave out what next to nothing of receivers' gains depends on; docs/monitoring.md, section 3."""
+        return clip(impact, belief.field.model.frame, belief.patrol.layers, reach)
+
     def value(self, belief: MonitoringBelief, impact: Impact) -> float:
         """Return the entropy taken off, discounted."""
-        prior = belief.field.factor.log_det
-        logs = [belief.posterior(units).log_det for units in _by_layer(belief, impact)]
+        units = belief.by_layer(impact)
+        prior = belief.posterior(np.zeros_like(units[0])).log_det
+        logs = [belief.posterior(layer).log_det for layer in units]
         return float(0.5 * belief.patrol.weights @ (np.array(logs) - prior))
 
+    def gains(self, belief: MonitoringBelief, others: Impact, own: Sequence[Looks]) -> Floats:
+        """``value(others * own_k) - value(others)`` for every k; ``own``: theirs by layer, as `Looks.of`."""
+        weighed = [
+            weight * looks.gains(belief.posterior(before), before, belief.unit)
+            for weight, looks, before in zip(belief.patrol.weights, own, belief.by_layer(others), strict=True)
+            if weight > 0.0
+        ]
+        return np.asarray(np.sum(weighed, axis=0))
+
     def values(self, belief: MonitoringBelief, others: Impact, own: Sequence[Impact]) -> Floats:
-        """``value(others * own_k)`` for every k, by one factorisation a layer and small determinants."""
-        gains = np.zeros(len(own))
-        theirs = _by_layer(belief, others)
-        mine = [_by_layer_sparse(belief, impact) for impact in own]
-        for layer, weight in enumerate(belief.patrol.weights):
-            looks = [each[layer] for each in mine]
-            spots = np.unique(np.concatenate([look.spots for look in looks] or [np.empty(0, np.int64)]))
-            if weight == 0.0 or not len(spots):
-                continue
-            before = theirs[layer]
-            covariance = belief.posterior(before).covariance(belief.field.spots.weights[spots])
-            for k, look in enumerate(looks):
-                at = np.searchsorted(spots, look.spots)
-                more = np.minimum(before[look.spots] + look.units, CERTAIN) - before[look.spots]
-                root = np.sqrt(belief.unit * more)
-                inner = np.eye(len(at)) + root[:, None] * covariance[np.ix_(at, at)] * root
-                gains[k] += weight * np.log(np.diag(np.linalg.cholesky(inner))).sum()
-        return self.value(belief, others) + gains
-
-
-@dataclass(frozen=True, eq=False)
-class _Looks:
-    """Units of information at some spots, by the end of a layer."""
-
-    spots: NDArray[np.int64]  # (m,) ascending
-    units: NDArray[np.int64]  # (m,) 1 to 255
-
-
-def _by_layer_sparse(belief: MonitoringBelief, impact: Impact) -> list[_Looks]:
-    """Return what an impact comes to by the end of each layer."""
-    spot, layer = np.divmod(impact.keys.astype(np.int64), belief.patrol.layers)
-    out = []
-    for last in range(belief.patrol.layers):
-        spots, where = np.unique(spot[layer <= last], return_inverse=True)
-        units = np.bincount(where, impact.misses[layer <= last], len(spots)).astype(np.int64)
-        out.append(_Looks(spots, np.minimum(units, CERTAIN)))
-    return out
-
-
-def _by_layer(belief: MonitoringBelief, impact: Impact) -> NDArray[np.int64]:
-    """Return the same as (layers, spots)."""
-    out = np.zeros((belief.patrol.layers, belief.field.spots.count), np.int64)
-    for row, looks in zip(out, _by_layer_sparse(belief, impact), strict=True):
-        row[looks.spots] = looks.units
-    return out
+        """``value(others * own_k)`` for every k, by one factor a layer and small determinants."""
+        return self.value(belief, others) + self.gains(belief, others, Looks.of(own, belief.patrol.layers))

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from vedette.domains.monitoring.platform import lawnmower
-from vedette.domains.monitoring.ways import Place, Way
+from vedette.domains.monitoring.ways import Place, Way, passable
+from vedette.kernels.distance import shortcut, shortest_path
 from vedette.maps import GridFrame
 
 
@@ -38,6 +40,26 @@ def at_random(frame: GridFrame, here: Place, length: float, rng: np.random.Gener
         places.append((float(rng.uniform(x0 + edge, x1 - edge)), float(rng.uniform(y0 + edge, y1 - edge))))
         way = Way((here, *places))
     return way
+
+
+def around(way: Way, frame: GridFrame, blocked: NDArray[np.bool_]) -> Way:
+    """Return a way over the same places that goes round cells which cannot be entered, (R, C).
+
+    Places that are such cells, or that nobody gets to, are left out.
+    """
+    free = ~blocked
+    places = [way.places[0]]
+    for place in way.places[1:]:
+        leg = Way((places[-1], place))
+        if passable(leg, frame, blocked, leg.length) is leg:
+            places.append(place)
+        elif free[frame.cell(*place)]:
+            here, there = (frame.flat(*at) for at in (places[-1], place))
+            path = shortest_path(free, here, there, frame.resolution)
+            if len(path):
+                corners = frame.centres(shortcut(free, path)).tolist()
+                places += [*((x, y) for x, y in corners), place]
+    return Way(tuple(places) if len(places) > 1 else (places[0], places[0]))
 
 
 _MOST = 10_000  # places of a patrol

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import k1
 
+from vedette.domains.monitoring.banded import BandedField, width_of
 from vedette.domains.monitoring.belief import FieldBelief
 from vedette.domains.monitoring.field import FieldModel
 from vedette.domains.monitoring.platform import FieldSensor
@@ -78,6 +79,13 @@ class Outlook:
         cells = (row // self.factor) * self.model.frame.cols + col // self.factor
         return np.concatenate([self.large.of(kind, cells) for kind in self.kinds])
 
+    def deviations(self, known: FieldBelief) -> Floats:
+        """(R, C) Standard deviation of each of the field's cells, worked out on planning cells [unit]."""
+        large = BandedField(self.of(known)).posterior(np.zeros(self.large.count)).deviations
+        rows, cols = self.fine.frame.shape
+        stretched = np.kron(large, np.ones((self.factor, self.factor)))[:rows, :cols]
+        return np.asarray(np.sqrt(np.minimum(stretched**2 + self.apart, self.fine.deviation**2)))
+
     def of(self, known: FieldBelief) -> FieldBelief:
         """Return a belief in planning cells; only what it is sure of counts, the values do not."""
         y = known.information
@@ -86,3 +94,13 @@ class Outlook:
         return FieldBelief(
             self.model, self.large, information, np.zeros(self.large.count), known.dt, known.step
         )
+
+
+def deviations_of(known: FieldBelief) -> Floats:
+    """(R, C) Standard deviation of each cell [unit]; on planning cells, where the field is too large."""
+    if known.model.frame.size * width_of(known) ** 2 <= _MOST_WORK:
+        return BandedField(known).posterior(np.zeros(known.spots.count)).deviations
+    return Outlook(known.model, known.spots).deviations(known)
+
+
+_MOST_WORK = 2e9  # multiplications to factorise a field in a band as it is

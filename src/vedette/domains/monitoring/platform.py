@@ -9,15 +9,19 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.domains.monitoring.banded import Looks
+from vedette.domains.monitoring.field import FieldModel
 from vedette.domains.monitoring.impact import Impact, impact_of, units_of
 from vedette.domains.monitoring.objective import MonitoringBelief, MonitoringObjective
-from vedette.domains.monitoring.ways import Place, Way, fan, passable
+from vedette.domains.monitoring.ways import Place, Way, along, cells_of, cut, fan, passable, reached
 from vedette.errors import InputError
 from vedette.maps import GridFrame
 from vedette.number import is_number
+from vedette.problem import Reach
 
-HYSTERESIS = 0.01  # a new way must gain this share more than the present one
+HYSTERESIS = 0.02  # a new way must gain this share more than the present one, against the rest of the team
 MOST_BEARINGS = 16
+FAR = 3.0  # lengths at which places have next to nothing in common: a correlation of 0.001
 
 
 @dataclass(frozen=True)
@@ -62,6 +66,7 @@ class MonitoringPlatform:
     present: Way | None = None
     ways: list[Way] = field(default_factory=list)  # that are compared; set by prepare
     candidates: list[Impact] = field(default_factory=list)  # what each would bring
+    _looks: list[Looks] = field(default_factory=list)  # the same by layer
 
     def __post_init__(self) -> None:
         if not (is_number(self.speed) and self.speed >= 0.0):
@@ -89,10 +94,15 @@ class MonitoringPlatform:
                 f"monitoring: blocked has shape {self.blocked.shape}; the field has {frame.shape}"
             )
         reach = self.speed * belief.patrol.horizon
-        wanted = [self.carry_over(belief, self.present), *fan(self.here, reach, self.bearings)]
-        ways = (passable(way, frame, self.blocked, min(self.budget, reach)) for way in wanted)
-        self.ways = list(dict.fromkeys(replace(way, step=belief.field.step) for way in ways))
-        self.candidates = [self.impact(belief, way) for way in self.ways]
+        fanned = fan(self.here, reach, self.bearings)
+        lengths = reached(
+            np.array([way.places for way in fanned]), frame, self.blocked, min(self.budget, reach)
+        )
+        ways = [cut(way, far) for way, far in zip(fanned, lengths.tolist(), strict=True)]
+        ways = [replace(way, step=belief.field.step) for way in ways]
+        self.ways = list(dict.fromkeys([cut(self.restated(belief), reach), *ways]))
+        self.candidates = self.impacts(belief, self.ways)
+        self._looks = Looks.of(self.candidates, belief.patrol.layers)
 
     def restated(self, belief: MonitoringBelief) -> Way:
         """Return what is left of the present way, as far as the budget allows, whatever else there is."""
@@ -106,22 +116,39 @@ class MonitoringPlatform:
 
     def impact(self, belief: MonitoringBelief, strategy: Way) -> Impact:
         """The information that measuring along the way would bring, by layer; docs/monitoring.md (V124)."""
+        return self.impacts(belief, [strategy])[0]
+
+    def impacts(self, belief: MonitoringBelief, ways: Sequence[Way]) -> list[Impact]:
+        """Return the same of many ways."""
         frame, patrol = belief.field.model.frame, belief.patrol
         count = math.floor(min(patrol.horizon, self.awake) / self.sensor.every + 1e-9)
         times = self.sensor.every * np.arange(1, count + 1).astype(np.float64)
-        row, col = np.floor(
-            (strategy.at(self.speed * times)[:, ::-1] - (frame.origin_y, frame.origin_x)) / frame.resolution
-        ).T
+        most = max(len(way.places) for way in ways)
+        places = np.array([way.places + way.places[-1:] * (most - len(way.places)) for way in ways])
+        points = along(places, np.tile(self.speed * times, (len(ways), 1)))
+        row, col = cells_of(frame, points.reshape(-1, 2))
         cells = np.clip(row, 0, frame.rows - 1) * frame.cols + np.clip(col, 0, frame.cols - 1)
-        spots = belief.field.spots.of(self.sensor.side, cells.astype(np.int64))
+        spots = belief.field.spots.of(self.sensor.side, cells).reshape(len(ways), count)
         each = units_of(self.sensor.variance, belief.unit)
-        return impact_of(spots, patrol.layer(times - 0.5 * self.sensor.every), each, patrol.layers)
+        layers = patrol.layer(times - 0.5 * self.sensor.every)
+        return [impact_of(row, layers, each, patrol.layers) for row in spots]
 
     def reply(self, belief: MonitoringBelief, others: Impact, current: Way) -> Way:
         """Best way against the rest of the team, ``current`` if none is better; paper, eq. (30)."""
-        values = self.objective.values(belief, others, [self.impact(belief, current), *self.candidates])
-        best = int(np.argmax(values[1:]))
-        return self.ways[best] if values[1 + best] > (1.0 + HYSTERESIS) * values[0] else current
+        gains = self.gains(belief, others)
+        best = int(np.argmax(gains))
+        if current in self.ways:
+            present = float(gains[self.ways.index(current)])
+        else:
+            looks = Looks.of([self.impact(belief, current)], belief.patrol.layers)
+            (present,) = self.objective.gains(belief, others, looks).tolist()
+        return self.ways[best] if gains[best] > (1.0 + HYSTERESIS) * present else current
+
+    def reach(self, belief: MonitoringBelief) -> Reach:
+        """Return where its gains depend on what others measure: within `FAR` lengths of where it can get."""
+        x, y = self.here
+        most = within(self, belief.field.model, belief.patrol.horizon)
+        return ((x - most, y - most, x + most, y + most),)
 
     def slack(self, belief: MonitoringBelief, team: Impact) -> float:
         """No way adds more than this to the team's impact."""
@@ -129,7 +156,13 @@ class MonitoringPlatform:
 
     def gains(self, belief: MonitoringBelief, others: Impact) -> NDArray[np.float64]:
         """What each way adds to the rest of the team."""
-        return self.objective.values(belief, others, self.candidates) - self.objective.value(belief, others)
+        return self.objective.gains(belief, others, self._looks)
+
+
+def within(platform: MonitoringPlatform, model: FieldModel, seconds: float) -> float:
+    """Return how far away what others measure still matters to one that moves for so long [m]."""
+    side = 0.5 * platform.sensor.side * model.frame.resolution
+    return platform.speed * seconds + 2.0 * side + model.frame.resolution + FAR * model.length
 
 
 def lawnmower(corners: Sequence[float], spacing: float) -> Way:

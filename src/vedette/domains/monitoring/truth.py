@@ -19,7 +19,10 @@ from vedette.number import many
 
 Floats = NDArray[np.float64]
 
-_SHIPPED = {Jacksboro: ("jacksboro_fault_dem.npz", "elevation"), Topobathy: ("topobathy.npz", "topo")}
+_SHIPPED = {  # file, array, and whether its first row is the northernmost
+    Jacksboro: ("jacksboro_fault_dem.npz", "elevation", True),
+    Topobathy: ("topobathy.npz", "topo", False),
+}
 _LEAST_COVERED = 0.5  # of a cell, by pixels that hold a number
 _OLDEST = 300  # puffs that are kept, and that there are at the beginning
 
@@ -72,11 +75,12 @@ def read_field(scenario: MonitorScenario, folder: Path) -> Floats | None:
         raster = read_numbers(path, "field")
         return averaged(frame, raster.values, source.extent or raster.extent, f"field.file: {path}")
     if type(source) in _SHIPPED:
-        name, array = _SHIPPED[type(source)]
+        name, array, north_first = _SHIPPED[type(source)]
         from matplotlib.cbook import get_sample_data  # ships the file; takes half a second to import
 
         with np.load(str(get_sample_data(name, asfileobj=False))) as data:
-            return averaged(frame, np.asarray(data[array], np.float64)[::-1], None, name)
+            numbers = np.asarray(data[array], np.float64)
+        return averaged(frame, numbers[::-1] if north_first else numbers, None, name)
     return None
 
 

@@ -43,38 +43,69 @@ class Way:
         return replace(self, places=((x, y), *left))
 
 
-def passable(way: Way, frame: GridFrame, blocked: NDArray[np.bool_] | None, most: float) -> Way:
-    """Return the way as far as it is free and no longer than ``most`` [m]; a blocked cell stops it before.
+def along(places: Floats, distances: Floats) -> Floats:
+    """Return where one is, (W, M, 2), so far (W, M) [m] along each of many ways (W, P, 2)."""
+    legs = np.diff(places, axis=1)
+    lengths = np.hypot(legs[..., 0], legs[..., 1])
+    marks = np.cumsum(lengths, axis=1) - lengths
+    out = np.repeat(places[:, :1], distances.shape[1], axis=1)
+    for leg, length, mark in zip(legs.swapaxes(0, 1), lengths.T, marks.T, strict=True):
+        done = np.clip(distances - mark[:, None], 0.0, length[:, None])
+        out += (
+            leg[:, None]
+            * np.divide(done, length[:, None], out=np.zeros_like(done), where=done > 0.0)[..., None]
+        )
+    return np.asarray(out)
+
+
+def reached(places: Floats, frame: GridFrame, blocked: NDArray[np.bool_] | None, most: float) -> Floats:
+    """Return how far one gets along each of many ways of as many places (W, P, 2), (W,) [m].
 
     Args:
-        way: as one would like to go.
+        places: as one would like to go.
         frame: of the field; beyond it there is no way.
-        blocked: (R, C) cells that cannot be entered; None: a flyer.
+        blocked: (R, C) cells that cannot be entered, before which a way ends; None: a flyer.
         most: budget left [m].
     """
-    length = min(way.length, most)
-    distances = np.linspace(0.0, length, max(2, int(np.ceil(4.0 * length / frame.resolution)) + 1))
-    places = way.at(distances)
-    free = frame.holds(places)
+    lengths = np.minimum(np.hypot(*np.diff(places, axis=1).T).sum(axis=0), most)
+    count = max(2, int(np.ceil(4.0 * lengths.max(initial=0.0) / frame.resolution)) + 1)
+    distances: Floats = lengths[:, None] * np.linspace(0.0, 1.0, count)
+    points = along(places, distances).reshape(-1, 2)
+    free = frame.holds(points)
     if blocked is not None:
-        row, col = (
-            np.floor((places[:, ::-1] - (frame.origin_y, frame.origin_x)) / frame.resolution).astype(int).T
-        )
-        free[free] = ~blocked[row[free], col[free]]
-    free[0] = True
-    reached = float(distances[len(free) - 1 if free.all() else int(np.argmin(free)) - 1])
-    if reached == way.length:
+        row, col = cells_of(frame, points[free])
+        free[free] = ~blocked[row, col]
+    free = free.reshape(distances.shape)
+    free[:, 0] = True
+    last = np.where(free.all(axis=1), count - 1, np.argmin(free, axis=1) - 1)
+    return np.asarray(distances[np.arange(len(places)), last])
+
+
+def cells_of(frame: GridFrame, points: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return row and column of points (m, 2) [m]; they may lie outside the grid."""
+    col, row = np.floor((points - (frame.origin_x, frame.origin_y)) / frame.resolution).astype(np.int64).T
+    return row, col
+
+
+def cut(way: Way, length: float) -> Way:
+    """Return the way up to so far along it [m]."""
+    if length >= way.length:
         return way
     marks = zip(way.places, way._marks, strict=True)
-    [(x, y)] = way.at(np.array([reached])).tolist()
-    return replace(way, places=(*(place for place, mark in marks if mark < reached or mark == 0.0), (x, y)))
+    [(x, y)] = way.at(np.array([length])).tolist()
+    return replace(way, places=(*(place for place, mark in marks if mark < length or mark == 0.0), (x, y)))
+
+
+def passable(way: Way, frame: GridFrame, blocked: NDArray[np.bool_] | None, most: float) -> Way:
+    """Return the way as far as one gets along it, as `reached`."""
+    return cut(way, float(reached(np.array([way.places]), frame, blocked, most)[0]))
 
 
 def fan(place: Place, reach: float, bearings: int) -> list[Way]:
     """Return ways in two legs of half the reach each, the second in any of the same bearings; and staying."""
     turns = 2.0 * np.pi * np.arange(bearings) / bearings
     ahead = 0.5 * reach * np.column_stack((np.cos(turns), np.sin(turns)))
-    ways = [Way((place, place))]
+    ways = [Way((place, place, place))]
     for first in ahead:
         middle = np.array(place) + first
         ways += [Way((place, tuple(middle.tolist()), tuple((middle + second).tolist()))) for second in ahead]

@@ -8,17 +8,19 @@ from math import ceil
 
 import numpy as np
 
+from vedette.domains.monitoring.banded import BandedField
+from vedette.domains.monitoring.case import MonitorCase
 from vedette.domains.monitoring.impact import units_of
-from vedette.domains.monitoring.patrols import at_random, strip
+from vedette.domains.monitoring.patrols import around, at_random, strip
 from vedette.domains.monitoring.planning import Outlook
 from vedette.domains.monitoring.platform import MonitoringPlatform
+from vedette.domains.monitoring.purse import Purse
 from vedette.domains.monitoring.ways import Place, Way
 from vedette.domains.monitoring.worth import Patrol
 from vedette.errors import InputError
 from vedette.fusion.seals import Notary
 from vedette.fusion.steps import Sparse, SparseIntegers, StepEvidence, StepSums, replicated_steps
 from vedette.missions.flights import FlightTeam
-from vedette.missions.monitor.case import MonitorCase, way_of
 from vedette.missions.monitor.monitoring import Monitoring, MonitorPlan
 from vedette.number import many
 
@@ -34,6 +36,7 @@ class MonitorTeam(FlightTeam[MonitorCase]):
 
     def __post_init__(self) -> None:
         """Raise InputError where rounds take longer than plans reach ahead."""
+        super().__post_init__()
         scenario = self.case.scenario
         taken = ceil(self.lead / scenario.step) + 1
         if taken >= scenario.horizon:
@@ -41,6 +44,8 @@ class MonitorTeam(FlightTeam[MonitorCase]):
                 f"horizon: a round of {many(self.size, 'vehicle')} takes {self.lead:.1f} s where links delay "
                 f"by {self.times.link_delay:g} s; plan more than {many(taken, 'step')} of {scenario.step:g} s"
             )
+
+        BandedField(self.plan.outlook.of(self.plan.prior))  # small enough to plan on
 
     @cached_property
     def plan(self) -> MonitorPlan:
@@ -74,7 +79,7 @@ class MonitorTeam(FlightTeam[MonitorCase]):
             case.sensor(robot),
             self.plan,
             self._fusion(robot, boot, notary),
-            vehicle.budget,
+            Purse(vehicle.budget),
             coordination != "shared",
             partial(self._route, robot) if coordination in ("lawnmower", "random") else None,
         )
@@ -82,10 +87,13 @@ class MonitorTeam(FlightTeam[MonitorCase]):
     def _route(self, robot: int, here: Place) -> Way:
         """Return the patrol of one that follows a fixed one."""
         case, vehicle = self.case, self.case.vehicles[robot]
-        length = min(way_of(vehicle.budget), vehicle.speed * case.duration)
+        length = min(Purse(vehicle.budget).reach, vehicle.speed * case.duration)
+        frame = case.scenario.frame
         if self.options.coordination == "random":
-            return at_random(case.scenario.frame, here, length, np.random.default_rng([robot, 7]))
-        return strip(case.scenario.frame, here, robot, len(case.vehicles), length)
+            way = at_random(frame, here, length, np.random.default_rng([robot, 7]))
+        else:
+            way = strip(frame, here, robot, len(case.vehicles), length)
+        return way if vehicle.flies or not case.blocked.any() else around(way, frame, case.blocked)
 
     def _fusion(self, robot: int, boot: int, notary: Notary | None) -> StepEvidence[Sparse]:
         elements = SparseIntegers(self.case.packing.size)

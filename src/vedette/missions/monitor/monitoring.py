@@ -19,12 +19,12 @@ from vedette.domains.monitoring.evidence import FieldPacking
 from vedette.domains.monitoring.impact import FieldImpactCodec, Impact, check_claim
 from vedette.domains.monitoring.objective import MonitoringBelief, MonitoringObjective
 from vedette.domains.monitoring.planning import Outlook
-from vedette.domains.monitoring.platform import FieldSensor, MonitoringPlatform
-from vedette.domains.monitoring.scenario import Budget
+from vedette.domains.monitoring.platform import FieldSensor, MonitoringPlatform, within
+from vedette.domains.monitoring.purse import Purse
 from vedette.domains.monitoring.ways import Place, Way
 from vedette.domains.monitoring.worth import Patrol
 from vedette.fusion.steps import Refilter, Sparse, SparseIntegers, StepEvidence
-from vedette.missions.flying import FlyingMission, SharedBelief
+from vedette.missions.flying import FlyingMission, SharedBelief, box_around
 from vedette.problem import Reach
 
 
@@ -86,7 +86,7 @@ class Monitoring(FlyingMission):
     sensor: FieldSensor  # as it is
     team: MonitorPlan
     fusion: StepEvidence[Sparse]
-    budget: Budget
+    purse: Purse
     shares_plans: bool = True  # False: the team shares beliefs alone
     route: Callable[[Place], Way] | None = None  # a fixed patrol from a place; None: it plans
     strategy: Way = field(default_factory=lambda: Way(((0.0, 0.0),)))
@@ -98,7 +98,6 @@ class Monitoring(FlyingMission):
     _waiting: list[tuple[int, FieldLook]] = field(default_factory=list)
     _planned: bool = False  # the strategy is a way, since a round has been
     _seen: tuple[Place, float] | None = None  # where it was last, and when [s]
-    _gone: float = 0.0  # way so far [m]
 
     def __post_init__(self) -> None:
         outlook, size = self.team.outlook, self.team.packing.size
@@ -119,9 +118,9 @@ class Monitoring(FlyingMission):
         assert isinstance(seen.data, FieldLook)
         here = (pose.x, pose.y)
         if self._seen is not None:
-            self._gone += hypot(here[0] - self._seen[0][0], here[1] - self._seen[0][1])
+            self.purse.gone += hypot(here[0] - self._seen[0][0], here[1] - self._seen[0][1])
         self._seen = here, now
-        if self.awake(now) > 0.0:
+        if self.purse.awake(now) > 0.0:
             self._waiting.append((step_of(seen.time, self.team.dt), seen.data))
 
     def publish(self, now: float) -> None:
@@ -142,29 +141,6 @@ class Monitoring(FlyingMission):
         """Return what is known of the field at a step, by all that this vehicle has published and heard."""
         return self._filter.at(max(step, self.first_step))
 
-    # -- what it can spend --------------------------------------------------------------------------
-
-    def awake(self, now: float) -> float:
-        """Return how long it measures yet if it stays where it is [s]."""
-        budget = self.budget
-        if budget.energy is None:
-            return inf
-        left = budget.energy - budget.per_metre * self._gone - budget.per_second * now
-        if left <= 0.0:
-            return 0.0
-        return left / budget.per_second if budget.per_second > 0.0 else inf
-
-    def left(self, now: float) -> float:
-        """Return the way that it may still go within a horizon from now on [m]."""
-        budget = self.budget
-        if budget.energy is None:
-            return inf if budget.path is None else max(0.0, budget.path - self._gone)
-        if budget.per_metre == 0.0:
-            return inf if self.awake(now) > 0.0 else 0.0
-        ahead = budget.per_second * min(self.awake(now), self.team.patrol.horizon)
-        left = budget.energy - budget.per_metre * self._gone - budget.per_second * now
-        return max(0.0, (left - ahead) / budget.per_metre)
-
     # -- planning -----------------------------------------------------------------------------------
 
     def freeze(self, t0: float) -> MonitoringBelief:
@@ -184,8 +160,9 @@ class Monitoring(FlyingMission):
             present = self.strategy.after(self.vehicle.speed * self.team.dt * (start - self.strategy.step))
         elif self.route is not None:
             present = self.route(here)
-        self.vehicle.awake = max(0.0, self.awake(start * self.team.dt))
-        self.vehicle.place(*here, self.left(start * self.team.dt), present)
+        begin, horizon = start * self.team.dt, self.team.patrol.horizon
+        self.vehicle.awake = self.purse.awake(begin)
+        self.vehicle.place(*here, self.purse.left(begin, horizon), present)
         if self.route is None:
             self.vehicle.prepare(belief)
             self.strategy = self.vehicle.ways[0]
@@ -201,8 +178,12 @@ class Monitoring(FlyingMission):
         return x, y
 
     def reach(self, now: float) -> Reach | None:
-        """Gains depend on measurements anywhere, though little on those far away: no bounds."""
-        return None
+        """Return the box that its gains depend on in a round frozen within ``lead`` of now."""
+        if self._seen is None:
+            return None
+        (x, y), then = self._seen
+        seconds = now - then + self.team.lead + self.team.dt + self.team.patrol.horizon
+        return box_around(x, y, within(self.vehicle, self.team.outlook.model, seconds))
 
     def admit(self, belief: MonitoringBelief, impact: Impact, robots: int) -> None:
         """Refuse more than so many of the team's best sensors measure."""

@@ -8,8 +8,8 @@ from math import ceil
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.domains.monitoring.case import MonitorCase
 from vedette.maps import GridFrame
-from vedette.missions.monitor.case import MonitorCase
 from vedette.record.flights import FlightLog, FlightScene, FlightSnapshot
 from vedette.record.log import Floats
 

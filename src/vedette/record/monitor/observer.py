@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.domains.monitoring.belief import FieldBelief
+from vedette.domains.monitoring.case import MonitorCase
+from vedette.domains.monitoring.content import FieldContent, belief_of
 from vedette.missions.flights import FlightTeam
-from vedette.missions.monitor.case import MonitorCase
 from vedette.outcome import Outcome
 from vedette.record.figures import TeamFigures
 from vedette.record.flights import FlightObserver
 from vedette.record.log import Sink
-from vedette.record.monitor.content import FieldContent, belief_of
 from vedette.record.monitor.log import MonitorLog, MonitorScene, MonitorSnapshot
 from vedette.record.monitor.summary import MonitorQuality, MonitorSummary
 from vedette.record.summary import Setting, Timing
@@ -30,8 +30,7 @@ class MonitorReport:
     timing: Timing
     log: MonitorLog
     truth: NDArray[np.float64]  # (R, C) in the end [unit]; where the field is ages, these [s]
-    mean: NDArray[np.float64]  # (R, C)
-    deviation: NDArray[np.float64]  # (R, C)
+    known: FieldBelief  # what was known in the end
     others: Mapping[str, MonitorLog] = field(default_factory=dict)  # by coordination
 
 
@@ -79,7 +78,6 @@ class MonitorObserver(FlightObserver[FieldContent, MonitorSnapshot, MonitorRepor
     def report(self, outcome: Outcome, timing: Timing, now: float) -> MonitorReport:
         """Return what the mission leaves."""
         scene, known, model = self.log.scene, self._known(), self._case.model
-        deviation = known.deviations(np.arange(scene.frame.size)).reshape(scene.frame.shape)
         figures, samples = zip(*((view.figures, view.sample) for view in self.views), strict=True)
         summary = MonitorSummary(
             completed=outcome.completed,
@@ -98,7 +96,7 @@ class MonitorObserver(FlightObserver[FieldContent, MonitorSnapshot, MonitorRepor
             **vars(TeamFigures.of(scene.vehicles, figures, samples)),
         )
         truth = now - self._looked if scene.ages else self._truth.at(known.step)
-        return MonitorReport(summary, timing, self.log, truth, known.mean, deviation)
+        return MonitorReport(summary, timing, self.log, truth, known)
 
     def _known(self) -> FieldBelief:
         """Return the belief of the first vehicle that tells one; else what is known beforehand."""

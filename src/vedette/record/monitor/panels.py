@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from vedette.domains.monitoring.planning import deviations_of
 from vedette.number import many
 from vedette.record import palette
 from vedette.record.canvas import picture, save
@@ -32,17 +33,18 @@ _COLOURS = 200  # of the film
 def field_png(report: MonitorReport, path: Path | str) -> None:
     """Draw the field as it is, as it is taken to be, and how well it is known, with all ways."""
     summary, log = report.summary, report.log
+    mean, deviation = report.known.mean, deviations_of(report.known)
     low, high = (float(of(report.truth)) for of in (np.min, np.max))
     same = Normalize(low, high if high > low else low + 1.0)
     mean_scale = same
     if log.scene.ages:
-        most = float(np.abs(report.mean).max()) or 1.0
+        most = float(np.abs(mean).max()) or 1.0
         mean_scale = Normalize(-most, most)
-    sure = Normalize(0.0, float(report.deviation.max()))
+    sure = Normalize(0.0, float(deviation.max()))
     fields = (
         ("last looked at [s ago]" if log.scene.ages else "the field", report.truth, "viridis", same),
-        (f"taken to be, error {summary.rmse:.3g}", report.mean, "viridis", mean_scale),
-        ("standard deviation", report.deviation, "magma", sure),
+        (f"taken to be, error {summary.rmse:.3g}", mean, "viridis", mean_scale),
+        ("standard deviation", deviation, "magma", sure),
     )
     layout = _layout(log)
     with picture():

@@ -4,22 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
+from functools import partial
 from pathlib import Path
 from typing import Any, cast
 
 from vedette.agent.mission import FlightMission
+from vedette.domains.monitoring.case import MonitorCase, default_case, made, read_case
+from vedette.domains.monitoring.content import FieldContent, check_content, content_of
 from vedette.domains.monitoring.scenario import MonitorScenario
+from vedette.errors import InputError
 from vedette.missions.flights import FlightTeam, TeamOptions
 from vedette.missions.flying import RoundTimes
 from vedette.missions.monitor.assemble import MonitorTeam
-from vedette.missions.monitor.case import MonitorCase, default_case, made, read_case
 from vedette.missions.monitor.monitoring import Monitoring
 from vedette.outcome import Outcome
 from vedette.record.display import Display
 from vedette.record.folder import OutputFolder
 from vedette.record.log import Sink
 from vedette.record.mcap import Place
-from vedette.record.monitor.content import FieldContent, check_content, content_of
 from vedette.record.monitor.live import monitor_display
 from vedette.record.monitor.log import MonitorScene, MonitorSnapshot
 from vedette.record.monitor.mcap import MonitorMcapWriter
@@ -28,7 +30,9 @@ from vedette.record.monitor.summary import MonitorSummary, closing
 from vedette.record.summary import Setting
 from vedette.scenario import as_scenario
 from vedette.sim.domain import Domain
+from vedette.sim.monitor.oracle import FieldOracle, check_optimum
 from vedette.sim.monitor.world import measurers
+from vedette.sim.network import Spawn
 from vedette.sim.vehicles import Vehicles
 
 
@@ -51,6 +55,22 @@ class Monitor(Domain[MonitorCase, FieldContent, MonitorScene, MonitorSnapshot, M
     def team(self, case: MonitorCase, options: TeamOptions, times: RoundTimes) -> FlightTeam[MonitorCase]:
         """Return what all vehicles know beforehand."""
         return MonitorTeam(case, options, times)
+
+    def spawn(self, team: FlightTeam[MonitorCase]) -> Spawn:
+        """Return who makes agents: an oracle, if the optimum is asked for."""
+        if team.options.coordination != "optimum":
+            return team.assemble
+        check_optimum(team.case)
+        return partial(FieldOracle().assemble, cast(MonitorTeam, team))
+
+    def others(self, case: MonitorCase, coordination: str) -> Sequence[str]:
+        """Return all others, the optimum only where it can be had."""
+        names = super().others(case, coordination)
+        try:
+            check_optimum(case)
+        except InputError:
+            return [name for name in names if name != "optimum"]
+        return names
 
     def vehicles(self, case: MonitorCase, seed: int, over: Callable[[float], Outcome | None]) -> Vehicles:
         """Return the vehicles at their starts."""

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.missions.monitor.case import MonitorCase
+from vedette.domains.monitoring.case import MonitorCase
 from vedette.missions.monitor.monitoring import FieldLook
 from vedette.outcome import Outcome
 from vedette.sim.simulation import random_streams

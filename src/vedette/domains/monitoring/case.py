@@ -5,17 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from importlib import resources
-from math import inf
 from pathlib import Path
 
 import numpy as np
 import yaml
 from numpy.typing import NDArray
 
-from vedette.agent.body import TICK
 from vedette.domains.monitoring.evidence import FieldPacking
 from vedette.domains.monitoring.field import FieldModel
 from vedette.domains.monitoring.platform import FieldSensor
+from vedette.domains.monitoring.purse import Purse
 from vedette.domains.monitoring.scenario import Budget, FieldFile, MonitorScenario, MonitorVehicle, Plume
 from vedette.domains.monitoring.spots import Spots
 from vedette.domains.monitoring.survey import model_of
@@ -30,7 +29,7 @@ DEFAULT = "monitor.yaml"
 
 @dataclass(frozen=True, eq=False)
 class MonitorCase:
-    """Monitoring that is known to make sense; ``vedette.missions.flights.FlightCase``."""
+    """Monitoring that is known to make sense; a ``FlightCase`` of ``vedette.missions.flights``."""
 
     name: str
     scenario: MonitorScenario
@@ -110,13 +109,13 @@ def made(scenario: MonitorScenario, path: Path) -> MonitorCase:
     """Return what a scenario describes.
 
     Raises:
-        InputError: an area without inside, a step that the simulator cannot make, a name used twice, a start
+        InputError: an area without inside, no time for a step, a name used twice, a start
             outside or where a robot must not be, a sensor, a budget, a model or a field that is none;
             the line names file and field.
     """
     try:
         _check_area(scenario)
-        _check_step(scenario)
+        _check_times(scenario)
         blocked = _blocked(scenario)
         _check_vehicles(scenario, blocked)
         numbers = read_field(scenario, path.parent)
@@ -148,12 +147,7 @@ def _check_area(scenario: MonitorScenario) -> None:
 MOST_CELLS = 100_000
 
 
-def _check_step(scenario: MonitorScenario) -> None:
-    ticks = scenario.step / TICK
-    if abs(ticks - round(ticks)) > 1e-6:
-        raise InputError(
-            f"step: must be a multiple of the simulator's tick of {TICK:g} s; got {scenario.step}"
-        )
+def _check_times(scenario: MonitorScenario) -> None:
     if scenario.duration < scenario.step:
         raise InputError(f"duration: must be at least a step of {scenario.step} s; got {scenario.duration}")
     if scenario.layers > scenario.horizon:
@@ -219,15 +213,8 @@ def _check_budget(where: str, budget: Budget, frame: GridFrame) -> None:
         raise InputError(
             f"{where}.per_metre: energy is never spent where both per_metre and per_second are 0"
         )
-    if (reach := way_of(budget)) < frame.resolution:
+    if (reach := Purse(budget).reach) < frame.resolution:
         raise InputError(
             f"{where}: it lasts for {reach:.3g} m, less than to the next cell at {frame.resolution:g} m; "
             "give more, or leave the vehicle out"
         )
-
-
-def way_of(budget: Budget) -> float:
-    """Return the way that a budget allows for if nothing else is spent [m]."""
-    if budget.energy is not None:
-        return budget.energy / budget.per_metre if budget.per_metre > 0.0 else inf
-    return inf if budget.path is None else budget.path
