@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from vedette import InputError
-from vedette.domains.monitoring.banded import BandedField, Looks
+from vedette.domains.monitoring.banded import BandedField, LayerLooks
 from vedette.domains.monitoring.belief import FieldBelief
 from vedette.domains.monitoring.field import FieldModel
 from vedette.domains.monitoring.impact import NOTHING, impact_of
@@ -84,7 +84,7 @@ def test_gains_of_ways_are_differences_of_determinants() -> None:
     ]
     before = rng.integers(0, 3, belief.spots.count) * 100
     posterior = banded.posterior(0.1 * before)
-    for looks, last in zip(Looks.of(impacts, 2), range(2), strict=True):
+    for looks, last in zip(LayerLooks.of(impacts, 2), range(2), strict=True):
         gains = looks.gains(posterior, before, 0.1)
         for impact, gain in zip(impacts, gains, strict=True):
             spot, layer = np.divmod(impact.keys.astype(np.int64), 2)

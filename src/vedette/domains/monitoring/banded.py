@@ -97,7 +97,7 @@ class Posterior:
 
 
 @dataclass(frozen=True, eq=False)
-class Looks:
+class LayerLooks:
     """Several impacts by the end of one layer: at which spots, and how many units, impact after impact."""
 
     spots: Indices  # (m,) of any of them, ascending
@@ -106,7 +106,7 @@ class Looks:
     units: Indices  # 1 to 255
 
     @classmethod
-    def of(cls, impacts: Sequence[Impact], layers: int) -> list[Looks]:
+    def of(cls, impacts: Sequence[Impact], layers: int) -> list[LayerLooks]:
         """Return what impacts come to by the end of each layer."""
         counts = np.array([len(impact.keys) for impact in impacts], np.int64)
         whose = np.repeat(np.arange(len(impacts)), counts)
@@ -121,7 +121,7 @@ class Looks:
         ]
 
     @classmethod
-    def _by(cls, spot: Indices, whose: Indices, units: Indices, count: int) -> Looks:
+    def _by(cls, spot: Indices, whose: Indices, units: Indices, count: int) -> LayerLooks:
         spots, place = np.unique(spot, return_inverse=True)
         pairs, where = np.unique(whose * max(len(spots), 1) + place, return_inverse=True)
         summed = np.minimum(np.bincount(where, units, len(pairs)).astype(np.int64), CERTAIN)

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.domains.monitoring.banded import BandedField, Looks, Posterior
+from vedette.domains.monitoring.banded import BandedField, LayerLooks, Posterior
 from vedette.domains.monitoring.belief import FieldBelief
 from vedette.domains.monitoring.impact import NOTHING, Impact, clip
 from vedette.domains.monitoring.worth import Patrol
@@ -53,7 +53,7 @@ class MonitoringBelief:
     def by_layer(self, impact: Impact) -> Units:
         """Return what an impact comes to by the end of each layer, (layers, spots)."""
         out = np.zeros((self.patrol.layers, self.field.spots.count), np.int64)
-        for row, looks in zip(out, Looks.of([impact], self.patrol.layers), strict=True):
+        for row, looks in zip(out, LayerLooks.of([impact], self.patrol.layers), strict=True):
             row[looks.spots[looks.places]] = looks.units
         return out
 
@@ -90,8 +90,8 @@ class MonitoringObjective(Objective[MonitoringBelief, Impact]):
         logs = [belief.posterior(layer).log_det for layer in units]
         return float(0.5 * belief.patrol.weights @ (np.array(logs) - prior))
 
-    def gains(self, belief: MonitoringBelief, others: Impact, own: Sequence[Looks]) -> Floats:
-        """``value(others * own_k) - value(others)`` for every k; ``own``: theirs by layer, as `Looks.of`."""
+    def gains(self, belief: MonitoringBelief, others: Impact, own: Sequence[LayerLooks]) -> Floats:
+        """``value(others * own_k) - value(others)`` for every k; ``own``: as `LayerLooks.of`."""
         weighed = [
             weight * looks.gains(belief.posterior(before), before, belief.unit)
             for weight, looks, before in zip(belief.patrol.weights, own, belief.by_layer(others), strict=True)
@@ -101,4 +101,6 @@ class MonitoringObjective(Objective[MonitoringBelief, Impact]):
 
     def values(self, belief: MonitoringBelief, others: Impact, own: Sequence[Impact]) -> Floats:
         """``value(others * own_k)`` for every k, by one factor a layer and small determinants."""
-        return self.value(belief, others) + self.gains(belief, others, Looks.of(own, belief.patrol.layers))
+        return self.value(belief, others) + self.gains(
+            belief, others, LayerLooks.of(own, belief.patrol.layers)
+        )

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.domains.monitoring.banded import Looks
+from vedette.domains.monitoring.banded import LayerLooks
 from vedette.domains.monitoring.field import FieldModel
 from vedette.domains.monitoring.impact import Impact, impact_of, units_of
 from vedette.domains.monitoring.objective import MonitoringBelief, MonitoringObjective
@@ -66,7 +66,7 @@ class MonitoringPlatform:
     present: Way | None = None
     ways: list[Way] = field(default_factory=list)  # that are compared; set by prepare
     candidates: list[Impact] = field(default_factory=list)  # what each would bring
-    _looks: list[Looks] = field(default_factory=list)  # the same by layer
+    _looks: list[LayerLooks] = field(default_factory=list)  # the same by layer
 
     def __post_init__(self) -> None:
         if not (is_number(self.speed) and self.speed >= 0.0):
@@ -102,7 +102,7 @@ class MonitoringPlatform:
         ways = [replace(way, step=belief.field.step) for way in ways]
         self.ways = list(dict.fromkeys([cut(self.restated(belief), reach), *ways]))
         self.candidates = self.impacts(belief, self.ways)
-        self._looks = Looks.of(self.candidates, belief.patrol.layers)
+        self._looks = LayerLooks.of(self.candidates, belief.patrol.layers)
 
     def restated(self, belief: MonitoringBelief) -> Way:
         """Return what is left of the present way, as far as the budget allows, whatever else there is."""
@@ -140,7 +140,7 @@ class MonitoringPlatform:
         if current in self.ways:
             present = float(gains[self.ways.index(current)])
         else:
-            looks = Looks.of([self.impact(belief, current)], belief.patrol.layers)
+            looks = LayerLooks.of([self.impact(belief, current)], belief.patrol.layers)
             (present,) = self.objective.gains(belief, others, looks).tolist()
         return self.ways[best] if gains[best] > (1.0 + HYSTERESIS) * present else current
 

@@ -42,7 +42,7 @@ class FieldOracle:
         agent = team.assemble(robot, boot)
         assert isinstance(agent.mission, Monitoring)
         self.vehicles[robot] = agent.mission.vehicle
-        agent.mission.platform = Told(agent.mission.vehicle, self)
+        agent.mission.platform = FieldDictated(agent.mission.vehicle, self)
         return agent
 
     def way(self, vehicle: MonitoringPlatform, belief: MonitoringBelief, current: Way) -> Way:
@@ -59,7 +59,7 @@ class FieldOracle:
 
 
 @dataclass(frozen=True, eq=False)
-class Told:
+class FieldDictated:
     """A vehicle that does what the oracle says; ``vedette.agent.mission.RoundPlatform``."""
 
     vehicle: MonitoringPlatform
