@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import msgspec
+import numpy as np
 import pytest
 
 from tests.support.agent_team import FRAME, toy_agent
 from tests.support.notaries import certified
 from vedette.agent import Agent, beacons, messages, step
 from vedette.agent.effects import Send, Shun, TrafficKind
-from vedette.agent.events import CertificatesRevoked, Pose, TreeChanged
+from vedette.agent.events import CertificatesRevoked, Message, Pose, TreeChanged
 from vedette.agent.messages import Beacon, Vouched
 from vedette.fusion.particulars import Capabilities
 from vedette.fusion.signed import SignedEvidence
+from vedette.kernels.tiles import TiledGrid
 
 
 def agent(robot: int, neighbours: tuple[int, ...]) -> Agent:
@@ -22,6 +24,12 @@ def agent(robot: int, neighbours: tuple[int, ...]) -> Agent:
     made.mission.fusion = SignedEvidence(robot, 1, FRAME.shape, 4, notary=notary, limits=limits)
     step(made, [TreeChanged(1, None, neighbours, 3)], 0.0)
     return made
+
+
+def evidence(robot: Agent) -> SignedEvidence:
+    """What it has signed, and holds."""
+    assert isinstance(robot.mission.fusion, SignedEvidence)
+    return robot.mission.fusion
 
 
 def told(robot: Agent, x: float, n: int = 1) -> bytes:
@@ -67,6 +75,7 @@ def test_who_changes_a_signed_beacon_is_shunned_and_named(chain: tuple[Agent, Ag
 def test_an_old_signed_beacon_that_is_said_again_is_no_news(chain: tuple[Agent, Agent, Agent]) -> None:
     maker, _, hearer = chain
     old, new = told(maker, 3.0), told(maker, 4.0)
+    beacons.hear(hearer, 1, old, 0.5)
     beacons.hear(hearer, 1, new, 1.0)
     beacons.hear(hearer, 1, old, 60.0)
     assert place(hearer, 0) == 4.0
@@ -92,18 +101,18 @@ def test_an_unsigned_beacon_is_passed_on_within_what_its_robot_can_have_driven(
     assert place(hearer, 0) == (x if believed else 3.0)
 
 
-def test_one_beacon_in_four_is_signed_and_a_lie_between_does_not_hide_the_next(
+def test_one_beacon_in_eight_is_signed_and_a_lie_between_does_not_hide_the_next(
     chain: tuple[Agent, Agent, Agent],
 ) -> None:
     maker, _, hearer = chain
-    said = [told(maker, 3.0) for _ in range(12)]
+    said = [told(maker, 3.0) for _ in range(16)]
     beacons.hear(hearer, 1, said[0], 0.5)
     kinds = [type(messages.decode(payload)) for payload in said]
-    assert kinds == [Vouched] * 4 + ([Beacon] * 3 + [Vouched]) * 2
-    maker.beacons = 100
-    beacons.hear(hearer, 1, told(maker, 3.0, 4), 1.0)
-    beacons.hear(hearer, 1, messages.encode(Beacon(0, 1, 119, 330, 100, 0, 0, 20, 50, ())), 1.2)
-    beacons.hear(hearer, 1, told(maker, 3.1, 4), 2.0)
+    assert kinds == [Vouched] * 4 + [Beacon] * 3 + [Vouched] + [Beacon] * 7 + [Vouched]
+    maker.beacons = 96
+    beacons.hear(hearer, 1, told(maker, 3.0, 8), 1.0)
+    beacons.hear(hearer, 1, messages.encode(Beacon(0, 1, 127, 330, 100, 0, 0, 20, 50, ())), 1.2)
+    beacons.hear(hearer, 1, told(maker, 3.1, 8), 2.0)
     assert place(hearer, 0) == pytest.approx(3.1)
 
 
@@ -113,3 +122,28 @@ def test_nobody_believes_a_beacon_of_a_robot_that_is_revoked(chain: tuple[Agent,
     assert beacons.hear(hearer, 1, told(maker, 3.0), 1.0) == []
     assert place(hearer, 0) is None
     assert set(hearer.complaints) == {0}
+
+
+def test_where_a_robot_is_goes_with_its_evidence_and_then_beacons_need_no_signature(
+    chain: tuple[Agent, Agent, Agent],
+) -> None:
+    maker, _, hearer = chain
+    beacons.hear(hearer, 1, told(maker, 3.0), 1.0)
+    maker.beacons = 22
+    told(maker, 6.0)
+    evidence(maker).set_out(10, 30)
+    evidence(maker).publish(TiledGrid.of(np.full(FRAME.shape, -20, np.int8)), None, None)
+    for k in range(3):
+        for a, b in ((maker, hearer), (hearer, maker)):
+            evidence(a).set_neighbours([b.robot])
+            data = evidence(a).outgoing(b.robot, float(k))
+            step(b, [TreeChanged(1, None, (a.robot, 1), 3)], 8.0)
+            if data is not None:
+                step(b, [Message(a.robot, messages.encode(messages.Evidence(data)))], 8.0)
+    plain = told(maker, 6.4)
+    assert isinstance(messages.decode(plain), Beacon)
+    far = messages.encode(Beacon(0, 1, 25, 900, 100, 0, 0, 20, 50, ()))
+    beacons.hear(hearer, 1, far, 8.5)
+    assert place(hearer, 0) == 3.0
+    beacons.hear(hearer, 1, plain, 8.5)
+    assert place(hearer, 0) == 6.4

@@ -83,7 +83,6 @@ CHANGES: dict[str, Change] = {
     "one entry more": lambda told: told._replace(data=told.data + OTHER, version=told.version + 1),
     "signature": lambda told: told._replace(seal=told.seal._replace(signature=bytes(64))),
     "time": lambda told: told._replace(seal=told.seal._replace(time=told.seal.time + 1)),
-    "root": lambda told: told._replace(seal=told.seal._replace(root=bytes(16))),
     "certificate": lambda told: told.certified(certified(1, lambda: 0.0).certificate),
 }
 

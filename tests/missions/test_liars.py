@@ -6,19 +6,21 @@ import pytest
 
 from tests.support.liars import MODES, Ending, play, without
 
-LIES = sorted(MODES.keys() - {"dead", "honest"})
+LIES = sorted(MODES.keys() - {"dead", "dead between", "honest"})
+SCHEMES = ("fork", "async", "jacobi")
 NAMED_WITHIN = 30.0  # [s]
 
 
-def check(mode: str, robots: int, seed: int) -> None:
+def check(mode: str, robots: int, seed: int, scheme: str | None = None) -> Ending:
     """What must hold of every lie."""
-    ending, dead = play(mode, robots, seed), without(robots, seed)
-    about = mode, robots, seed, ending
+    ending, dead = play(mode, robots, seed, scheme), without(mode, robots, seed, scheme)
+    about = mode, robots, seed, scheme, ending
     assert ending.outcome.value == "complete", about
     assert ending.known >= 0.99 * dead.known, about
     assert ending.time <= 1.5 * dead.time, about
     assert ending.wrong <= 0.005, about
     assert is_named(ending), about
+    return ending
 
 
 def is_named(ending: Ending) -> bool:
@@ -36,6 +38,22 @@ def test_a_team_of_three_finishes_and_names_who_lies(mode: str) -> None:
 @pytest.mark.parametrize("mode", LIES)
 def test_teams_finish_and_name_who_lies(mode: str, robots: int, seed: int) -> None:
     check(mode, robots, seed)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("mode", ["claim", "free", "inflate", "notes"])
+def test_teams_name_who_lies_whatever_the_scheme(mode: str, scheme: str, seed: int) -> None:
+    check(mode, 3, seed, scheme)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("robots", [3, 5])
+def test_a_false_sum_that_its_teller_signs_convicts_it_before_all(robots: int, seed: int) -> None:
+    ending = check("sum", robots, seed)
+    assert ending.out == {ending.liar}
 
 
 def test_of_the_honest_nobody_is_named_and_all_are_believed() -> None:

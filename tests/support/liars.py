@@ -1,6 +1,6 @@
 """Exploring teams with one member that lies of its own, or in others' names; all of it follows from a seed.
 
-``python -m tests.support.liars MODE ROBOTS FIRST LAST [POSE_STD]`` plays many, and the same teams with that
+``python -m tests.support.liars MODE ROBOTS FIRST LAST [SCHEME]`` plays many, and the same teams with that
 member dead.
 """
 
@@ -14,14 +14,16 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+from msgspec import structs
 from numpy.typing import NDArray
 
 from tests.support.misbehaving import Dead
 from tests.support.notaries import PlainNotary
 from vedette.agent import Agent, NetworkedAgent, messages
 from vedette.agent.effects import Send
-from vedette.agent.messages import Evidence
+from vedette.agent.messages import Evidence, Negotiate
 from vedette.agent.networked import Output
+from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.views import MOST_STOPS
 from vedette.fusion.signed import SignedEvidence
 from vedette.fusion.trust import Comparison
@@ -34,6 +36,7 @@ from vedette.maps.world import World
 from vedette.missions.explore.assemble import assemble
 from vedette.missions.explore.evidence import CLAMP
 from vedette.missions.explore.exploring import Exploring
+from vedette.negotiation import messages as negotiation
 from vedette.outcome import Outcome
 from vedette.sim.datagrams import Datagrams
 from vedette.sim.explore.simulation import ExploreSetup, ExploreSimulation
@@ -136,6 +139,47 @@ def largest_claim(belief: Any, most: Most) -> SparseMisses:
     return SparseMisses(keys[at], np.full(len(keys), 64, np.uint8))
 
 
+class BoastingObjective(MappingObjective):
+    """Adds the largest claim there can be to whatever is added up."""
+
+    belief: Any = None
+    most: Most | None = None
+
+    def combine(self, a: Any, b: Any) -> Any:
+        """Add up too much."""
+        added = super().combine(a, b)
+        return added if self.belief is None else super().combine(added, largest_claim(self.belief, self.most))
+
+
+class Sums(Exploring):
+    """Tells more than the sum of what it has heard, and signs that it is the sum."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.objective = self._boast = BoastingObjective()
+        self._boast.most = self.most
+
+    def freeze(self, t0: float) -> Any:
+        """Boast of what is to be seen in this round."""
+        self._boast.belief = super().freeze(t0)
+        return self._boast.belief
+
+
+class Inflating(NetworkedAgent):
+    """Tells more than the sum, and signs an account by which it has told nothing that can be checked."""
+
+    def _say(self, send: Send, now: float) -> list[Output]:
+        message, rounds = messages.decode(send.payload), self.agent.rounds
+        if isinstance(message, Negotiate) and rounds.round is not None:
+            mission, belief = self.agent.mission, rounds.round.belief
+            said = negotiation.decode(message.data, mission.codec)
+            if getattr(said, "mu", None) is not None:
+                more = mission.objective.combine(said.mu, largest_claim(belief, mission.most))
+                data = negotiation.encode(structs.replace(said, mu=more), mission.codec)
+                send = replace(send, payload=messages.encode(structs.replace(message, data=data)))
+        return super()._say(send, now)
+
+
 class Poisoning(NetworkedAgent):
     """Changes what it passes on of others."""
 
@@ -160,16 +204,20 @@ class Mode:
     explorer: type[Exploring] = Exploring
     program: type[NetworkedAgent] = NetworkedAgent
     unbounded: bool = False
+    between: bool = False  # others, on a chain: a lie of one who has something to add up
 
 
 MODES: Mapping[str, Mode] = {
     "dead": Mode(program=Dead),
+    "dead between": Mode(program=Dead, between=True),
     "occupied": Mode(Occupied),
     "free": Mode(Free),
     "far": Mode(Far, unbounded=True),
     "notes": Mode(Notes),
     "claim": Mode(Claims),
     "poison": Mode(program=Poisoning),
+    "sum": Mode(Sums, between=True),
+    "inflate": Mode(program=Inflating, between=True),
     "honest": Mode(),
 }
 
@@ -204,7 +252,8 @@ class LyingTeam(ExploreSimulation):
     def _overlaid(self, spawn: Spawn, walls: World | None) -> Network:
         n, setup = len(self.specs), self.setup
         datagrams = Datagrams(n, random_streams(setup.seed, n)[n], (setup.link_delay, setup.link_delay))
-        datagrams.set_links(np.zeros((n, n)))
+        away = np.abs(np.subtract.outer(np.arange(n), np.arange(n)))
+        datagrams.set_links((away > 1).astype(float) if self.mode.between else np.zeros((n, n)))
         self.lives: dict[int, NetworkedAgent] = {}
         timeline = Timeline(Schedule(()), n)
         return OverlaidNetwork(spawn, self.field, datagrams, timeline=timeline, live=self._live)
@@ -298,13 +347,16 @@ class Ending:
     worst: Comparison  # how far two of the honest contradicted each other at most
 
 
-def play(mode: str, robots: int, seed: int, **fields: Any) -> Ending:
+def play(mode: str, robots: int, seed: int, scheme: str | None = None, **fields: Any) -> Ending:
     """Play one mission."""
     rng = np.random.default_rng([seed, 5])
     world = office(rng, 14.0, 12.0)
-    liar = int(rng.integers(robots))
-    how = MODES[mode]
-    setup = ExploreSetup(seed=seed, max_time=AT_MOST, faults=Schedule(()), unbounded=how.unbounded)
+    liar, how = int(rng.integers(robots)), MODES[mode]
+    if how.between:
+        liar = robots // 2
+    setup = ExploreSetup(
+        seed=seed, max_time=AT_MOST, faults=Schedule(()), unbounded=how.unbounded, scheme=scheme
+    )
     specs = [PlatformSpec(name=f"robot-{i + 1}", **fields) for i in range(robots)]
     team = LyingTeam(world, specs, setup, how, liar)
     outcome = team.run(team.look, 5.0)
@@ -314,17 +366,16 @@ def play(mode: str, robots: int, seed: int, **fields: Any) -> Ending:
 
 
 @cache
-def without(robots: int, seed: int, pose_std: float = 0.0) -> Ending:
+def without(mode: str, robots: int, seed: int, scheme: str | None = None) -> Ending:
     """Play the same team with that member dead."""
-    return play("dead", robots, seed, pose_std=pose_std)
+    return play("dead between" if MODES[mode].between else "dead", robots, seed, scheme)
 
 
-def main(mode: str, robots: int, first: int, last: int, pose_std: float = 0.0) -> None:
+def main(mode: str, robots: int, first: int, last: int, scheme: str | None = None) -> None:
     """Print a line a mission."""
     for seed in range(first, last):
         began = time.monotonic()
-        dead = without(robots, seed, pose_std)
-        ending = play(mode, robots, seed, pose_std=pose_std)
+        dead, ending = without(mode, robots, seed, scheme), play(mode, robots, seed, scheme)
         named = ending.named.get(ending.liar)
         others = sorted(set(ending.named) - {ending.liar})
         print(
@@ -339,4 +390,4 @@ def main(mode: str, robots: int, first: int, last: int, pose_std: float = 0.0) -
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], *map(int, sys.argv[2:5]), *map(float, sys.argv[5:]))
+    main(sys.argv[1], *map(int, sys.argv[2:5]), *sys.argv[5:6])

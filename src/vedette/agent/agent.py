@@ -99,6 +99,7 @@ def _hear(agent: Agent, sender: int, payload: bytes, now: float) -> list[Effect]
             return [effect for effects in heard for effect in effects]
         case messages.Evidence(data):
             agent.mission.fusion.receive(sender, data, now)
+            beacons.take_places(agent, now)
             return _without_forger(agent, sender)
         case messages.Call(epoch) if epoch == agent.rounds.tree.epoch and not from_parent:
             return agent.rounds.call(now)
@@ -149,7 +150,8 @@ def _go_on(agent: Agent, pose: Pose, now: float) -> list[Effect]:
         own = beacons.tell(agent, pose)
         effects += [Send(neighbour, TrafficKind.BEACONS, own) for neighbour in agent.rounds.tree.neighbours]
     effects += agent.behaviour.look_out(agent, pose, now)
-    if agent.is_due("share", SHARE_PERIOD, now) and not agent.rounds.busy:
+    shared = agent.signed is not None and now < agent.rounds.began + SHARE_PERIOD  # and a signature is dear
+    if not shared and agent.is_due("share", SHARE_PERIOD, now) and not agent.rounds.busy:
         agent.mission.publish(now)
         for neighbour in agent.rounds.tree.neighbours:
             effects += agent.rounds.news(neighbour, now)

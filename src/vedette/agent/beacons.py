@@ -13,8 +13,8 @@ from vedette.agent.messages import Beacon, Vouched
 from vedette.agent.state import Agent
 from vedette.fusion.seals import BEACON
 
-SIGNED = 4  # one beacon in so many is signed, and all of the first ones, where there are keys
-INTRODUCES = 8  # the first ones bring the certificate
+SIGNED = 8  # one beacon in so many is signed where there are keys, but for what evidence tells of the place
+FIRST, INTRODUCES = 4, 1  # so many of the first ones are signed, and bring the certificate
 
 
 def tell(agent: Agent, pose: Pose) -> bytes:
@@ -35,7 +35,10 @@ def tell(agent: Agent, pose: Pose) -> bytes:
         tuple(offsets.ravel().tolist()),
     )
     data = messages.encode(beacon)
-    if agent.signed is None or (agent.beacons % SIGNED and agent.beacons > SIGNED):
+    if agent.signed is None:
+        return data
+    agent.signed.be_at(beacon.sequence, beacon.x, beacon.y)
+    if agent.beacons > FIRST and (agent.beacons % SIGNED or agent.signed.covers):
         return data
     notary = agent.signed.standing.notary
     certificate = notary.certificate if agent.beacons <= INTRODUCES else b""
@@ -58,8 +61,7 @@ def hear(agent: Agent, sender: int, told: bytes, now: float) -> list[Effect]:
     if message.robot == agent.robot or (passed_on and not agent.mates.is_likely(message, now)):
         return []
     if agent.mates.hear(message, now, sender, passed_on=passed_on):
-        links, proves = agent.rounds.tree.neighbours, agent.signed is None
-        agent.relay.hear(message.robot, told, sender, links, now, proves=proves)
+        agent.relay.hear(message.robot, told, sender, agent.rounds.tree.neighbours, now)
     return []
 
 
@@ -79,5 +81,12 @@ def _hear_vouched(agent: Agent, sender: int, message: Vouched, told: bytes, now:
         agent.signed.standing.complaints[sender] = about
         return [Shun(sender)]
     if agent.mates.hear(beacon, now, sender, signed=True):
-        agent.relay.hear(beacon.robot, told, sender, agent.rounds.tree.neighbours, now)
+        agent.relay.hear(beacon.robot, told, sender, agent.rounds.tree.neighbours, now, proves=True)
     return []
+
+
+def take_places(agent: Agent, now: float) -> None:
+    """Take in where robots are by what they have signed with their evidence."""
+    if agent.signed is not None:
+        for (robot, boot), place in agent.signed.take_places().items():
+            agent.mates.prove(robot, (boot, place.sequence), place.x / 100.0, place.y / 100.0, now)

@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 from vedette.agent.messages import Beacon
 
 MOST_MATES = 1024  # that are kept at most; each has a path of at most 500 points
-MOST_UNPROVED = 16  # beacons after one that is known to be its robot's, that are believed without proof
+MOST_UNPROVED = 24  # beacons after one that is known to be its robot's, that are believed without proof
 ASIDE = 0.5  # and so far from there, beside what the robot can have driven [m]
 Proved = tuple[tuple[int, int], float, float, float]  # boot and sequence, x, y [m], when it came [s]
+OFTEN = 0.25  # beacons come [s]
+PROVES = 5.0  # for so long what is known to be its robot's vouches for others [s]
 SILENT = 3.0  # a mate not heard for so long stands where it was last [s]
 
 
@@ -84,10 +86,17 @@ class Mates:
         if beacon.robot not in self._proved:
             return False
         (boot, sequence), x, y, said = self._proved[beacon.robot]
-        mate, seconds = self._mates[beacon.robot], now - said
+        known, seconds = self._mates.get(beacon.robot), now - said
+        moved = max(seconds, OFTEN * (beacon.sequence - sequence)) + 1.0  # what was signed came late, perhaps
         away = float(np.hypot(beacon.x / 100.0 - x, beacon.y / 100.0 - y))
         follows = beacon.boot == boot and sequence < beacon.sequence <= sequence + MOST_UNPROVED
-        return follows and seconds <= SILENT and away <= ASIDE + mate.speed * (seconds + 1.0)
+        speed = 0.0 if known is None else known.speed
+        return follows and seconds <= PROVES and away <= ASIDE + speed * moved
+
+    def prove(self, robot: int, stamp: tuple[int, int], x: float, y: float, now: float) -> None:
+        """Note where a robot has signed to be [m], by which beacon: boot and sequence."""
+        if robot < self.admitted and stamp > self._proved.get(robot, ((-1, -1), 0.0, 0.0, 0.0))[0]:
+            self._proved[robot] = stamp, x, y, now
 
     def anybody_moves(self) -> bool:
         """Tell whether any mate was on its way when last heard."""

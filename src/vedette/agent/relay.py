@@ -44,18 +44,18 @@ class Relay:
     _going: defaultdict[int, list[bytes]] = field(default_factory=lambda: defaultdict(list))  # by link
 
     def hear(
-        self, robot: int, told: bytes, sender: int, links: Iterable[int], now: float, *, proves: bool = True
+        self, robot: int, told: bytes, sender: int, links: Iterable[int], now: float, *, proves: bool = False
     ) -> None:
         """Take in a mate's beacon, as it came, that is news; it goes on over all other links.
 
-        ``proves``: whose it is; one that does not is of no use far away, where the next comes much later.
+        ``proves``: it is signed; of these there are few, and others are believed by them: all go on.
         """
         self._came_by[robot] = sender
         for link in links:
             if link == sender:
                 continue
             if robot in self._afar.get(link, ()):
-                if not proves or now < self._next.get((link, robot), -inf) - EARLY:
+                if not proves and now < self._next.get((link, robot), -inf) - EARLY:
                     continue
                 self._next[link, robot] = now + AFAR
             self._going[link].append(told)

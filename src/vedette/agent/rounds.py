@@ -92,6 +92,11 @@ class Rounds:
         return self.round is not None
 
     @property
+    def began(self) -> float:
+        """When the last round began that this robot has heard of [s]."""
+        return self._began
+
+    @property
     def stamp(self) -> tuple[int, int]:
         """Epoch and sequence number of the round going on, or of the last one."""
         return self.tree.epoch, self._sequence if self.round is None else self.round.sequence

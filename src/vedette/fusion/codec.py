@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from vedette import wire
 from vedette.fusion.link import MOST_SECTIONS, Greeting, Key, Payload
-from vedette.fusion.merkle import ROOT_BYTES
 from vedette.fusion.packing import MapPacking, PackedBody
 from vedette.fusion.planes import from_planes, planes
 from vedette.fusion.seals import MOST_CERTIFICATE, SIGNATURE_BYTES, Seal
@@ -24,7 +23,7 @@ NUMBER_BITS = 63
 MOST_COUNT = 1 << 53
 
 _FORMAT, _SEALED = 1, 2
-MOST_PARTICULARS = 1 << 14  # [bytes]
+MOST_PARTICULARS, MOST_PLACE = 1 << 14, 64  # [bytes]
 _GREETING, _WANTS, _BODY = 16, 32, 64
 
 
@@ -173,9 +172,11 @@ class _Head:
         ages = np.array([self.number(time + 1) for _ in range(2 * tiles)], np.int64).reshape(-1, 2)
         told = self.number(MOST_PARTICULARS + 2)
         particulars = self.take(told - 1) if told else None
+        size = self.number(MOST_PLACE + 2)
+        place = self.take(size - 1) if size else None
         certificate = self.take(self.number(MOST_CERTIFICATE + 1))
-        seal = Seal(time, self.take(ROOT_BYTES), self.take(SIGNATURE_BYTES))
-        return Voucher(time - ages, particulars, seal, certificate)
+        seal = Seal(time, self.take(SIGNATURE_BYTES))
+        return Voucher(time - ages, particulars, place, seal, certificate)
 
     def rest(self) -> bytes:
         return self._data[self._at :]
@@ -194,5 +195,7 @@ def _put_voucher(head: bytearray, voucher: Voucher) -> None:
     _put(head, [time, *(time - voucher.times).ravel().tolist()])
     _put(head, [0 if voucher.particulars is None else len(voucher.particulars) + 1])
     head += voucher.particulars or b""
+    _put(head, [0 if voucher.place is None else len(voucher.place) + 1])
+    head += voucher.place or b""
     _put(head, [len(voucher.certificate)])
-    head += voucher.certificate + voucher.seal.root + voucher.seal.signature
+    head += voucher.certificate + voucher.seal.signature

@@ -6,20 +6,21 @@ import hashlib
 from collections.abc import Mapping
 
 ROOT_BYTES = 16
+WIDTH = 16  # of a node: each level costs a hash, whatever its length
 _EMPTY = b""  # the hash of a leaf that says nothing, and of a node above nothing else
 
 Nodes = dict[tuple[int, int], bytes]  # by level, 0 the leaves', and number
 
 
 class Merkle:
-    """``node = hash(left, right)`` of a binary tree over ``2**depth`` leaves; equal roots, equal leaves.
+    """``node = hash(its WIDTH children)`` of a tree over ``WIDTH**depth`` leaves; equal roots, equal leaves.
 
     Only what is not empty is held, and a changed leaf costs the hashes on its way to the root.
     """
 
     def __init__(self, leaves: int) -> None:
         """Hold nothing but empty leaves, at least so many."""
-        self._depth = max(leaves - 1, 0).bit_length()
+        self._depth = -(-max(leaves - 1, 0).bit_length() // (WIDTH - 1).bit_length())
         self._nodes: Nodes = {}
 
     def with_leaves(self, leaves: Mapping[int, bytes]) -> tuple[bytes, Nodes]:
@@ -27,9 +28,10 @@ class Merkle:
         nodes: Nodes = {(0, number): _hash(data) if data else _EMPTY for number, data in leaves.items()}
         above = set(leaves)
         for level in range(1, self._depth + 1):
-            above = {number // 2 for number in above}
+            above = {number // WIDTH for number in above}
             for number in above:
-                children = [self._at(nodes, level - 1, 2 * number + side) for side in (0, 1)]
+                first = WIDTH * number
+                children = [self._at(nodes, level - 1, child) for child in range(first, first + WIDTH)]
                 nodes[level, number] = _hash(b"".join(map(_framed, children))) if any(children) else _EMPTY
         return self._at(nodes, self._depth, 0), nodes
 

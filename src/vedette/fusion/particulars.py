@@ -17,9 +17,11 @@ from vedette.kernels.tiles import SIDE, Tiling
 MOST_NOTES = 512
 ABOUT = 5.0  # where a visit is told of, its robot has been so near, some seconds ago [m]
 Cell = Annotated[int, Meta(ge=0, lt=2**31)]
-Place = Annotated[int, Meta(ge=-(2**31), le=2**31)]  # [cm]
+Centimetre = Annotated[int, Meta(ge=-(2**31), le=2**31)]
 Time = Annotated[int, Meta(ge=0, lt=2**62)]  # by the contributor's own clock [0.1 s]
-Note = tuple[Place, Place, Annotated[int, Meta(ge=0, le=2**53)], Time]  # x, y, a number to it, and when
+Note = tuple[
+    Centimetre, Centimetre, Annotated[int, Meta(ge=0, le=2**53)], Time
+]  # x, y, a number to it, and when
 
 
 class Particulars(msgspec.Struct, frozen=True, array_like=True):
@@ -31,6 +33,15 @@ class Particulars(msgspec.Struct, frozen=True, array_like=True):
     notes: Annotated[tuple[Note, ...], Meta(max_length=MOST_NOTES)] = ()
 
 
+class Place(msgspec.Struct, frozen=True, array_like=True):
+    """Where a contributor has said to be, in one of its beacons."""
+
+    sequence: Annotated[int, Meta(ge=0, le=2**53)]  # of the beacon
+    x: Centimetre
+    y: Centimetre
+
+
+_PLACE_DECODER: msgspec.msgpack.Decoder[Place] = msgspec.msgpack.Decoder(Place)
 _DECODER: msgspec.msgpack.Decoder[Particulars] = msgspec.msgpack.Decoder(Particulars)
 encode = msgspec.msgpack.Encoder().encode
 
@@ -38,6 +49,11 @@ encode = msgspec.msgpack.Encoder().encode
 def decode(data: bytes) -> Particulars:
     """Return the particulars; ValueError if they are malformed."""
     return wire.decode(_DECODER, data, "particulars of evidence")
+
+
+def decode_place(data: bytes) -> Place:
+    """Return the place; ValueError if it is malformed."""
+    return wire.decode(_PLACE_DECODER, data, "place of a robot")
 
 
 @dataclass(frozen=True)

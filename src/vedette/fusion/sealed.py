@@ -18,19 +18,21 @@ CORRECTED = 8  # cells of a tile whose firm evidence is taken back at once: the 
 
 
 class SealedSnapshot(Snapshot[np.uint8]):
-    """A snapshot whose tiles, counts and particulars are the leaves of a Merkle tree; the root is signed.
+    """A snapshot whose tiles, counts, particulars and place are leaves of a Merkle tree; the root is signed.
 
     So whoever holds a version can check a difference to a later one by one signature, and pass it on.
     """
 
     def __init__(self, tiling: Tiling, counts_size: int) -> None:
         super().__init__(tiling, counts_size, np.uint8)
-        self.seal = Seal(0, b"", b"")  # for the version that is held
+        self.seal = Seal(0, b"")  # for the version that is held
         self.root = b""
         self.times: dict[int, Times] = {}  # of each tile
         self.particulars = b""
         self._particulars_version = 0
-        self._tree = Merkle(tiling.count + 2)
+        self.place = b""
+        self._place_version = 0
+        self._tree = Merkle(tiling.count + 3)
         self._tried: tuple[Delta[np.uint8], bytes, Nodes] | None = None
 
     def put_seal(self, seal: Seal) -> None:
@@ -43,12 +45,13 @@ class SealedSnapshot(Snapshot[np.uint8]):
         blocks: NDArray[np.uint8],
         counts: NDArray[np.int64] | None,
         particulars: bytes,
+        place: bytes,
         now: int,
         restates: bool = False,
     ) -> Change | None:
         """As the writer: ``write``, at a time [0.1 s], with what it tells beside cells and counts.
 
-        ``restates``: a new version even if there is nothing new but the time.
+        ``restates``: a new version even if there is nothing new but the time and the place.
         """
         delta = self._changed(tiles, blocks, counts)
         told = particulars if particulars != self.particulars else None
@@ -56,8 +59,9 @@ class SealedSnapshot(Snapshot[np.uint8]):
             return None
         if delta is None:
             delta = Delta(self.version, self.version + 1, tiles[:0], blocks[:0] > 0, blocks[:0, 0])
+        at = place if place != self.place else None
         times = np.stack((self._since(delta, now), np.full(len(delta.tiles), now)), axis=1)
-        return self.apply(replace(delta, voucher=Voucher(times, told, Seal(now, b"", b""), b"")))
+        return self.apply(replace(delta, voucher=Voucher(times, told, at, Seal(now, b""), b"")))
 
     def _since(self, delta: Delta[np.uint8], now: int) -> NDArray[np.int64]:
         """Return ``(T,)`` from when on the writer has held to what it firmly says of each tile [0.1 s]."""
@@ -81,6 +85,8 @@ class SealedSnapshot(Snapshot[np.uint8]):
             leaves[self.tiling.count] = delta.counts.astype("<i8").tobytes() if delta.counts.any() else b""
         if delta.voucher.particulars is not None:
             leaves[self.tiling.count + 1] = delta.voucher.particulars
+        if delta.voucher.place is not None:
+            leaves[self.tiling.count + 2] = delta.voucher.place
         root, nodes = self._tree.with_leaves(leaves)
         self._tried = delta, root, nodes
         return root
@@ -103,6 +109,8 @@ class SealedSnapshot(Snapshot[np.uint8]):
         self.times |= {tile: Times(*times) for tile, times in told}
         if voucher.particulars is not None:
             self.particulars, self._particulars_version = voucher.particulars, delta.version
+        if voucher.place is not None:
+            self.place, self._place_version = voucher.place, delta.version
         return change
 
     def since(self, base: int) -> Delta[np.uint8]:
@@ -110,4 +118,5 @@ class SealedSnapshot(Snapshot[np.uint8]):
         delta = super().since(base)
         times = np.array([self.times[tile] for tile in delta.tiles.tolist()], np.int64).reshape(-1, 2)
         told = self.particulars if self._particulars_version > base else None
-        return replace(delta, voucher=Voucher(times, told, self.seal, b""))
+        at = self.place if self._place_version > base else None
+        return replace(delta, voucher=Voucher(times, told, at, self.seal, b""))

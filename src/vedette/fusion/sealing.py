@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Generic, Protocol, TypeVar
 
@@ -79,7 +80,7 @@ class Sealings(ABC, Generic[CopyT, NewsT]):
             return
         self._sealed, time = own.version, own.seal.time
         notary = self.standing.notary
-        own.put_seal(Seal(time, own.root, notary.sign(self.kind, *key, own.version, time, own.root)))
+        own.put_seal(Seal(time, notary.sign(self.kind, *key, own.version, time, own.root)))
         self._certificates[key[0]] = notary.certificate
 
     def with_certificate(self, robot: int, base: int, news: NewsT) -> NewsT:
@@ -93,24 +94,22 @@ class Sealings(ABC, Generic[CopyT, NewsT]):
 
     def admits(self, neighbour: int, key: Key, held: CopyT, news: NewsT) -> bool:
         """Check who has signed the news, and that they can be so; else say whose fault it is."""
-        robot, certificate, seal, notary = key[0], news.certificate, news.seal, self.standing.notary
-        if news.version == held.version:
-            self._compare(key, news.version, held.seal, seal)
-        if not news.base <= held.version < news.version:
-            return True
+        robot = key[0]
         if self.is_gone(robot):
             return False
+        if news.version == held.version:
+            self._compare(key, held, news)
+        if not news.base <= held.version < news.version:
+            return True
         try:
-            if certificate:
-                notary.admit(robot, certificate)
-            notary.check(robot, seal.signature, self.kind, *key, news.version, seal.time, seal.root)
+            if news.certificate:
+                self.standing.notary.admit(robot, news.certificate)
+            self.word(key, news.version, news.seal, held.root_after(news)).check(self.standing.notary, robot)
         except ValueError as error:
-            return self._refuse(neighbour, robot, f"{error}")
-        if held.root_after(news) != seal.root:
-            return self.unlike(neighbour, key, held, news)
+            return self.unlike(neighbour, key, held, news, f"{error}")
         self.doubted.discard(key)
-        if certificate:
-            self._certificates[robot] = certificate
+        if news.certificate:
+            self._certificates[robot] = news.certificate
         try:
             self.admit(news, held)
         except ValueError as error:
@@ -118,37 +117,43 @@ class Sealings(ABC, Generic[CopyT, NewsT]):
             return False
         return True
 
-    def word(self, key: Key, version: int, seal: Seal) -> SignedWord:
+    def word(self, key: Key, version: int, seal: Seal, root: bytes) -> SignedWord:
         """Return a seal as it was signed."""
-        return SignedWord((self.kind, *key, version, seal.time, seal.root), seal.signature)
+        return SignedWord((self.kind, *key, version, seal.time, root), seal.signature)
 
-    def _compare(self, key: Key, version: int, ours: Seal, theirs: Seal) -> None:
-        """Find out whether a contributor has signed a version twice."""
-        if (ours.time, ours.root) == (theirs.time, theirs.root) or not ours.signature:
+    def _compare(self, key: Key, held: CopyT, news: NewsT) -> None:
+        """Find out whether a contributor has signed a version twice; by the whole, which is asked for."""
+        if news.seal != held.seal and news.base:
+            self.doubted.add(key)
             return
-        twice = Twice(self.word(key, version, ours), self.word(key, version, theirs))
-        try:
-            twice.second.check(self.standing.notary, key[0])
-        except ValueError:
-            return  # old news, which nobody believes anyway
-        self.standing.catch(key[0], twice)
+        self.doubted.discard(key)
+        if news.seal == held.seal:
+            return
+        first = self.word(key, held.version, held.seal, held.root)
+        second = self.word(key, news.version, news.seal, self.blank().root_after(news))
+        with suppress(ValueError):  # nobody's word: it changes nothing
+            second.check(self.standing.notary, key[0])
+            self.standing.catch(key[0], Twice(first, second))
 
-    def unlike(self, neighbour: int, key: Key, held: CopyT, news: NewsT) -> bool:
-        """Refuse news that lead to another root than was signed.
+    def unlike(self, neighbour: int, key: Key, held: CopyT, news: NewsT, why: str) -> bool:
+        """Refuse news that their contributor has not signed, as this robot sees it.
 
-        It may be that what this robot holds is another evidence of one version: then the whole tells.
+        It may be that what this robot holds is another evidence of one version: then the whole tells. But
+        nobody honest passes on a whole that it has not checked: who does has changed it.
         """
-        self.doubted.add(key)
-        return False if news.base else self._refuse(neighbour, key[0], "its root is another")
+        if news.base:
+            self.doubted.add(key)
+            return False
+        self.standing.forgers.add(neighbour)
+        self.standing.complaints[neighbour] = (
+            f"what it passes on of robot-{key[0] + 1} is not that robot's: {why}"
+        )
+        return False
+
+    @abstractmethod
+    def blank(self) -> CopyT:
+        """Return the evidence of who has told nothing."""
 
     @abstractmethod
     def admit(self, news: NewsT, held: CopyT) -> None:
         """Raise ValueError for what the contributor cannot have seen."""
-
-    def _refuse(self, neighbour: int, robot: int, why: str) -> bool:
-        """Note that a neighbour passes on what it has changed: nobody honest does so without checking it."""
-        self.standing.forgers.add(neighbour)
-        self.standing.complaints[neighbour] = (
-            f"what it passes on of robot-{robot + 1} is not that robot's: {why}"
-        )
-        return False

@@ -12,8 +12,9 @@ class Seal(NamedTuple):
     """A contributor's word for one version of its evidence."""
 
     time: int  # when it gave it, by its own clock [0.1 s]
-    root: bytes  # of all that it has seen
-    signature: bytes  # over mission, robot, boot, version, time and root
+    signature: (
+        bytes  # over mission, robot, boot, version, time and the root, which whoever reads it works out
+    )
 
 
 class Notary(Protocol):

@@ -13,7 +13,7 @@ from vedette.fusion.codec import EvidenceCodec
 from vedette.fusion.contributors import Contributors
 from vedette.fusion.link import RESEND_AFTER, Key
 from vedette.fusion.packing import CodePacking
-from vedette.fusion.particulars import Capabilities, Note, Particulars
+from vedette.fusion.particulars import Capabilities, Note, Particulars, Place
 from vedette.fusion.replicated import summed
 from vedette.fusion.replicated_map import ReplicatedMap
 from vedette.fusion.sealed import SealedSnapshot
@@ -25,7 +25,7 @@ from vedette.fusion.tiles import classes_of, codes_of
 from vedette.fusion.trust import STANDS, Comparison, Trust
 from vedette.kernels.tiles import TiledGrid, Tiling
 
-FIRM_AFTER, RESTATES = 10, 20  # [0.1 s]
+FIRM_AFTER, RESTATES, COVERS = 10, 20, 30  # [0.1 s]
 
 
 class MapSealings(Sealings[SealedSnapshot, Delta[np.uint8]]):
@@ -33,9 +33,13 @@ class MapSealings(Sealings[SealedSnapshot, Delta[np.uint8]]):
 
     kind = EVIDENCE
 
-    def __init__(self, standing: Standing, tiling: Tiling, limits: Capabilities) -> None:
+    def __init__(self, standing: Standing, tiling: Tiling, counts_size: int, limits: Capabilities) -> None:
         super().__init__(standing)
-        self._tiling, self._limits = tiling, limits
+        self._tiling, self._counts_size, self._limits = tiling, counts_size, limits
+
+    def blank(self) -> SealedSnapshot:
+        """Return one without tiles."""
+        return SealedSnapshot(self._tiling, self._counts_size)
 
     def admit(self, news: Delta[np.uint8], held: SealedSnapshot) -> None:
         """Raise ValueError for what its contributor cannot have seen."""
@@ -46,6 +50,8 @@ class MapSealings(Sealings[SealedSnapshot, Delta[np.uint8]]):
             then = wire.decode(held.particulars)
             if (now.row, now.col, now.began) != (then.row, then.col, then.began):
                 raise ValueError("it has set out from two places")
+        if news.voucher.place is not None:
+            wire.decode_place(news.voucher.place)
         self._limits.check_visits(now)
         self._limits.check(self._tiling, news.tiles, now, news.voucher.seal.time)
 
@@ -73,7 +79,7 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
         """Start with nothing known; ``boot < 2**38`` must differ from those of the robot's earlier starts."""
         tiling = Tiling(*shape)
         standing = Standing(notary)
-        sealing = MapSealings(standing, tiling, limits)
+        sealing = MapSealings(standing, tiling, counts_size, limits)
         contributors: Contributors[SealedSnapshot, Delta[np.uint8]] = Contributors(
             robot, boot, lambda: SealedSnapshot(tiling, counts_size), resend_after, sealing
         )
@@ -86,6 +92,8 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
         self._excluded, self._reinstated = frozenset[int](), frozenset[int]()  # by the operator's word
         self._again: dict[int, int] = {}  # tiles to look at again, since evidence grows firm: when [0.1 s]
         self._told: Particulars | None = None  # by this robot
+        self._place = b""  # of this robot
+        self._placed: dict[Key, Place] = {}  # others, since that was last asked for
 
     @property
     def signed(self) -> SignedEvidence:
@@ -130,6 +138,21 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
             dated = [(*note, since.get(note, self.standing.notary.now())) for note in notes]
             self._told = structs.replace(self._told, notes=tuple(dated[: wire.MOST_NOTES]))
 
+    def be_at(self, sequence: int, x: int, y: int) -> None:
+        """Note where this robot is by one of its beacons [cm]: that goes with its next evidence."""
+        self._place = wire.encode(Place(sequence, x, y))
+
+    @property
+    def covers(self) -> bool:
+        """Tell whether this robot's latest evidence has told of its place lately."""
+        own = self._contributors.own
+        return bool(own.place) and self.standing.notary.now() < own.seal.time + COVERS
+
+    def take_places(self) -> dict[Key, Place]:
+        """Return where others have signed to be, since that was last asked for."""
+        placed, self._placed = self._placed, {}
+        return placed
+
     def publish(
         self, own: TiledGrid[np.int8], changed: NDArray[np.int64] | None, counts: NDArray[np.int64] | None
     ) -> NDArray[np.int64]:
@@ -148,7 +171,7 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
         self._again |= dict.fromkeys(fresh.tolist(), now + FIRM_AFTER)
         told = b"" if self._told is None else wire.encode(self._told)
         restates = self.unsettled and now >= published.seal.time + RESTATES
-        change = published.put(tiles, codes_of(own.read(tiles)), counts, told, now, restates)
+        change = published.put(tiles, codes_of(own.read(tiles)), counts, told, self._place, now, restates)
         return self._merge({self._contributors.key: change})
 
     def _merge(self, changes: Mapping[Key, Change | None]) -> NDArray[np.int64]:
@@ -158,6 +181,8 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
         for key, change in changes.items():
             if change is not None:
                 changed.append(change.tiles)
+                if key != self._contributors.key and copies[key].place:
+                    self._placed[key] = wire.decode_place(copies[key].place)
                 self._trust.see(key, change.tiles, copies[key].values.read)
         before = self.out
         self._judge()

@@ -26,6 +26,7 @@ class Voucher(NamedTuple):
         np.int64
     ]  # (T, 2) of each tile: since when it is held to, and when it last changed [0.1 s]
     particulars: bytes | None  # what the writer tells beside cells and counts, when it is given
+    place: bytes | None  # where the writer is, when it is given
     seal: Seal
     certificate: bytes  # the writer's; empty for who has it
 

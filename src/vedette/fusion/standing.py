@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
 from vedette.fusion.contradictions import Contradiction, ProvenLie
 from vedette.fusion.digest import fingerprint
+from vedette.fusion.link import Key
+from vedette.fusion.particulars import Place
 from vedette.fusion.seals import Notary
 
 REVOKED = "its certificate has been revoked: the belief and the plans leave out all that it has signed"
@@ -62,6 +65,16 @@ class Signed(Protocol):
     @property
     def complaints(self) -> dict[int, str]:
         """What is wrong with whom, by robot."""
+
+    @property
+    def covers(self) -> bool:
+        """Tell whether this robot's latest evidence has told of its place lately."""
+
+    def be_at(self, sequence: int, x: int, y: int) -> None:
+        """Note where this robot is by one of its beacons [cm]."""
+
+    def take_places(self) -> Mapping[Key, Place]:
+        """Return where others have signed to be, by contributor, since that was last asked for."""
 
     def heed(self) -> None:
         """Take up that somebody has gone."""

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import struct
 from bisect import bisect_right
+from contextlib import suppress
 from typing import NamedTuple
 
 from vedette.fusion.contradictions import Histories
 from vedette.fusion.link import MOST_BYTES, Key
-from vedette.fusion.merkle import ROOT_BYTES, Merkle
+from vedette.fusion.merkle import Merkle
 from vedette.fusion.sealing import Sealings
 from vedette.fusion.seals import MOST_CERTIFICATE, SIGNATURE_BYTES, STEPS, Seal
 from vedette.fusion.steps.log import Log
 from vedette.fusion.steps.wire import Entries, parts
 
 MOST_ENTRIES = 1 << 24  # in one robot's log
-_HEAD = struct.Struct(f"<Q{ROOT_BYTES}s{SIGNATURE_BYTES}sH")  # time, root, signature, size of the certificate
+_HEAD = struct.Struct(f"<Q{SIGNATURE_BYTES}sH")  # time, signature, size of the certificate
 
 
 class SealedEntries(NamedTuple):
@@ -46,12 +47,12 @@ class SealedEntries(NamedTuple):
         """Return what ``packed`` was called of; ValueError if it is malformed."""
         if len(entries.data) < _HEAD.size:
             raise ValueError("step evidence: a seal is truncated")
-        time, root, signature, size = _HEAD.unpack_from(entries.data)
+        time, signature, size = _HEAD.unpack_from(entries.data)
         split = _HEAD.size + size
         if time >= 1 << 62 or size > MOST_CERTIFICATE or split > len(entries.data):
             raise ValueError("step evidence: a seal is out of range")
         certificate = entries.data[_HEAD.size : split]
-        seal = Seal(time, root, signature)
+        seal = Seal(time, signature)
         return cls(entries.base, entries.version, entries.data[split:], seal, certificate)
 
 
@@ -70,7 +71,7 @@ class SealedLog(Log):
     def seal(self) -> Seal:
         """The writer's word for the latest version; of the time alone if that is not signed."""
         is_signed = bool(self._signed) and self._signed[-1] == self.version
-        return self._seals[-1] if is_signed else Seal(self.time, b"", b"")
+        return self._seals[-1] if is_signed else Seal(self.time, b"")
 
     def put_seal(self, seal: Seal) -> None:
         """Note the writer's word for the latest version."""
@@ -107,12 +108,18 @@ class LogSealings(Sealings[SealedLog, SealedEntries]):
     def admit(self, news: SealedEntries, held: SealedLog) -> None:
         """Refuse nothing: what evidence of a step may be is checked where it is decoded."""
 
-    def unlike(self, neighbour: int, key: Key, held: SealedLog, news: SealedEntries) -> bool:
+    def blank(self) -> SealedLog:
+        """Return one without entries."""
+        return SealedLog()
+
+    def unlike(self, neighbour: int, key: Key, held: SealedLog, news: SealedEntries, why: str) -> bool:
         """Tell apart who has signed two histories, and who has changed one."""
-        if news.base == 0 < held.version and SealedLog().root_after(news) == news.seal.root:
-            self.doubted.discard(key)
-            early = self.word(key, held.version, held.seal)
-            late = self.word(key, news.version, news.seal)
-            self.standing.catch(key[0], Histories(early, late, news.data))
-            return False
-        return super().unlike(neighbour, key, held, news)
+        if news.base == 0 < held.version:
+            late = self.word(key, news.version, news.seal, self.blank().root_after(news))
+            with suppress(ValueError):
+                late.check(self.standing.notary, key[0])
+                self.doubted.discard(key)
+                early = self.word(key, held.version, held.seal, held.root)
+                self.standing.catch(key[0], Histories(early, late, news.data))
+                return False
+        return super().unlike(neighbour, key, held, news, why)

@@ -6,6 +6,7 @@ from typing import TypeVar
 
 from vedette.fusion.contributors import Contributors
 from vedette.fusion.link import RESEND_AFTER, Key, Payload
+from vedette.fusion.particulars import Place
 from vedette.fusion.seals import Notary
 from vedette.fusion.standing import Standing, print_of
 from vedette.fusion.steps.elements import Elements
@@ -41,6 +42,15 @@ class SignedSteps(SharedLogs[E, SealedLog, SealedEntries]):
     def signed(self) -> SignedSteps[E]:
         """Itself."""
         return self
+
+    covers = False  # what vehicles see says nothing of where they are
+
+    def be_at(self, sequence: int, x: int, y: int) -> None:
+        """Tell nothing of the robot's place."""
+
+    def take_places(self) -> dict[Key, Place]:
+        """Return nothing: nobody tells of its place."""
+        return {}
 
     @property
     def complaints(self) -> dict[int, str]:
