@@ -33,7 +33,7 @@ class Particulars(msgspec.Struct, frozen=True, array_like=True):
     notes: Annotated[tuple[Note, ...], Meta(max_length=MOST_NOTES)] = ()
 
 
-class Place(msgspec.Struct, frozen=True, array_like=True):
+class SignedPlace(msgspec.Struct, frozen=True, array_like=True):
     """Where a contributor has said to be, in one of its beacons."""
 
     sequence: Annotated[int, Meta(ge=0, le=2**53)]  # of the beacon
@@ -41,7 +41,7 @@ class Place(msgspec.Struct, frozen=True, array_like=True):
     y: Centimetre
 
 
-_PLACE_DECODER: msgspec.msgpack.Decoder[Place] = msgspec.msgpack.Decoder(Place)
+_PLACE_DECODER: msgspec.msgpack.Decoder[SignedPlace] = msgspec.msgpack.Decoder(SignedPlace)
 _DECODER: msgspec.msgpack.Decoder[Particulars] = msgspec.msgpack.Decoder(Particulars)
 encode = msgspec.msgpack.Encoder().encode
 
@@ -51,7 +51,7 @@ def decode(data: bytes) -> Particulars:
     return wire.decode(_DECODER, data, "particulars of evidence")
 
 
-def decode_place(data: bytes) -> Place:
+def decode_place(data: bytes) -> SignedPlace:
     """Return the place; ValueError if it is malformed."""
     return wire.decode(_PLACE_DECODER, data, "place of a robot")
 

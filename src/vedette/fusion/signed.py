@@ -13,7 +13,7 @@ from vedette.fusion.codec import EvidenceCodec
 from vedette.fusion.contributors import Contributors
 from vedette.fusion.link import RESEND_AFTER, Key
 from vedette.fusion.packing import CodePacking
-from vedette.fusion.particulars import Capabilities, Note, Particulars, Place
+from vedette.fusion.particulars import Capabilities, Note, Particulars, SignedPlace
 from vedette.fusion.replicated import summed
 from vedette.fusion.replicated_map import ReplicatedMap
 from vedette.fusion.sealed import SealedSnapshot
@@ -93,7 +93,7 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
         self._again: dict[int, int] = {}  # tiles to look at again, since evidence grows firm: when [0.1 s]
         self._told: Particulars | None = None  # by this robot
         self._place = b""  # of this robot
-        self._placed: dict[Key, Place] = {}  # others, since that was last asked for
+        self._placed: dict[Key, SignedPlace] = {}  # others, since that was last asked for
 
     @property
     def signed(self) -> SignedEvidence:
@@ -140,7 +140,7 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
 
     def be_at(self, sequence: int, x: int, y: int) -> None:
         """Note where this robot is by one of its beacons [cm]: that goes with its next evidence."""
-        self._place = wire.encode(Place(sequence, x, y))
+        self._place = wire.encode(SignedPlace(sequence, x, y))
 
     @property
     def covers(self) -> bool:
@@ -148,7 +148,7 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
         own = self._contributors.own
         return bool(own.place) and self.standing.notary.now() < own.seal.time + COVERS
 
-    def take_places(self) -> dict[Key, Place]:
+    def take_places(self) -> dict[Key, SignedPlace]:
         """Return where others have signed to be, since that was last asked for."""
         placed, self._placed = self._placed, {}
         return placed

@@ -9,7 +9,7 @@ from typing import Protocol
 from vedette.fusion.contradictions import Contradiction, ProvenLie
 from vedette.fusion.digest import fingerprint
 from vedette.fusion.link import Key
-from vedette.fusion.particulars import Place
+from vedette.fusion.particulars import SignedPlace
 from vedette.fusion.seals import Notary
 
 REVOKED = "its certificate has been revoked: the belief and the plans leave out all that it has signed"
@@ -73,7 +73,7 @@ class Signed(Protocol):
     def be_at(self, sequence: int, x: int, y: int) -> None:
         """Note where this robot is by one of its beacons [cm]."""
 
-    def take_places(self) -> Mapping[Key, Place]:
+    def take_places(self) -> Mapping[Key, SignedPlace]:
         """Return where others have signed to be, by contributor, since that was last asked for."""
 
     def heed(self) -> None:

@@ -6,7 +6,7 @@ from typing import TypeVar
 
 from vedette.fusion.contributors import Contributors
 from vedette.fusion.link import RESEND_AFTER, Key, Payload
-from vedette.fusion.particulars import Place
+from vedette.fusion.particulars import SignedPlace
 from vedette.fusion.seals import Notary
 from vedette.fusion.standing import Standing, print_of
 from vedette.fusion.steps.elements import Elements
@@ -48,7 +48,7 @@ class SignedSteps(SharedLogs[E, SealedLog, SealedEntries]):
     def be_at(self, sequence: int, x: int, y: int) -> None:
         """Tell nothing of the robot's place."""
 
-    def take_places(self) -> dict[Key, Place]:
+    def take_places(self) -> dict[Key, SignedPlace]:
         """Return nothing: nobody tells of its place."""
         return {}
 
