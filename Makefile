@@ -22,7 +22,7 @@ INSTALLED := $(VENV)/.installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help explore test test-all test-ros2 check lint types contracts rust-lint bench fuzz mutants blunt missions figures schemas docs dist build ready ready-dev clean
+.PHONY: help explore test test-all test-ros2 check lint types contracts rust-lint bench fuzz mutants blunt missions figures theatre schemas docs dist build ready ready-dev clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -81,6 +81,9 @@ missions: ready-dev ## Run the table of missions beside the yardsticks (long)
 
 figures: ready-dev ## Run the missions that the documents quote; record their figures and pictures
 	@$(PY) -m bench.figures $(if $(wildcard $(MAPS)),--maps $(MAPS)) $(ARGS)
+
+theatre: ready-dev ## Play what may befall a team, and write the page that shows it into docs
+	@PYTHONPATH=. $(PY) tools/theatre.py docs/theatre.html
 
 schemas: ready-dev ## Write the schema of every JSON that is written into docs/schemas
 	@PYTHONPATH=. $(PY) tools/schemas.py docs/schemas

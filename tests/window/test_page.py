@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -12,6 +13,7 @@ from tests.support.windows import SCENE, needs_chromium, shown, snapshot
 from vedette.agent.orders import End, LookThere, NoGo, Order, Pause, Priority, Recall, Resume, Stay
 from vedette.record import palette
 from vedette.record.explore.log import Ahead
+from vedette.window.export import Show, export_page
 from vedette.window.hub import Hub
 from vedette.window.picture import Beside, ordered, picture
 from vedette.window.server import WindowServer
@@ -140,6 +142,27 @@ def test_a_record_is_scrubbed_and_played(page: Any) -> None:
         page.click("#play")
         until(page, "parseFloat($('clock').textContent) >= 8")
         page.click("#play")
+
+
+def test_an_exported_page_plays_by_itself(page: Any, tmp_path: Path) -> None:
+    hub, other = shown(range(15), live=False), shown(range(5), live=False)
+    hub.note("robots hear </script> nothing", 9.0)
+    path = tmp_path / "show.html"
+    export_page([Show("a day", hub.history, hub.events(0)[1]), Show("another", other.history)], path)
+    page.goto(f"file://{path}")
+    until(page, "parseFloat($('clock').textContent) >= 3")
+    assert page.inner_text("#name") == "a day"
+    assert "nothing" not in page.inner_text("#log")
+    page.evaluate("$('bar').value = 12; $('bar').oninput()")
+    assert page.inner_text("#clock") == "12.0 s"
+    assert pixel(page, 11, 30) == FREE
+    assert pixel(page, 13, 30) == UNKNOWN
+    assert "robots hear </script> nothing" in page.inner_text("#log")
+    page.evaluate("$('bar').value = 2; $('bar').oninput()")
+    assert pixel(page, 11, 30) == UNKNOWN
+    assert "nothing" not in page.inner_text("#log")
+    page.select_option("#shows", label="another")
+    until(page, "$('name').textContent === 'another'")
 
 
 ORDERS: list[tuple[str, str, Order]] = [

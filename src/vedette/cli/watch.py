@@ -17,6 +17,7 @@ from vedette.net.explore.feed import TeamFeed
 from vedette.net.transport import Operator
 from vedette.run.mission import RECORD
 from vedette.window.explore import recorded
+from vedette.window.export import Show, export_page
 from vedette.window.hub import Hub
 
 LISTENING = 0.1  # between two pictures [s]
@@ -26,13 +27,21 @@ LISTENING = 0.1  # between two pictures [s]
 @click.argument("sources", metavar="CONFIG.yaml... | RUN_DIR | run.mcap", nargs=-1, required=True, type=FILE)
 @click.option("--keys", type=FILE, metavar="DIR", help="The operator's folder of `vedette keys`.")
 @address_options
-def watch(sources: tuple[Path, ...], keys: Path | None, host: str, port: int) -> None:
+@click.option("--export", type=FILE, metavar="FILE.html", help="Write a page that plays a record by itself.")
+def watch(sources: tuple[Path, ...], keys: Path | None, host: str, port: int, export: Path | None) -> None:
     """Show a team on the network, or an exploration that was recorded, in a browser until Ctrl-C.
 
     The address that is printed has a token in it, without which nothing is shown. Of a team whose agents
     listen where the CONFIG.yaml files say, the page gives orders. Exit status: 0, or 2 for bad input.
     """
     record = _record(sources)
+    if export is not None:
+        if record is None:
+            raise InputError("--export: only what was recorded plays by itself; give a RUN_DIR or a run.mcap")
+        hub = recorded(record)
+        export_page([Show(hub.name, hub.history, hub.events(0)[1])], export)
+        click.echo(f"open {export} in a browser")
+        return
     if record is not None:
         with opened(recorded(record), host, port):
             linger()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import zlib
 from bisect import bisect_right
+from collections.abc import Iterator
 from dataclasses import dataclass
 from threading import Lock
 from typing import Any
@@ -30,6 +31,12 @@ class _Kept:
     @property
     def size(self) -> int:
         return len(self.text) + len(self.classes)
+
+    @property
+    def picture(self) -> Picture:
+        """The picture itself."""
+        classes = np.frombuffer(zlib.decompress(self.classes), np.uint8).reshape(self.frame.shape)
+        return Picture(self.t, self.text, self.frame, classes)
 
 
 class History:
@@ -65,8 +72,13 @@ class History:
             if not self._kept:
                 return None
             kept = self._kept[max(bisect_right(self._kept, t + 1e-6, key=lambda each: each.t) - 1, 0)]
-        classes = np.frombuffer(zlib.decompress(kept.classes), np.uint8).reshape(kept.frame.shape)
-        return Picture(kept.t, kept.text, kept.frame, classes)
+        return kept.picture
+
+    def all(self) -> Iterator[Picture]:
+        """Yield all that is kept, in order of time."""
+        with self._lock:
+            kept = list(self._kept)
+        return (each.picture for each in kept)
 
     def told(self) -> list[Any]:
         """Return what was told in words and numbers, of at most some 500 moments."""

@@ -91,11 +91,11 @@ class Hub:
             self._news.wait_for(lambda: self._number != seen or self.closed, seconds)
             return self._number, self._latest
 
-    def note(self, what: str) -> None:
-        """Add a line to what has happened."""
+    def note(self, what: str, at: float | None = None) -> None:
+        """Add a line to what has happened: at a time of the mission [s], or now."""
         with self._news:
-            t = 0.0 if self._latest is None else self._latest.t
-            self._add(Entry(t, what))
+            now = 0.0 if self._latest is None else self._latest.t
+            self._add(Entry(now if at is None else at, what))
 
     def events(self, told: int) -> tuple[int, list[Entry]]:
         """Return how many lines there have been, and those after the first ``told`` of them."""
