@@ -69,9 +69,7 @@ class Auditor:
         stamp = audit.epoch, audit.sequence
         if self._claimed is None or self._claimed.stamp != stamp or stamp in self._answered:
             return []
-        self._answered.add(
-            stamp
-        )  # for good: of two accounts of one round, whoever has both could prove a lie
+        self._answered.add(stamp)  # for good: who has two accounts of one round could prove a lie
         self._asked, self._due = now, (stamp, now + WAITS)
         others = [k for k in neighbours if k != sender]
         return [*_to(others, audit), *self.hear(self.robot, self._own_account(self._claimed), neighbours)]

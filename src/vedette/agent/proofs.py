@@ -7,6 +7,7 @@ leaves that name out, and passes the proof on. docs/trust.md
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -47,14 +48,19 @@ class Proofs:
     _told: float = -1e9  # when neighbours were told of them last [s]
 
     def take_found(self, neighbours: tuple[int, ...]) -> list[Effect]:
-        """Take up what this robot has found out itself, and let everybody know."""
+        """Take up what this robot has found out itself, and let everybody know.
+
+        It is checked like anybody's: of a signature others can make another, that is under the same words.
+        """
         found, self.signed.standing.found = self.signed.standing.found, []
         effects: list[Effect] = []
         for robot, proof in found:
             data = contradictions.encode(proof)
-            certificate = self.signed.standing.notary.certificate_of(robot)
-            if len(data) <= MOST_BYTES and robot not in self._held:
-                effects += self._keep(Proof(robot, certificate, data), proof, neighbours)
+            with suppress(ValueError):
+                self._check(robot, proof)
+                if len(data) <= MOST_BYTES and robot not in self._held:
+                    certificate = self.signed.standing.notary.certificate_of(robot)
+                    effects += self._keep(Proof(robot, certificate, data), proof, neighbours)
         return effects
 
     def hear(self, sender: int, told: Proof, neighbours: tuple[int, ...]) -> list[Effect]:

@@ -1,0 +1,170 @@
+"""When audits are held, what they find out, and that nobody honest is caught."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from msgspec import structs
+
+from tests.agent.test_proofs import agent, hears, notary
+from tests.support.agent_team import Float
+from vedette.agent import Agent, messages
+from vedette.agent.account import Claimed, account_of, words_of
+from vedette.agent.audit import EVERY, WAITS
+from vedette.agent.effects import Send
+from vedette.agent.messages import Account, Audit, Proof
+from vedette.agent.rounds import IDLE_ROUNDS
+
+WORTH = np.arange(1.0, 13.0)
+STAMP = (1, 7)
+
+
+def misses(*seen: int) -> Float:
+    """An impact that is sure to see some points, and no others."""
+    impact = np.ones(12)
+    impact[list(seen)] = 0.0
+    return impact
+
+
+NOTHING, ALL, SOME = misses(), misses(*range(12)), misses(3, 4)
+
+
+def robot(number: int, neighbours: tuple[int, ...]) -> Agent:
+    """One that can stay or see some points."""
+    made = agent(number, neighbours)
+    mission: Any = made.mission
+    mission.candidates, mission.strategy = [NOTHING, SOME], 0
+    made.rounds.impact, made.rounds.anybody_moves = NOTHING, lambda: False
+    return made
+
+
+# -- when ----------------------------------------------------------------------------------------------------
+
+
+def stands_about(made: Agent, claims: dict[int, Float]) -> list[bool]:
+    return [made.rounds._stands_about(WORTH, claims) for _ in range(IDLE_ROUNDS + 1)]
+
+
+def test_an_audit_is_called_for_where_nobody_goes_though_a_robot_would_without_one_link() -> None:
+    waiting = [False] * (IDLE_ROUNDS - 1)
+    assert stands_about(robot(1, (0, 2)), {0: NOTHING, 2: ALL}) == [*waiting, True, True]
+
+
+@pytest.mark.parametrize(
+    ("claims", "goes", "moves"),
+    [
+        pytest.param({0: NOTHING, 2: NOTHING}, False, False, id="nobody keeps it from going"),
+        pytest.param({0: ALL, 2: ALL}, False, False, id="two say so"),
+        pytest.param({0: NOTHING, 2: ALL}, True, False, id="it goes itself"),
+        pytest.param({0: NOTHING, 2: ALL}, False, True, id="a mate is on its way"),
+        pytest.param({}, False, False, id="it is alone"),
+    ],
+)
+def test_otherwise_none_is_called_for(claims: dict[int, Float], goes: bool, moves: bool) -> None:
+    made = robot(1, (0, 2))
+    made.rounds.anybody_moves = lambda: moves
+    if goes:
+        made.rounds.impact = SOME
+    if not claims or claims[2] is NOTHING:
+        made.mission.candidates = [NOTHING]  # type: ignore[attr-defined]
+    assert not any(stands_about(made, claims))
+
+
+def claimed(own: Float = NOTHING, heard: dict[int, Float] | None = None, **told: Float) -> Claimed:
+    sums = {int(k[1:]): impact for k, impact in told.items()}
+    return Claimed(STAMP, WORTH, own, heard or {}, sums, {})
+
+
+def said(effects: list[Any]) -> list[Any]:
+    """Return the messages that are sent."""
+    return [messages.decode(each.payload) for each in effects if isinstance(each, Send)]
+
+
+def test_audits_are_held_for_a_while_and_not_too_often() -> None:
+    made = robot(1, (0,))
+    auditor = made.rounds.auditor
+    assert auditor is not None
+    assert auditor.decided(claimed(), (0,), 0.0) == []
+    auditor.want(1.0)
+    audit, own = said(auditor.decided(claimed(), (0,), 1.0))
+    assert audit == Audit(*STAMP)
+    assert isinstance(own, Account)
+    later = Claimed((1, 8), WORTH, NOTHING, {}, {}, {})
+    assert auditor.decided(later, (0,), 1.0 + 0.9 * EVERY) == []
+    assert len(auditor.decided(later, (0,), 1.0 + EVERY)) == 2
+
+
+def test_of_a_round_account_is_given_once_whatever_is_asked() -> None:
+    """Who could get two of one round could have an honest robot convicted."""
+    made = robot(1, (0, 2))
+    auditor = made.rounds.auditor
+    assert auditor is not None
+    auditor.decided(claimed(), (0, 2), 0.0)
+    for stamp, own, gives in ((STAMP, NOTHING, True), ((1, 8), NOTHING, True), (STAMP, SOME, False)):
+        auditor.decided(Claimed(stamp, WORTH, own, {}, {}, {}), (0, 2), 0.0)
+        answers = said(hears(made, 0, Audit(*stamp)))
+        assert any(isinstance(each, Account) for each in answers) == gives
+
+
+# -- what it finds out ---------------------------------------------------------------------------------------
+
+
+def account(teller: int, made: Agent, what: Claimed, **changes: Any) -> Account:
+    """Return a robot's signed account."""
+    says = structs.replace(account_of(what, made.mission, teller, 1), **changes)
+    return structs.replace(says, signature=notary(teller).sign(*words_of(says)))
+
+
+def judged(*accounts: Account) -> tuple[Agent, list[Proof]]:
+    """Let a robot hold an audit to which others give these accounts; return what it proves."""
+    made = robot(1, (0, 2))
+    auditor = made.rounds.auditor
+    assert auditor is not None
+    for teller in (0, 2):
+        auditor.standing.notary.admit(teller, notary(teller).certificate)
+    auditor.want(0.0)
+    auditor.decided(claimed(heard={0: NOTHING, 2: ALL}), (0, 2), 0.0)
+    for each in accounts:
+        hears(made, each.robot, each, 0.5)
+    auditor.tick(2.0 * WAITS)
+    assert made.proofs is not None
+    told = said(made.proofs.tick((0, 2), 2.0 * WAITS))
+    return made, [each for each in told if isinstance(each, Proof)]
+
+
+def test_a_false_sum_that_is_signed_as_the_sum_convicts_its_teller_and_nobody_else() -> None:
+    made = robot(1, (0, 2))
+    honest = account(0, made, claimed(k1=NOTHING))
+    adds_up = claimed(heard={3: SOME}, k1=SOME)
+    liar = account(2, made, adds_up, told=((1, bytes(16)),))
+    judge, proofs = judged(honest, liar)
+    assert {proof.robot for proof in proofs} == {2}
+    assert judge.signed is not None
+    assert judge.signed.out == {2}
+    far = robot(0, (1,))
+    hears(far, 1, proofs[0])
+    assert far.signed is not None
+    assert far.signed.out == {2}
+    _, none = judged(honest, account(2, made, adds_up))
+    assert none == []
+
+
+def test_who_gives_two_accounts_of_one_round_is_convicted_and_not_who_gives_one_twice() -> None:
+    made = robot(1, (0, 2))
+    first, second = account(2, made, claimed()), account(2, made, claimed(own=SOME))
+    again = structs.replace(first, signature=notary(2).sign(*words_of(first)))
+    assert again != first
+    assert judged(first, again)[1] == []
+    judge, proofs = judged(first, second)
+    assert {proof.robot for proof in proofs} == {2}
+    assert judge.rounds.distrusted >= {2}
+
+
+def test_an_account_in_anothers_name_counts_for_nothing() -> None:
+    made = robot(1, (0, 2))
+    forged = structs.replace(account(2, made, claimed()), robot=0)
+    judge, proofs = judged(forged)
+    assert proofs == []
+    assert judge.dropped == 1
