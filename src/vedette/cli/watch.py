@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from contextlib import ExitStack
 from pathlib import Path
 
 import click
@@ -18,6 +19,7 @@ from vedette.net.transport import Operator
 from vedette.run.mission import RECORD
 from vedette.window.explore import recorded
 from vedette.window.export import Show, export_page
+from vedette.window.foxglove import LOOPBACK, FoxgloveServer
 from vedette.window.hub import Hub
 
 LISTENING = 0.1  # between two pictures [s]
@@ -27,8 +29,21 @@ LISTENING = 0.1  # between two pictures [s]
 @click.argument("sources", metavar="CONFIG.yaml... | RUN_DIR | run.mcap", nargs=-1, required=True, type=FILE)
 @click.option("--keys", type=FILE, metavar="DIR", help="The operator's folder of `vedette keys`.")
 @address_options
+@click.option(
+    "--foxglove",
+    type=click.IntRange(0, 65535),
+    metavar="PORT",
+    help="Serve a team to Foxglove as well, on this computer alone.",
+)
 @click.option("--export", type=FILE, metavar="FILE.html", help="Write a page that plays a record by itself.")
-def watch(sources: tuple[Path, ...], keys: Path | None, host: str, port: int, export: Path | None) -> None:
+def watch(
+    sources: tuple[Path, ...],
+    keys: Path | None,
+    host: str,
+    port: int,
+    foxglove: int | None,
+    export: Path | None,
+) -> None:
     """Show a team on the network, or an exploration that was recorded, in a browser until Ctrl-C.
 
     The address that is printed has a token in it, without which nothing is shown. Of a team whose agents
@@ -53,12 +68,18 @@ def watch(sources: tuple[Path, ...], keys: Path | None, host: str, port: int, ex
     with Operator(access) as operator, ending_on_ctrl_c(ended.set):
         feed = TeamFeed(operator, access)
         hub = Hub(access.team, feed.give)
-        with opened(hub, host, port):
+        with opened(hub, host, port), ExitStack() as more:
+            served = None
+            if foxglove is not None:
+                served = more.enter_context(FoxgloveServer(access.team, feed.give, foxglove))
+                click.echo(f"Foxglove connects to ws://{LOOPBACK}:{served.port}", err=True)
             while not ended.is_set():
                 began = time.monotonic()
                 feed.hearing.listen(LISTENING)
                 if (shown := feed.picture()) is not None:
                     hub.show(shown)
+                if served is not None and (told := feed.snapshot()) is not None:
+                    served.show(*told)
                 ended.wait(max(began + LISTENING - time.monotonic(), 0.0))
 
 

@@ -12,7 +12,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from copy import deepcopy
 from pathlib import Path
 from types import TracebackType
-from typing import IO, Any, Generic, Self, TypeAlias, TypeVar
+from typing import IO, Any, Generic, Protocol, Self, TypeAlias, TypeVar, runtime_checkable
 
 from mcap.writer import CompressionType, Writer
 
@@ -25,11 +25,27 @@ Place: TypeAlias = Path | str | Callable[[], Path]  # of a file; asked again whe
 RosT = TypeVar("RosT", bound=RosMessages)
 
 
+@runtime_checkable
+class Medium(Protocol):
+    """What takes messages in the place of a file, as ``mcap.writer.Writer`` does."""
+
+    def register_schema(self, name: str, encoding: str, data: bytes) -> int:
+        """Take a message type; return its number."""
+
+    def register_channel(self, topic: str, message_encoding: str, schema_id: int) -> int:
+        """Take a topic; return its number."""
+
+    def add_message(
+        self, channel_id: int, log_time: int, data: bytes, publish_time: int, sequence: int = 0
+    ) -> None:
+        """Take a message; times [ns]."""
+
+
 class McapFile(Generic[RosT]):
     """A context manager that writes messages; channels and schemas are registered as they first occur."""
 
-    def __init__(self, place: Place, ros: RosT, facts: Mapping[str, str]) -> None:
-        """Begin a file that says what it is of in the metadata record ``vedette``."""
+    def __init__(self, place: Place | Medium, ros: RosT, facts: Mapping[str, str]) -> None:
+        """Begin a file that says what it is of in the metadata record ``vedette``; or speak to a medium."""
         self._ros = ros
         self._schemas: dict[str, int] = {}
         self._channels: dict[str, int] = {}
@@ -37,8 +53,11 @@ class McapFile(Generic[RosT]):
         self._states: dict[str, str] = {}
         self._closed = False
         self._files = ExitStack()
+        if isinstance(place, Medium):
+            self._medium: Medium = place
+            return
         self._stream = self._files.enter_context(atomic_stream(place))
-        self._writer = Writer(self._stream, compression=CompressionType.ZSTD)
+        self._medium = self._writer = Writer(self._stream, compression=CompressionType.ZSTD)
         self._writer.start(profile="ros2", library="vedette")
         self._writer.add_metadata("vedette", {"frame": FRAME_ID} | dict(facts))
 
@@ -86,13 +105,13 @@ class McapFile(Generic[RosT]):
         """Write a message; ``stamp`` is simulated time [ns]."""
         channel = self._channels.get(topic) or self._open(topic, str(message.__msgtype__))
         self._counts[channel] += 1
-        self._writer.add_message(channel, stamp, self._ros.encode(message), stamp, self._counts[channel])
+        self._medium.add_message(channel, stamp, self._ros.encode(message), stamp, self._counts[channel])
 
     def _open(self, topic: str, kind: str) -> int:
         if kind not in self._schemas:
             definition = self._ros.definition(kind).encode()
-            self._schemas[kind] = self._writer.register_schema(kind, "ros2msg", definition)
-        self._channels[topic] = self._writer.register_channel(topic, "cdr", self._schemas[kind])
+            self._schemas[kind] = self._medium.register_schema(kind, "ros2msg", definition)
+        self._channels[topic] = self._medium.register_channel(topic, "cdr", self._schemas[kind])
         self._counts[self._channels[topic]] = 0
         return self._channels[topic]
 

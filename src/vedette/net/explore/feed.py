@@ -10,6 +10,7 @@ from vedette.net.hearing import Hearing
 from vedette.net.names import robot_name
 from vedette.net.orders import TAKEN, pen_of, written
 from vedette.net.transport import Operator
+from vedette.record.explore.log import ExploreScene, ExploreSnapshot
 from vedette.record.log import LEFT
 from vedette.window.picture import Beside, Picture, ordered, picture
 
@@ -26,6 +27,12 @@ class TeamFeed:
 
     def picture(self) -> Picture | None:
         """Return the team as it was heard last; None: nobody was, or it makes no sense."""
+        told = self.snapshot()
+        silent = {robot: self.hearing.silent(robot) for robot in sorted(self.hearing.reports)}
+        return None if told is None else picture(*told, self._beside(silent))
+
+    def snapshot(self) -> tuple[ExploreScene, ExploreSnapshot] | None:
+        """Return it as a snapshot, in a scene of its own; None: as above."""
         reports = dict(sorted(self.hearing.reports.items()))
         if not reports:
             return None
@@ -36,11 +43,10 @@ class TeamFeed:
             if silent[robot] > LATE and report.condition.state != LEFT
         }
         try:
-            scene, snapshot = picture_of(self._access.team, reports, lost)
+            return picture_of(self._access.team, reports, lost)
         except ValueError:
             self.hearing.malformed += 1
             return None
-        return picture(scene, snapshot, self._beside(silent))
 
     def give(self, order: Order) -> str:
         """Give the team an order, and say what has come of it."""

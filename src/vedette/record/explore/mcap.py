@@ -9,7 +9,7 @@ import numpy as np
 
 from vedette.record.explore.log import ExploreScene, ExploreSnapshot, RobotSample
 from vedette.record.explore.markers import LinkMessages
-from vedette.record.mcap import McapFile, Place, stamp_of
+from vedette.record.mcap import McapFile, Medium, Place, stamp_of
 from vedette.record.ros import ros_names
 
 OF_KNOWN = ("coverage", "known_fraction", "entropy", "known_m2", "frontiers")  # metrics of known ground
@@ -22,7 +22,7 @@ class ExploreMcapWriter(McapFile[LinkMessages]):
     A context manager, and a ``Sink``. The topics are listed in ``docs/outputs.md``.
     """
 
-    def __init__(self, place: Place, scene: ExploreScene, grid_period: float = 5.0) -> None:
+    def __init__(self, place: Place | Medium, scene: ExploreScene, grid_period: float = 5.0) -> None:
         """Open the file; ``grid_period`` in simulated seconds."""
         self._scene, self._period = scene, grid_period
         self._next_grids = -math.inf

@@ -1,0 +1,145 @@
+"""A mission live in Foxglove: the record's messages over its WebSocket, and orders by what it publishes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import TracebackType
+from typing import Any, Self, cast
+
+import msgspec
+
+from vedette.agent.orders import Order
+from vedette.errors import InputError
+from vedette.record.explore.log import ExploreScene, ExploreSnapshot
+from vedette.record.explore.mcap import ExploreMcapWriter
+from vedette.scenario import as_scenario
+
+ORDER, CLICKED = "/order", "/clicked_point"  # topics that Foxglove may publish on
+MOST = 4096  # bytes of what it publishes
+LOOPBACK, PORT = "127.0.0.1", 8765
+
+
+class _Said(msgspec.Struct, frozen=True):
+    order: Order
+
+
+class FoxgloveServer:
+    """Serves messages by ``foxglove-sdk`` for as long as it is entered; ``vedette.record.mcap.Medium``."""
+
+    def __init__(self, name: str, give: Callable[[Order], str] | None, port: int = PORT) -> None:
+        """Prepare to serve on this computer alone; ``give``: an order, and what has come of it.
+
+        Raises:
+            InputError: foxglove-sdk is not installed.
+        """
+        try:
+            import foxglove
+        except ImportError:
+            raise InputError("foxglove-sdk is missing: pip install 'vedette[foxglove]'") from None
+        self._sdk, self._name, self._give, self._port = foxglove, name, give, port
+        self._channels: list[Any] = []
+        self._by_topic: dict[str, int] = {}
+        self._schemas: list[Any] = []
+        self._topics: dict[tuple[int, int], str] = {}  # of what clients publish, by client and channel
+        self.answers: list[str] = []  # to orders, oldest first
+        self._scene: ExploreScene | None = None
+        self._writer: ExploreMcapWriter | None = None
+
+    def __enter__(self) -> Self:
+        """Begin to serve.
+
+        Raises:
+            InputError: the port cannot be listened on.
+        """
+        can = [self._sdk.Capability.ClientPublish] if self._give else []
+        try:
+            self._server = self._sdk.start_server(
+                name=self._name,
+                host=LOOPBACK,
+                port=self._port,
+                capabilities=can,
+                server_listener=cast(Any, self),  # it has what is used of a listener
+                supported_encodings=["json"],
+            )
+        except Exception as error:  # the SDK's own kinds
+            raise InputError(f"cannot listen on {LOOPBACK}:{self._port}: {error}") from error
+        self.port = self._server.port
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Stop."""
+        self._server.stop()
+
+    def show(self, scene: ExploreScene, snapshot: ExploreSnapshot) -> None:
+        """Send a snapshot's messages; the map whenever its frame has changed, and every 5 s."""
+        if self._writer is None or scene != self._scene:
+            self._scene, self._writer = scene, ExploreMcapWriter(self, scene)
+        self._writer.update(snapshot)
+
+    # -- what is sent: Medium --------------------------------------------------------------------------
+
+    def register_schema(self, name: str, encoding: str, data: bytes) -> int:
+        """Take a message type; return its number."""
+        self._schemas.append(self._sdk.Schema(name=name, encoding=encoding, data=data))
+        return len(self._schemas) - 1
+
+    def register_channel(self, topic: str, message_encoding: str, schema_id: int) -> int:
+        """Take a topic, or one that there is already; return its number."""
+        if topic not in self._by_topic:
+            schema = self._schemas[schema_id]
+            self._channels.append(self._sdk.Channel(topic, schema=schema, message_encoding=message_encoding))
+            self._by_topic[topic] = len(self._channels) - 1
+        return self._by_topic[topic]
+
+    def add_message(
+        self, channel_id: int, log_time: int, data: bytes, publish_time: int, sequence: int = 0
+    ) -> None:
+        """Send a message; times [ns]."""
+        self._channels[channel_id].log(data, log_time=log_time)
+
+    # -- what is heard: the SDK's listener, in its own threads --------------------------------------------
+
+    def on_client_advertise(self, client: Any, channel: Any) -> None:
+        """Note what a client will publish on."""
+        self._topics[client.id, channel.id] = channel.topic
+
+    def on_client_unadvertise(self, client: Any, client_channel_id: int) -> None:
+        """Forget it."""
+        self._topics.pop((client.id, client_channel_id), None)
+
+    def on_message_data(self, client: Any, client_channel_id: int, data: bytes) -> None:
+        """Take an order that a client publishes; one that makes no sense is answered, and changes nothing."""
+        topic = self._topics.get((client.id, client_channel_id))
+        if self._give is None or topic not in (ORDER, CLICKED) or len(data) > MOST:
+            return
+        try:
+            answer = self._give(order_in(topic, data))
+        except (InputError, ValueError, TypeError, KeyError) as error:
+            answer = f"refused: {error}"
+        self.answers.append(answer)
+        self._server.publish_status(answer, self._sdk.StatusLevel.Info)
+
+    def on_subscribe(self, client: Any, channel: Any) -> None:
+        """Send the map anew to whoever begins to look."""
+        self._writer = None
+
+    def on_unsubscribe(self, client: Any, channel: Any) -> None:
+        """Go on."""
+
+
+def order_in(topic: str, data: bytes) -> Order:
+    """Return the order in what Foxglove publishes as JSON: one's own words, or a point to look at.
+
+    Raises:
+        InputError: it is no order.
+        ValueError, TypeError, KeyError: it is no such message.
+    """
+    message = msgspec.json.decode(data)
+    if topic == CLICKED:
+        point = message["point"]
+        message = {"order": "look", "at": [float(point["x"]), float(point["y"])]}
+    elif isinstance(message.get("data"), str):  # a std_msgs/String
+        message = msgspec.json.decode(message["data"])
+    return as_scenario({"order": message}, _Said, "order").order

@@ -1,0 +1,86 @@
+"""Foxglove's protocol, spoken by hand: the record's messages come with their types, and orders go back."""
+
+from __future__ import annotations
+
+import json
+import struct
+import time
+from typing import Any
+
+import numpy as np
+import pytest
+from rosbags.typesys import Stores, get_typestore
+from websockets.sync.client import ClientConnection, connect
+from websockets.typing import Subprotocol
+
+from tests.support.windows import FRAME, SCENE, snapshot
+from vedette.agent.orders import LookThere, Order, Pause
+from vedette.errors import InputError
+from vedette.window.foxglove import CLICKED, ORDER, FoxgloveServer, order_in
+
+pytest.importorskip("foxglove")
+STORE = get_typestore(Stores.ROS2_HUMBLE)
+
+
+def told(client: ClientConnection, wanted: str) -> dict[str, Any]:
+    """Take what comes until a message of an operation does."""
+    while True:
+        message = client.recv(timeout=10.0)
+        if isinstance(message, str) and (said := json.loads(message))["op"] == wanted:
+            return dict(said)
+
+
+def data_of(client: ClientConnection, subscription: int) -> bytes:
+    """Take what comes until data of a subscription does."""
+    while True:
+        message = client.recv(timeout=10.0)
+        if isinstance(message, bytes) and message[0] == 1:
+            (number, _) = struct.unpack_from("<IQ", message, 1)
+            if number == subscription:
+                return message[13:]
+
+
+def test_the_map_comes_as_a_ros_message_and_an_order_goes_back() -> None:
+    given: list[Order] = []
+    server = FoxgloveServer("hall", lambda order: given.append(order) or "taken by scout", port=0)
+    with server:
+        server.show(SCENE, snapshot(1.0))
+        address = f"ws://127.0.0.1:{server.port}"
+        with connect(address, subprotocols=[Subprotocol("foxglove.sdk.v1")]) as client:
+            channels: dict[str, dict[str, Any]] = {}
+            while "/map" not in channels or "/scout/pose" not in channels:
+                channels |= {each["topic"]: each for each in told(client, "advertise")["channels"]}
+            chosen = channels["/map"]
+            assert chosen["schemaName"] == "nav_msgs/msg/OccupancyGrid"
+            assert chosen["encoding"] == "cdr"
+            subscribe = {"op": "subscribe", "subscriptions": [{"id": 7, "channelId": chosen["id"]}]}
+            client.send(json.dumps(subscribe))
+            end = time.monotonic() + 10.0
+            while server._writer is not None and time.monotonic() < end:
+                time.sleep(0.02)  # until the server has heard of it
+            server.show(SCENE, snapshot(2.0))
+            grid = STORE.deserialize_cdr(data_of(client, 7), chosen["schemaName"])
+            assert (grid.info.height, grid.info.width) == FRAME.shape
+            assert np.count_nonzero(np.asarray(grid.data) == 0) == 3 * (FRAME.rows - 1)
+            advertise = [{"id": 1, "topic": ORDER, "encoding": "json", "schemaName": "std_msgs/msg/String"}]
+            client.send(json.dumps({"op": "advertise", "channels": advertise}))
+            for text in (
+                b'{"data": "{\\"order\\": \\"pause\\", \\"robot\\": 2}"}',
+                b'{"order": "explode"}',
+                b"[",
+            ):
+                client.send(struct.pack("<BI", 1, 1) + text)
+            end = time.monotonic() + 10.0
+            while len(server.answers) < 3 and time.monotonic() < end:
+                time.sleep(0.02)
+    assert given == [Pause(robot=2)]
+    assert server.answers[0] == "taken by scout"
+    assert all(answer.startswith("refused: ") for answer in server.answers[1:])
+
+
+def test_a_clicked_point_is_a_place_to_look_at() -> None:
+    message = {"header": {"frame_id": "map"}, "point": {"x": 1.5, "y": 2.0, "z": 0.0}}
+    assert order_in(CLICKED, json.dumps(message).encode()) == LookThere(at=(1.5, 2.0))
+    assert order_in(ORDER, b'{"order": "pause"}') == Pause()
+    with pytest.raises(InputError, match="unknown order 'fly'"):
+        order_in(ORDER, b'{"order": "fly"}')
