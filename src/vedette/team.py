@@ -11,7 +11,9 @@ from reprlib import repr as repr_short
 
 from vedette.errors import InputError, check_limits
 from vedette.number import is_number, is_whole
+from vedette.parts import look_in
 from vedette.scenario import as_scenario
+from vedette.sensor import SENSOR
 from vedette.yaml_file import read_yaml
 
 ENDLESS = 1e6  # energy of a robot of which nobody says how far it gets
@@ -54,6 +56,7 @@ class PlatformSpec:
     pose_std_heading: float = 0.0  # and of the heading [deg]
     energy: float = ENDLESS  # way that it can drive [m]; with ``drain``, what its battery holds [Wh]
     drain: float = 1.0  # [Wh/m]
+    sensor: str | None = None  # a class of somebody's own, ``module:NAME``; None: the lidar
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not _NAME.fullmatch(self.name):
@@ -63,6 +66,8 @@ class PlatformSpec:
         check_limits(self, _LIMITS)
         if not is_whole(self.beams):
             raise InputError(f"beams must be a whole number; got {self.beams}")
+        if self.sensor is not None:
+            SENSOR.find(self.sensor)
         if self.start is not None and not _is_start(self.start):
             got = list(self.start) if isinstance(self.start, tuple) else self.start
             raise InputError(f"start must be [x, y] or [x, y, heading in deg]; got {repr_short(got)}")
@@ -124,6 +129,7 @@ def load_team(path: Path | str) -> list[PlatformSpec]:
     """
     remedy = "a team file is a list under 'platforms:' of at least one, for instance '- {}'"
     content = read_yaml(Path(path), "team file", remedy)
+    look_in(Path(path).parent)
     entries = content.get("platforms") if isinstance(content, dict) and len(content) == 1 else None
     if not isinstance(entries, list) or not entries:
         raise InputError(f"{path}: {remedy}; got {repr_short(content)}")

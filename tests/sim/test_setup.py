@@ -94,7 +94,7 @@ LINES: list[tuple[Callable[[], object], str]] = [
     ),
     (
         lambda: prepare(small_maze(), robots(2), ExploreSetup(planner="turs")),
-        "unknown planner 'turs': did you mean 'tours'?",
+        "unknown planner 'turs'; did you mean 'tours'?",
     ),
     (
         lambda: prepare(small_maze(), robots(2), ExploreSetup(fusion="chanel")),

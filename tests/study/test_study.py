@@ -180,7 +180,7 @@ def test_kills_radio_and_faults_are_read_for_each_team(tmp_path: Path) -> None:
 
 
 MISTAKES = {
-    "planners: [turs]\nworlds: [{kind: maze}]": "planners: unknown planner 'turs': did you mean 'tours'?",
+    "planners: [turs]\nworlds: [{kind: maze}]": "planners: unknown planner 'turs'; did you mean 'tours'?",
     "planners: []": "planners: must be a list of 1 or more words; got []",
     "planners: [tours]": "nothing to explore; list generated ones under worlds, or files under maps",
     "planners: [tours]\nworlds: [{kind: ofice}]": "worlds[0].kind: unknown kind 'ofice'; did you mean",

@@ -51,8 +51,9 @@ def explore(
 ) -> None:
     """Let a team of robots explore MAP in simulation: every robot runs its own agent, none is in charge.
 
-    MAP is a ROS map_server .yaml, or an image together with --resolution; without it, a generated office of
-    30 x 20 m. Exit status: 0 complete, 1 incomplete, 2 bad input, 130 interrupted.
+    MAP is a ROS map_server .yaml, an image together with --resolution, or the name of a generator (office,
+    cave, maze, MODULE:NAME); without it, a generated office of 30 x 20 m. Exit status: 0 complete,
+    1 incomplete, 2 bad input, 130 interrupted.
     """
     world, specs = world_named(map_path, resolution), team_named(team, robots, starts)
     if saved is not None and world is None and (seed := seed_of(saved)) not in (None, options["seed"]):

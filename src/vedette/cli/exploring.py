@@ -11,9 +11,9 @@ from typing import Any, TypeVar
 
 import click
 
-from vedette.cli.options import FILE, OneOf, Positive, seed_option, with_options
+from vedette.cli.options import FILE, Named, OneOf, Positive, seed_option, with_options
 from vedette.cli.running import Kind
-from vedette.domains.mapping.planners import DEFAULT, PLANNERS
+from vedette.domains.mapping.planners import DEFAULT, PLANNER
 from vedette.errors import InputError, InputWarning
 from vedette.maps.area import Area
 from vedette.missions.explore.assemble import FUSIONS
@@ -21,6 +21,7 @@ from vedette.missions.pairs import SCHEME
 from vedette.negotiation import SCHEMES
 from vedette.number import many
 from vedette.outcome import Outcome
+from vedette.parts import is_reference, look_in
 from vedette.record.explore.live import explore_display
 from vedette.record.explore.mcap import ExploreMcapWriter
 from vedette.record.explore.outputs import write_outputs
@@ -80,7 +81,7 @@ def exploring_options(command: CommandT) -> CommandT:
         seed_option("the office, the starts and all chance"),
         click.option(
             "--planner",
-            type=OneOf(list(PLANNERS)),
+            type=Named(PLANNER),
             default=DEFAULT,
             show_default=True,
             help="How the team decides.",
@@ -122,6 +123,8 @@ def world_named(path: Path | None, resolution: float | None) -> AnyWorld:
         InputError: a resolution is given without a map.
     """
     if path is not None:
+        if is_reference(str(path)):
+            look_in(Path())
         return path, resolution
     if resolution is not None:
         raise InputError("--resolution goes with a MAP that is an image; the default office has 0.1 m")

@@ -14,6 +14,7 @@ import click
 from click.shell_completion import CompletionItem
 
 from vedette.errors import InputError, check_word
+from vedette.parts import PartKind, is_reference, look_in
 from vedette.sim.radio import Radio, parse_radio
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
@@ -45,6 +46,28 @@ class OneOf(click.ParamType[str]):
     ) -> list[CompletionItem]:
         """Offer the words that begin so."""
         return [CompletionItem(word) for word in self.words if word.startswith(incomplete)]
+
+
+class Named(OneOf):
+    """A part by its name: the house's, an entry point's, or ``module:NAME``, the module in this folder."""
+
+    def __init__(self, kind: PartKind[Any], beside: Sequence[str] = ()) -> None:
+        super().__init__((*kind.house, *beside))
+        self.kind, self.beside = kind, beside
+
+    def get_metavar(self, param: click.Parameter, ctx: click.Context) -> str:
+        """Show the choice in ``--help``."""
+        return f"{super().get_metavar(param, ctx)}|MODULE:NAME"
+
+    def convert(self, value: str, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        """Return the name, or refuse it."""
+        if value in self.words:
+            return value
+        if not is_reference(value) and value not in self.kind.names:
+            check_word(self.kind.word, value, (*self.kind.names, *self.beside))
+        look_in(Path())
+        self.kind.find(value)
+        return value
 
 
 class Positive(click.ParamType[float]):

@@ -138,6 +138,8 @@ def explore(
     tell_unheeded(planner, len(specs), scheme, fusion=fusion, lease=lease)
     if ros2 and unbounded:
         raise InputError("--unbounded: robots that run ROS 2 are never told how far it goes; leave it out")
+    if ros2 and any(spec.sensor for spec in specs):
+        raise InputError("sensor: simulated ROS 2 robots have lidars; leave it, or --ros2, out")
     options = ExploreOptions(planner, agreed, fusion, return_home, area, unbounded)
     area_of = options.lattice_on(world.frame).area
     places = choose_starts(world, specs, np.random.default_rng([seed, 1]), area_of)

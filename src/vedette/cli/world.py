@@ -8,19 +8,19 @@ import click
 import numpy as np
 from click.core import ParameterSource
 
-from vedette.cli.options import FILE, OneOf
+from vedette.cli.options import FILE, Named
 from vedette.cli.recordings import OF_RECORDINGS, check_in_vain, recording, recording_options
 from vedette.errors import InputError
 from vedette.maps.world import World
 from vedette.record.folder import OutputFolder
-from vedette.sim.worlds import GENERATORS, logged
+from vedette.sim.worlds import WORLD, generated, logged
 
 LOG = "log"
 _OF_GENERATED = ("seed", "width", "height")
 
 
 @click.command()
-@click.argument("kind", type=OneOf([*GENERATORS, LOG]))
+@click.argument("kind", type=Named(WORLD, beside=(LOG,)))
 @click.argument("file", metavar="[FILE]", required=False, type=FILE)
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Which one to make.")
 @click.option("--out", type=FILE, required=True, metavar="DIR", help="New folder for the map.")
@@ -87,4 +87,4 @@ def _generated(
 ) -> World:
     if file is not None:
         raise InputError(f"{kind} is generated, without a file; of a recording: vedette world log {file}")
-    return GENERATORS[kind](np.random.default_rng(seed), width, height, resolution)
+    return generated(kind, seed, width, height, resolution)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 
-from vedette.domains.mapping.planners import PLANNERS, planner
+from vedette.domains.mapping.planners import planner
 from vedette.errors import InputError, InputWarning, check_word
 from vedette.negotiation import SCHEMES
 
@@ -30,6 +30,8 @@ def scheme_of(planner_name: str, scheme: str | None) -> str:
         InputError: an unknown planner or scheme, or another scheme than the one that is part of the planner.
     """
     own = planner(planner_name).scheme
+    if own is not None:
+        check_word(f"scheme of planner {planner_name},", own, SCHEMES)
     if scheme is None:
         return own or SCHEME
     check_word("scheme", scheme, SCHEMES)
@@ -46,7 +48,7 @@ def tell_unheeded(planner_name: str, robots: int, scheme: str | None, **links: o
     """Say which options are in vain where an exploring team has nobody to tell anything, or heeds nobody."""
     if robots == 1:
         _tell("one robot alone tells nobody anything", scheme=scheme, **links)
-    elif planner_name in PLANNERS and not PLANNERS[planner_name].negotiates:
+    elif not planner(planner_name).negotiates:
         _tell(f"planner {planner_name} chooses without negotiating", scheme=scheme)
 
 

@@ -11,7 +11,7 @@ from typing import Annotated
 
 from msgspec import Meta, Struct
 
-from vedette.domains.mapping.planners import PLANNERS, planner
+from vedette.domains.mapping.planners import planner
 from vedette.errors import InputError, nearest_name
 from vedette.fusion.gaussian import WAYS
 from vedette.maps.area import Area
@@ -27,6 +27,7 @@ from vedette.net.access import Access
 from vedette.net.credentials import credentials
 from vedette.net.names import MOST_ROBOTS
 from vedette.net.own import OwnSettings
+from vedette.parts import look_in
 from vedette.ros2.settings import Ros2Settings
 from vedette.scenario import load_scenario
 from vedette.team import ENDLESS, PlatformSpec
@@ -82,6 +83,7 @@ class BodySettings(Struct, forbid_unknown_fields=True, frozen=True):
     pose_std_heading: float = 0.0  # [deg]
     energy: float = ENDLESS  # way that it can drive [m]; with ``drain``, what its battery holds [Wh]
     drain: float = 1.0  # [Wh/m]
+    sensor: str | None = None  # a class of somebody's own, ``module:NAME``; None: the lidar
 
     def spec(self, name: str) -> PlatformSpec:
         """Return the platform.
@@ -141,6 +143,7 @@ def load_config(path: Path | str) -> AgentConfig:
         InputError: as :func:`vedette.scenario.load_scenario`, or a name or number that cannot be.
     """
     config = load_scenario(path, AgentConfig, "robot's file")
+    look_in(Path(path).parent)
     try:
         _check_missions(config)
         if config.mission == "explore":
@@ -179,10 +182,12 @@ def _check_missions(config: AgentConfig) -> None:
 
 def _check_explore(config: AgentConfig) -> None:
     options = config.explore or ExploreOptions()
-    _check_word("explore.planner", options.planner, list(PLANNERS))
+    try:
+        planner(options.planner, config.robots)
+    except InputError as error:
+        raise InputError(f"explore.planner: {error}") from error
     _check_scheme("explore", options.scheme)
     _check_word("explore.fusion", options.fusion, list(FUSIONS))
-    planner(options.planner, config.robots)
     _ = options.negotiates_by
     _check_ground(config.body, options)
     real = config.body.ros2

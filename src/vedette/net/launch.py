@@ -21,6 +21,7 @@ from vedette.net.credentials import credentials
 from vedette.net.endpoints import free_port
 from vedette.net.keys import issue_team
 from vedette.net.names import OPERATOR, robot_name
+from vedette.parts import finding_parts
 from vedette.record.files import write_text
 
 TEAM = "team"
@@ -174,7 +175,7 @@ class TeamProcesses:
                 stdout=log,
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
-                env={**os.environ, **threads, **self.environment},
+                env={**os.environ, **threads, **finding_parts(), **self.environment},
             )
 
     def _command(self, i: int) -> list[str]:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -11,10 +9,18 @@ from typing import Any
 from msgspec import Struct
 
 from vedette.agent.body import Body
-from vedette.errors import InputError, nearest_name
+from vedette.errors import InputError
 from vedette.net.own_body import CheckedBody
+from vedette.parts import PartKind, is_reference, look_in, said
 from vedette.team import PlatformSpec
 
+BODY: PartKind[Any] = PartKind(
+    "bodies",
+    "body.own.make",
+    {},
+    lambda part: None if callable(part) else f"is {type(part).__name__}, not a class",
+    "docs/how-to/own-body.md",
+)
 PARTS = ("hull", "pose", "figures", "sense", "carry_out", "stop")  # of a body
 
 
@@ -38,7 +44,7 @@ class OwnSettings(Struct, forbid_unknown_fields=True, frozen=True):
             raise
         except Exception as error:
             raise InputError(
-                f"body.own: {self.make} cannot be made: {_said(error)}; mend body.own.settings"
+                f"body.own: {self.make} cannot be made: {said(error)}; mend body.own.settings"
             ) from error
         if lacking:
             raise InputError(
@@ -48,25 +54,7 @@ class OwnSettings(Struct, forbid_unknown_fields=True, frozen=True):
         return CheckedBody(self.make, body, spec)
 
     def _make(self, folder: Path) -> Any:
-        module_name, _, name = self.make.partition(":")
-        if not (module_name and name):
+        if not (is_reference(self.make) or self.make in BODY.names):
             raise InputError(f"body.own.make: {self.make!r} must be module:NAME, as my_robot:MyRobot")
-        if str(folder) not in sys.path:
-            sys.path.append(str(folder))
-        try:
-            module = importlib.import_module(module_name)
-        except Exception as error:
-            raise InputError(
-                f"body.own.make: cannot import {module_name}: {_said(error)}; install it, or put it beside "
-                "the file"
-            ) from error
-        make = getattr(module, name, None)
-        if not callable(make):
-            names = [each for each in vars(module) if callable(getattr(module, each))]
-            raise InputError(f"body.own.make: {module_name} has no {name!r}; {nearest_name(name, names)}")
-        return make
-
-
-def _said(error: Exception) -> str:
-    """Return an error in one line."""
-    return f"{type(error).__name__}: {' '.join(str(error).split())}"
+        look_in(folder)
+        return BODY.find(self.make)

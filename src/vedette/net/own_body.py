@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from math import isfinite
 
@@ -12,7 +11,7 @@ import numpy as np
 from vedette.agent.body import Body, BodyFigures
 from vedette.agent.effects import Motion
 from vedette.agent.events import Arrived, Event, Pose, Scan, Sensed, Stuck
-from vedette.errors import InputError
+from vedette.parts import telling
 from vedette.team import PlatformSpec
 
 FARTHEST = 2.1e7  # from the team frame's origin, of a pose [m]
@@ -61,15 +60,8 @@ class CheckedBody:
         with self._telling("stop"):
             self.body.stop(now)
 
-    @contextmanager
-    def _telling(self, what: str) -> Iterator[None]:
-        try:
-            yield
-        except InputError:
-            raise
-        except Exception as error:
-            said = " ".join(str(error).split())
-            raise InputError(f"body.own: {what} of {self.make}: {type(error).__name__}: {said}") from error
+    def _telling(self, what: str) -> AbstractContextManager[None]:
+        return telling(f"body.own: {what} of {self.make}")
 
 
 def _check(event: Event) -> None:

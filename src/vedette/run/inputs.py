@@ -15,12 +15,13 @@ from vedette.maps import GridFrame, map_files
 from vedette.maps.world import World
 from vedette.missions.pairs import tell_too_late
 from vedette.number import is_number, is_whole
+from vedette.parts import is_reference
 from vedette.scenario import as_scenario
 from vedette.sim.faults import Schedule, load_faults
 from vedette.sim.faults.kinds import Skew
 from vedette.sim.radio import Radio, parse_radio
 from vedette.sim.setup import Setup
-from vedette.sim.worlds import office
+from vedette.sim.worlds import WORLD, generated, office
 from vedette.team import PlatformSpec, check_team, load_team
 
 ROBOTS = 3
@@ -118,13 +119,17 @@ def _kill(kill: tuple[int, float], robots: int) -> tuple[int, float]:
 
 
 def world_of(world: AnyWorld, seed: int) -> World:
-    """Return a world: itself, of a map file, of cells that are solid with their side, or else an office.
+    """Return a world: itself, generated, of a map file, of cells that are solid, or else an office.
 
-    ``(file, resolution)`` is a plain image; ``(solid, resolution)`` cells (R, C), row 0 the lowest y.
+    A name of ``vedette.sim.worlds.WORLD``, where there is no such file, is that of a generator: the seed's
+    world. ``(file, resolution)`` is a plain image, ``(solid, resolution)`` cells (R, C), row 0 the lowest y.
 
     Raises:
-        InputError: it cannot be read, or nothing is free in it.
+        InputError: it cannot be read or generated, or nothing is free in it.
     """
+    place, *rest = world if isinstance(world, tuple) else (world, None)
+    if (kind := _generator(place)) is not None:
+        return generated(kind, seed, **({} if rest[0] is None else {"resolution": rest[0]}))
     match world:
         case None:
             return office(np.random.default_rng(seed))
@@ -137,6 +142,13 @@ def world_of(world: AnyWorld, seed: int) -> World:
         case (cells, resolution):
             return _drawn(cells, resolution)
     raise InputError(f"a world is a World, a map file or (solid cells, resolution); got {brief(world)}")
+
+
+def _generator(place: object) -> str | None:
+    """Return the name of the generator that a world is of; None: it is none's."""
+    if not isinstance(place, str | Path) or Path(place).exists():
+        return None
+    return str(place) if is_reference(str(place)) or str(place) in WORLD.names else None
 
 
 def _drawn(cells: object, resolution: object) -> World:
@@ -173,5 +185,5 @@ def described(scenario: ScenarioT | Mapping[str, Any], kind: type[ScenarioT]) ->
 def files_of(world: object, *others: object) -> tuple[Path, ...]:
     """Return which files a mission has been read from, of a world and of what may be one."""
     place = world[0] if isinstance(world, tuple) else world
-    maps = map_files(Path(place)) if isinstance(place, str | Path) else ()
+    maps = map_files(Path(place)) if isinstance(place, str | Path) and _generator(place) is None else ()
     return (*maps, *(Path(other) for other in others if isinstance(other, str | Path)))

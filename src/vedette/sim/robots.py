@@ -13,6 +13,7 @@ from vedette.kernels.lidar import cast_rays
 from vedette.maps import GridFrame
 from vedette.maps.world import World
 from vedette.outcome import NO_PROGRESS, Outcome
+from vedette.sensor import CheckedSensor
 from vedette.sim.body import Bodies
 from vedette.sim.localisation import Localisation
 from vedette.team import PlatformSpec
@@ -40,6 +41,7 @@ class Robots:
         self._beams = [
             np.radians(spec.view) * ((np.arange(spec.beams) + 0.5) / spec.beams - 0.5) for spec in specs
         ]
+        self._sensors = [CheckedSensor.of(spec) for spec in specs]
         self._localisers = [Localisation.of(spec, rng) for spec, rng in zip(specs, noise, strict=False)]
         self._next_scan = [0.0] * n
         self._stuck_told = [0.0] * n
@@ -90,10 +92,23 @@ class Robots:
             np.arange(len(self._specs)) != i
         ]
         local = self.bodies.poses[i]
-        angles = local[2] + self._beams[i]
-        ranges = cast_rays(
-            self._world.solid, self._world.frame.resolution, local[0], local[1], angles, spec.range, discs
-        )
+
+        def cast(angles: NDArray[np.float64]) -> NDArray[np.float64]:
+            return cast_rays(
+                self._world.solid,
+                self._world.frame.resolution,
+                local[0],
+                local[1],
+                local[2] + angles,
+                spec.range,
+                discs,
+            )
+
+        sensor = self._sensors[i]
+        if sensor is not None:
+            angles, told = sensor.scan(cast, self._noise[i])
+            return Scan(told_heading + angles, told)
+        ranges = cast(self._beams[i])
         noise = self._noise[i].normal(0.0, spec.range_noise, spec.beams)
         return Scan(told_heading + self._beams[i], np.maximum(ranges + noise, 0.0))
 

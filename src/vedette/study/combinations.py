@@ -17,6 +17,7 @@ from vedette.scenario import as_scenario
 from vedette.sim.explore.simulation import ExploreSetup
 from vedette.sim.faults import Schedule, load_faults
 from vedette.sim.radio import Radio, parse_radio
+from vedette.sim.worlds import WORLD
 from vedette.sim.worlds.size import world_frame
 from vedette.study.run import OF_PLATFORM, OF_SETUP, GeneratedWorld, MapWorld, Run
 from vedette.study.spec import Spec
@@ -75,6 +76,10 @@ def _known_planner(name: str, path: Path) -> None:
 
 def _worlds(spec: Spec, path: Path) -> Iterator[GeneratedWorld | MapWorld]:
     for number, worlds in enumerate(spec.worlds):
+        try:
+            WORLD.find(worlds.kind)
+        except InputError as error:
+            raise InputError(f"{path}: worlds[{number}].kind: {error}") from None
         try:
             world_frame(worlds.width, worlds.height, worlds.resolution)
         except InputError as error:

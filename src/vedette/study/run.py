@@ -10,13 +10,14 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 import msgspec
-import numpy as np
 
+from vedette.domains.mapping.planners import PLANNER
 from vedette.errors import InputWarning
 from vedette.maps.world import World
 from vedette.number import many
+from vedette.sensor import SENSOR
 from vedette.sim.explore.simulation import ExploreSetup
-from vedette.sim.worlds import GENERATORS
+from vedette.sim.worlds import WORLD, generated
 from vedette.team import PlatformSpec
 
 Value: TypeAlias = str | int | float | bool | None
@@ -29,7 +30,7 @@ OF_SETUP = tuple(f.name for f in fields(ExploreSetup) if f.name not in ("planner
 class GeneratedWorld:
     """A world that is made when it is needed."""
 
-    kind: str  # of ``GENERATORS``
+    kind: str  # a name of ``vedette.sim.worlds.WORLD``
     seed: int
     width: float  # [m]
     height: float  # [m]
@@ -47,8 +48,7 @@ class GeneratedWorld:
 
     def build(self) -> World:
         """Make it."""
-        rng = np.random.default_rng(self.seed)
-        return GENERATORS[self.kind](rng, self.width, self.height, self.resolution)
+        return generated(self.kind, self.seed, self.width, self.height, self.resolution)
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ class Run:
 
     def key(self, code: str) -> str:
         """Return 16 hexadecimal digits that name the run as this code carries it out."""
-        return _digest({"code": code, "layout": LAYOUT, **self._parameters()}, 16)
+        return _digest({"code": code, "layout": LAYOUT, **self._own_code(), **self._parameters()}, 16)
 
     @property
     def case(self) -> str:
@@ -124,6 +124,15 @@ class Run:
         world = self.world.name + ("" if self.world.seed is None else f" {self.world.seed}")
         team = f"{many(self.robots, 'robot')} {self.starts}"
         return f"{world}, {team}, {self.setup.planner}"
+
+    def _own_code(self) -> dict[str, Value]:
+        """Return what changes with the code of parts that are somebody's own; nothing where none is."""
+        named = [("planner", PLANNER.fingerprint(self.setup.planner))]
+        if self.platform.sensor is not None:
+            named.append(("sensor", SENSOR.fingerprint(self.platform.sensor)))
+        if isinstance(self.world, GeneratedWorld):
+            named.append(("kind", WORLD.fingerprint(self.world.kind)))
+        return {f"code of {what}": code for what, code in named if code is not None}
 
     def _parameters(self) -> dict[str, Any]:
         return {

@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal
 from msgspec import Meta, Struct
 
 from vedette.errors import InputError, nearest_name
+from vedette.parts import look_in
 from vedette.scenario import load_scenario
 
 COPY = "spec.yaml"  # in the folder of a study: what it was made from
@@ -21,7 +22,7 @@ Robots = Annotated[int, Meta(ge=1, le=64)]
 class Worlds(Struct, forbid_unknown_fields=True, frozen=True):
     """Generated worlds of one kind and size, one a seed."""
 
-    kind: Literal["office", "cave", "maze"]
+    kind: str  # a name of ``vedette.sim.worlds.WORLD``
     seeds: Seeds = (0,)
     width: float = 30.0  # [m]
     height: float = 20.0  # [m]
@@ -80,6 +81,7 @@ def load_spec(path: Path) -> Spec:
         InputError: as ``load_scenario``; or it has no worlds, or its reference is not among its planners.
     """
     spec = load_scenario(path, Spec, "study's spec")
+    look_in(path.parent)
     if not spec.worlds and not spec.maps:
         raise InputError(f"{path}: nothing to explore; list generated ones under worlds, or files under maps")
     if spec.reference and spec.reference not in spec.planners:

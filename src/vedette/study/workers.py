@@ -7,10 +7,12 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field
 from importlib import import_module
+from pathlib import Path
 
 from joblib import Parallel, delayed, parallel_config
 
 from vedette.errors import InputError
+from vedette.parts import folders, look_in
 from vedette.study.backends import Backend
 from vedette.study.mission import RunResult, broken, carry_out
 from vedette.study.run import Run
@@ -71,13 +73,16 @@ class Workers:
         parallel = Parallel(
             n_jobs=jobs if local else -1, return_as="generator_unordered", batch_size=1, **own
         )
-        yield from parallel(delayed(_named)(self.work, run) for run in runs)
+        yield from parallel(delayed(_named)(self.work, run, folders()) for run in runs)
 
     def _cluster(self) -> AbstractContextManager[object]:
         return nullcontext() if self.backend == "loky" else _dask(self.jobs)
 
 
-def _named(work: Work, run: Run) -> tuple[Run, RunResult]:
+def _named(work: Work, run: Run, beside: Sequence[str]) -> tuple[Run, RunResult]:
+    """Carry out a run where somebody's own parts are found, which lie ``beside`` the files that name them."""
+    for folder in beside:
+        look_in(Path(folder))
     return run, work(run)
 
 

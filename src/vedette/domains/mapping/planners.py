@@ -1,10 +1,11 @@
-"""The planners by name: an objective's time layers and a kind of platform."""
+"""The planners by name, the house's and somebody's own: an objective's time layers and a kind of platform."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 from vedette.domains.mapping import layers
 from vedette.domains.mapping.baselines.cost_utility import CostUtilityPlatform
@@ -13,10 +14,12 @@ from vedette.domains.mapping.baselines.hungarian import HungarianPlatform
 from vedette.domains.mapping.baselines.makespan import MakespanPlatform
 from vedette.domains.mapping.baselines.optimal import MOST_ROBOTS, OptimalPlatform
 from vedette.domains.mapping.baselines.team import check_size
+from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.layers import TimeLayers
-from vedette.domains.mapping.platform import MappingPlatform
+from vedette.domains.mapping.platform import MappingPlatform, Tour
 from vedette.domains.mapping.yardsticks import BurgardPlatform, NearestPlatform
-from vedette.errors import InputError, nearest_name
+from vedette.number import is_number
+from vedette.parts import PartKind, telling, told
 from vedette.team import PlatformSpec
 
 HIDDEN_AREA = 0.5  # expected behind a frontier [m^2]
@@ -128,15 +131,61 @@ PLANNERS = {
 DEFAULT = "tours"
 
 
+def _wrong(part: Any) -> str | None:
+    if not isinstance(part, Planner):
+        return f"is {type(part).__name__}, not a Planner"
+    if not isinstance(part.layers, TimeLayers) or not callable(part.platform):
+        return "needs layers, a TimeLayers, and a platform that can be called with a PlatformSpec"
+    return None
+
+
+PLANNER: PartKind[Planner] = PartKind("planners", "planner", PLANNERS, _wrong, "docs/how-to/own-planner.md")
+
+
 def planner(name: str, robots: int | None = None) -> Planner:
     """Return the planner of this name, for a team of so many if that is known.
 
     Raises:
         InputError: there is none, or it cannot plan for so many.
     """
-    if name not in PLANNERS:
-        raise InputError(f"unknown planner {name!r}: {nearest_name(name, PLANNERS)}")
-    found = PLANNERS[name]
+    found = PLANNER.find(name)
     if found.most_robots is not None and robots is not None:
         check_size(name, robots, found.most_robots)
-    return PLANNERS[found.alone] if found.alone is not None and robots == 1 else found
+    if found.alone is not None and robots == 1:
+        return planner(found.alone)
+    return found if name in PLANNERS else replace(found, platform=_told(found, name))
+
+
+def _told(own: Planner, name: str) -> Callable[[PlatformSpec], MappingPlatform]:
+    """Return what makes the platforms of somebody's own planner; what they do wrong is told in a line."""
+    where = f"planner {name}"
+
+    def made(spec: PlatformSpec) -> MappingPlatform:
+        with telling(f"{where}: platform"):
+            platform = own.platform(spec)
+            _check_is(MappingPlatform)(platform)
+        return told(platform, CONTRACT, where)
+
+    return made
+
+
+def _check_is(kind: type) -> Callable[[Any], None]:
+    def check(returned: Any) -> None:
+        if not isinstance(returned, kind):
+            raise TypeError(f"gives {type(returned).__name__}; a {kind.__name__} is asked for")
+
+    return check
+
+
+def _check_slack(returned: Any) -> None:
+    if not is_number(returned) and returned != math.inf:
+        raise TypeError(f"gives {returned!r}; a number of nats is asked for, inf where nothing is promised")
+
+
+CONTRACT = {
+    "prepare": lambda _: None,
+    "carry_over": _check_is(Tour),
+    "reply": _check_is(Tour),
+    "impact": _check_is(Impact),
+    "slack": _check_slack,
+}  # what a round asks of a platform, and what it must return

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.domains.mapping.as_seen import as_seen
 from vedette.domains.mapping.beams import apart, between
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.blur import blurred
@@ -16,6 +17,7 @@ from vedette.kernels import coverage, distance, frontier
 from vedette.kernels.coverage import Footprints, Viewpoints
 from vedette.maps import FREE, UNKNOWN, GridFrame
 from vedette.maps.bounds import Extent
+from vedette.sensor import CheckedSensor
 from vedette.team import PlatformSpec
 
 LEAST_SHARE = 0.0008  # of the area known to be free that a stop must promise ...
@@ -183,7 +185,7 @@ def _footprints(
 ) -> tuple[NDArray[np.int64], NDArray[np.uint32], NDArray[np.float32]]:
     cols = belief.frame.cols
     toward = np.arctan2(targets // cols - views // cols, targets % cols - views % cols)
-    return coverage.footprints(
+    seen = coverage.footprints(
         belief.classes,
         views,
         toward,
@@ -195,6 +197,8 @@ def _footprints(
         belief.factor,
         MIN_SHARE,
     )
+    sensor = CheckedSensor.of(spec)
+    return seen if sensor is None else as_seen(sensor, belief, seen, views, toward)
 
 
 def _rays(spec: PlatformSpec, resolution: float) -> int:
