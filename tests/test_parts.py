@@ -37,10 +37,18 @@ class Few(MappingPlatform):
     def reply(self, belief):
         return None
 
+class Second(MappingPlatform):
+    def reply(self, belief, others, current):
+        if self.spec.name == "robot-2":
+            raise ValueError("not me")
+        return super().reply(belief, others, current)
+
 def dear(spec):
     raise OSError("no licence\\nleft")
 
-RAISES, NOTHING, FEW = (Planner("", layers.rate(), kind) for kind in (Raises, Nothing, Few))
+RAISES, NOTHING, FEW, SECOND = (
+    Planner("", layers.rate(), kind) for kind in (Raises, Nothing, Few, Second)
+)
 DEAR = Planner("", layers.rate(), dear)
 OTHER = Planner("", layers.rate(), lambda spec: spec)
 FLAT = Planner("", None, Raises)
@@ -142,7 +150,8 @@ def test_the_example_of_a_planner_finishes_a_mission_by_its_module_and_by_an_ent
         ("RAISES", "reply: ZeroDivisionError: division by zero (own_part_{}.py, line 9)"),
         ("NOTHING", "reply: TypeError: gives NoneType; a Tour is asked for"),
         ("FEW", "reply: TypeError: Few.reply() takes 2 positional arguments but 4 were given"),
-        ("DEAR", "platform: OSError: no licence left (own_part_{}.py, line 20)"),
+        ("SECOND", "reply: ValueError: not me (own_part_{}.py, line 22)"),  # who replies to a message
+        ("DEAR", "platform: OSError: no licence left (own_part_{}.py, line 26)"),
         ("OTHER", "platform: TypeError: gives PlatformSpec; a MappingPlatform is asked for"),
         ("FLAT", " needs layers, a TimeLayers, and a platform that can be called"),
     ],

@@ -17,6 +17,10 @@ class InputError(ValueError):
     """
 
 
+class PartError(InputError):
+    """A part of somebody's own raises, or returns what cannot be: its author's fault, no sender's."""
+
+
 class InputWarning(UserWarning):
     """Input that can be used but may be meant otherwise, told in one line as an `InputError` is.
 

@@ -16,7 +16,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, Generic, TypeVar
 
-from vedette.errors import InputError, nearest_name
+from vedette.errors import InputError, PartError, nearest_name
 
 T = TypeVar("T")
 
@@ -122,17 +122,17 @@ def said(error: Exception) -> str:
 
 @contextmanager
 def telling(what: str) -> Iterator[None]:
-    """Raise InputError, which names ``what`` and the line of its file, for whatever is raised within."""
+    """Raise PartError, which names ``what`` and the line of its file, for whatever is raised within."""
     try:
         yield
-    except InputError:
-        raise
+    except InputError as error:
+        raise PartError(str(error)) from error
     except Exception as error:
-        raise InputError(f"{what}: {said(error)}{_at(error)}") from error
+        raise PartError(f"{what}: {said(error)}{_at(error)}") from error
 
 
 def told(part: T, checks: Mapping[str, Check], name: str) -> T:
-    """Return the part, whose methods raise InputError, which names them, where they raise.
+    """Return the part, whose methods raise PartError, which names them, where they raise.
 
     Args:
         part: whose attributes can be set.

@@ -85,7 +85,7 @@ def test_a_worker_tells_in_which_line_an_own_planner_broke(tmp_path: Path) -> No
     )
     assert process.communicate(timeout=PATIENCE)[1] == b""
     assert process.returncode == 1
-    said = f"InputError: planner {name}: reply: RuntimeError: no way ({name.partition(':')[0]}.py, line 8)"
+    said = f"PartError: planner {name}: reply: RuntimeError: no way ({name.partition(':')[0]}.py, line 8)"
     assert figures(tmp_path / "out")[name]["error"] == said
 
 

@@ -26,6 +26,7 @@ from vedette.agent.events import (
 )
 from vedette.agent.messages import Beacon, Beacons, Vouched
 from vedette.agent.state import Agent
+from vedette.errors import PartError
 
 BEACON_PERIOD = 0.25  # [s]
 SHARE_PERIOD = 2.0  # evidence travels at least so often, rounds or not [s]
@@ -71,6 +72,8 @@ def _guarded(agent: Agent, sender: int, hear: Callable[[], list[Effect]]) -> lis
     """Hear a message; one that is malformed or out of place is the sender's fault: counted, never ours."""
     try:
         return hear()
+    except PartError:
+        raise
     except ValueError:
         agent.dropped += 1
         agent.dropped_of[sender] += 1
