@@ -30,6 +30,7 @@ from vedette.record.merge.summary import MergeSummary
 from vedette.record.monitor.summary import MonitorSummary
 from vedette.record.replay.summary import ReplaySummary
 from vedette.record.search.summary import SearchSummary
+from vedette.record.seek.summary import SeekSummary
 from vedette.record.summary import Timing
 from vedette.record.track.summary import TrackSummary
 from vedette.study.store import RunFile
@@ -41,6 +42,7 @@ KINDS: Mapping[str, type] = {
     "monitor-summary": MonitorSummary,
     "replay-summary": ReplaySummary,
     "merge": MergeSummary,
+    "seek-summary": SeekSummary,
     "timing": Timing,
     "status": TeamStatus,
     "robot-summary": RobotSummary,

@@ -25,6 +25,7 @@ class Outcome(StrEnum):
 
     COMPLETE = "complete", 0, "all that the team could do is done"
     FOUND = "found", 0, "a vehicle declared the target, and it is there"
+    MISSED = "missed", 1, "all that can be reached was searched, and nobody was found"
     MISTAKEN = "mistaken", 1, "a vehicle declared the target, and it is elsewhere"
     UNREACHED = "unreached", 1, "work is left that was given up, since nobody could reach it"
     ENCLOSED = "enclosed", 1, "work is left, but nobody who lives can move"

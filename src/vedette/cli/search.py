@@ -10,6 +10,7 @@ import click
 from vedette.cli.options import Output, fault_options, output_options
 from vedette.cli.running import Say, simulate
 from vedette.cli.searching import SEARCHING, searching_options
+from vedette.cli.seeking import OF_UNKNOWN_MAPS, OF_VEHICLES, check_together, seek, seeking_options
 from vedette.record.search.observer import SearchReport
 from vedette.run import Search
 
@@ -18,6 +19,7 @@ MOST_TRIALS = 1_000_000
 
 @click.command()
 @searching_options
+@seeking_options
 @fault_options
 @click.option(
     "--trials",
@@ -27,14 +29,26 @@ MOST_TRIALS = 1_000_000
 )
 @output_options
 @click.option("--no-compare", is_flag=True, help="Leave out the other ways of coordination.")
+@click.pass_context
 def search(
-    scenario_path: Path | None, trials: int | None, output: Output, no_compare: bool, **options: Any
+    context: click.Context,
+    scenario_path: Path | None,
+    unknown_map: bool,
+    trials: int | None,
+    output: Output,
+    no_compare: bool,
+    **options: Any,
 ) -> None:
     """Let a team of vehicles look for a hidden target in simulation: every vehicle runs its own agent.
 
-    SCENARIO is a YAML file; without it, four aircraft look for a raft adrift. Exit status: 0 found, 1 not
-    found in time or declared where it is not, 2 bad input, 130 interrupted.
+    SCENARIO is a YAML file; without it, four aircraft look for a raft adrift. With --unknown-map it is a map,
+    as `vedette explore` takes them, of a building in which robots look for somebody. Exit status: 0 found,
+    1 not found in time or declared where it is not, 2 bad input, 130 interrupted.
     """
+    check_together(context, unknown_map)
+    if unknown_map:
+        seek(scenario_path, output=output, **{k: v for k, v in options.items() if k not in OF_VEHICLES})
+    options = {name: value for name, value in options.items() if name not in OF_UNKNOWN_MAPS}
     mission = Search(scenario_path, **options)
 
     def beside(report: SearchReport, say: Say) -> SearchReport:

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from vedette.run.exploring import Explore, ExploreResult, explore
     from vedette.run.mission import Deciding
     from vedette.run.searching import Search, SearchResult, search
+    from vedette.run.seeking import Seek, SeekResult, seek
     from vedette.run.tracking import Track, TrackResult, track
 
 __all__ = [
@@ -20,10 +21,13 @@ __all__ = [
     "ExploreResult",
     "Search",
     "SearchResult",
+    "Seek",
+    "SeekResult",
     "Track",
     "TrackResult",
     "explore",
     "search",
+    "seek",
     "track",
 ]
 
@@ -32,6 +36,7 @@ _MODULES = {
     "exploring": ("Explore", "ExploreResult", "explore"),
     "mission": ("Deciding",),
     "searching": ("Search", "SearchResult", "search"),
+    "seeking": ("Seek", "SeekResult", "seek"),
     "tracking": ("Track", "TrackResult", "track"),
 }
 

@@ -37,7 +37,7 @@ from vedette.run.mission import Followers, ProgressSink, StepwiseMission
 from vedette.run.result import MissionResult
 from vedette.run.saved import read_saved_map
 from vedette.sim.explore.run import ExploreRun, prepare, views
-from vedette.sim.explore.simulation import ExploreSetup
+from vedette.sim.explore.simulation import ExploreSetup, ExploreSimulation
 from vedette.sim.orders import OrderAt, check_orders, load_orders
 
 _Mission: TypeAlias = StepwiseMission[ExploreSnapshot, Tour, Impact, ExploreReport]
@@ -132,16 +132,27 @@ class Explore(_Mission):
                 given, self.world, specs, str(orders) if isinstance(orders, str | Path) else "orders"
             )
             setup = replace(setup, orders=given)
-        self.simulation = prepare(self.world, specs, setup)
-        self.scene = ExploreScene.of(self.world, [spec.name for spec in specs])
+        simulation = prepare(self.world, specs, setup)
+        self._begin(simulation, ExploreRun, record, files_of(world, team, conditions.get("faults"), orders))
+
+    def _begin(
+        self,
+        simulation: ExploreSimulation,
+        kind: type[ExploreRun],
+        record: str | Path | None,
+        inputs: tuple[Path, ...],
+    ) -> None:
+        """Make the simulation one that a caller steps."""
+        self.simulation = simulation
+        self.scene = ExploreScene.of(self.world, [spec.name for spec in simulation.specs])
         followers = Followers[ExploreSnapshot]()
         super().__init__(
-            self.simulation,
-            ExploreRun(self.simulation, (followers,)),
+            simulation,
+            kind(simulation, (followers,)),
             followers,
             lambda place: ExploreMcapWriter(place, self.scene),
             record,
-            files_of(world, team, conditions.get("faults"), orders),
+            inputs,
         )
 
     @property

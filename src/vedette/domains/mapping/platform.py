@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.budget import WayLeft
 from vedette.domains.mapping.impact import NOTHING, Impact
+from vedette.domains.mapping.layers import TimeLayers
 from vedette.domains.mapping.sightings import SightingModel, beam_model, measured_model
 from vedette.domains.mapping.stops import (
     CLEARANCES,
@@ -29,7 +30,7 @@ from vedette.domains.mapping.stops import (
 )
 from vedette.domains.mapping.views import by_way, look
 from vedette.kernels import coverage
-from vedette.kernels.coverage import LAYERS
+from vedette.kernels.coverage import LAYERS, Footprints
 from vedette.team import PlatformSpec
 
 LEAST_AREA = 0.08  # a stop must promise this much [m^2] ...
@@ -64,6 +65,16 @@ class Tour:
     def after_first(self) -> Tour:
         """Return the tour without its first stop."""
         return Tour(self.targets[1:], self.views[1:], self.arrivals[1:], self.unknown[1:], self.stops[1:])
+
+
+def on_the_way(marks: Footprints, tour: Tour, layers: TimeLayers) -> Impact:
+    """Return what a tour shows of what its stops do, each in the layer of its arrival."""
+    total = NOTHING.sparse
+    for stop, arrival in zip(tour.stops, tour.arrivals, strict=True):
+        row = slice(marks.starts[stop], marks.starts[stop + 1])
+        keys = marks.cells[row] * np.uint32(LAYERS) + np.uint32(layers.layer(arrival))
+        total = coverage.combine(*total, keys, marks.misses[row])
+    return Impact(*total)
 
 
 _NONE, _NOWHERE = np.empty(0, np.int64), np.empty((0, 2))
@@ -359,13 +370,7 @@ class MappingPlatform:
         if not len(strategy):
             return NOTHING
         assert self.stops is not None
-        marks = self.stops.footprints
-        total = NOTHING.sparse
-        for stop, arrival in zip(strategy.stops, strategy.arrivals, strict=True):
-            row = slice(marks.starts[stop], marks.starts[stop + 1])
-            keys = marks.cells[row] * np.uint32(LAYERS) + np.uint32(belief.layers.layer(arrival))
-            total = coverage.combine(*total, keys, marks.misses[row])
-        return Impact(*total)
+        return on_the_way(self.stops.footprints, strategy, belief.layers)
 
     def reply(self, belief: MapBelief, others: Impact, current: Tour) -> Tour:
         """Best tour found against the rest of the team, if clearly better than the present one.

@@ -156,7 +156,7 @@ def find_stops(
         np.array([unknown_near(belief.classes, frame, x, y) for x, y in target_points], np.int64),
         Footprints(starts, belief.planning_cells(cells), quantise(expected)),
         way / np.float32(spec.speed),
-        _legs(belief, ground, views) / np.float32(spec.speed) if tours else _no_legs(len(views)),
+        legs_between(belief, ground, views) / np.float32(spec.speed) if tours else _no_legs(len(views)),
     )
 
 
@@ -229,7 +229,7 @@ def _no_legs(stops: int) -> NDArray[np.float32]:
     return np.full((stops, stops), np.inf, np.float32)
 
 
-def _legs(belief: MapBelief, ground: Ground, views: NDArray[np.int64]) -> NDArray[np.float32]:
+def legs_between(belief: MapBelief, ground: Ground, views: NDArray[np.int64]) -> NDArray[np.float32]:
     """Path lengths between viewpoints, on the planning grid: a planning cell is passable if any of it is."""
     factor, cols = belief.factor, belief.frame.cols
     rows_over, cols_over = -belief.frame.rows % factor, -cols % factor

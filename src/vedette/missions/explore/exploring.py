@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,6 +47,7 @@ from vedette.missions.explore.own_map import OwnMap
 from vedette.missions.explore.resort import LastResort, hemmed_in
 from vedette.missions.explore.ways import Ways
 from vedette.outcome import Outcome
+from vedette.problem import Codec, Objective
 from vedette.team import Most, PlatformSpec
 
 COUNTS_PERIOD = 10.0  # the model's counts are shared at most so often [s]
@@ -65,8 +67,8 @@ class Exploring:
     fusion: Fusion
     strategy: Tour = STAY
     most: Most | None = None  # of any robot in the team; None: not known, so that no claim is too large
-    objective: MappingObjective = field(default_factory=MappingObjective)
-    codec: MapImpactCodec = field(init=False)
+    objective: Objective[Any, Any] = field(default_factory=MappingObjective)
+    codec: Codec[Any] = field(init=False)
     platform: MappingPlatform = field(init=False)
     own: OwnEvidence = field(init=False)
     frontiers: int | None = None  # of the latest round's map; None: there has been none
@@ -134,12 +136,16 @@ class Exploring:
         counts = None
         if now >= self._counts_due:
             self._counts_due = now + COUNTS_PERIOD
-            counts = self.own.counts.ravel().copy()
+            counts = self._own_counts()
         changed = self.own.news()
         if self.signed is not None:
             self.signed.tell(self._own_notes())
         if len(changed) or counts is not None or self.signed is not None:
             self.fusion.publish(self.own.log_odds, changed, counts)
+
+    def _own_counts(self) -> NDArray[np.int64]:
+        """Return what the team adds up beside the map."""
+        return self.own.counts.ravel().copy()
 
     # -- planning -----------------------------------------------------------------------------------
 
@@ -187,7 +193,7 @@ class Exploring:
             return_price=self.planner.return_price,
             turn=self.planner.turn,
             layers=self.planner.layers,
-            counts=self.fusion.counts.reshape(4, BINS).copy(),
+            counts=self.fusion.counts[: 4 * BINS].reshape(4, BINS).copy(),
             known=known,
             leave=self._leave or None,
             priorities=self._priorities,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from vedette.kernels.motion import remaining
 from vedette.maps.world import World
@@ -21,7 +22,14 @@ from vedette.team import PlatformSpec, check_team
 
 
 def prepare(world: World, specs: Sequence[PlatformSpec], setup: ExploreSetup) -> ExploreSimulation:
-    """Put a team at its starts, those that are not given chosen by the seed.
+    """Put a team at its starts, as `placed` chooses them."""
+    return ExploreSimulation(world, *placed(world, specs, setup), setup)
+
+
+def placed(
+    world: World, specs: Sequence[PlatformSpec], setup: ExploreSetup
+) -> tuple[tuple[PlatformSpec, ...], NDArray[np.float64]]:
+    """Return a team with its starts, those that are not given chosen by the seed.
 
     Raises:
         InputError: nobody is in the team, or two of one name; a start is not possible, the team does not fit;
@@ -30,8 +38,7 @@ def prepare(world: World, specs: Sequence[PlatformSpec], setup: ExploreSetup) ->
     specs = check_team(specs)
     setup.check_team(len(specs))
     area = setup.options.lattice_on(world.frame).area
-    starts = choose_starts(world, specs, np.random.default_rng([setup.seed, 1]), area)
-    return ExploreSimulation(world, specs, starts, setup)
+    return specs, choose_starts(world, specs, np.random.default_rng([setup.seed, 1]), area)
 
 
 class ExploreRun(Watched[ExploreReport]):
@@ -98,7 +105,7 @@ def _view(simulation: ExploreSimulation, i: int, ways: bool) -> RobotView:
         sample,
         mission.frame.window(*mission.known),
         *held(mission.fusion.classes, mission.own.log_odds, mission.known),
-        simulation.network.agents[i].rounds.impact,
+        simulation.promised(i),
         GroundFigures(
             **vars(figures(simulation, i, float(bodies.travelled[i]))),
             collisions=int(bodies.collisions[i]),

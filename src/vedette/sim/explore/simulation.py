@@ -16,6 +16,7 @@ from vedette.agent.driving import Driver
 from vedette.agent.events import Ordered
 from vedette.agent.orders import Given, Order, encode
 from vedette.agent.state import State
+from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.planners import DEFAULT
 from vedette.maps.area import Area
 from vedette.maps.world import World
@@ -73,11 +74,15 @@ class ExploreSimulation(Simulation):
         self.lattice = setup.options.lattice_on(world.frame)
         self.setup = setup
         self.world, self.specs, self.starts = world, tuple(specs), starts
-        self.robots = Robots(world, self.specs, starts, random_streams(setup.seed, len(specs)))
+        self.robots = self._bodies()
         super().__init__(self._explorer, self.robots, setup, world)
         self._orders, self._given = list(setup.orders), 0
         self._told = Queue[Order]()  # from other threads
         self._paused = -inf  # when anybody was told to wait last [s]
+
+    def _bodies(self) -> Robots:
+        """Return the robots at their starts."""
+        return Robots(self.world, self.specs, self.starts, random_streams(self.setup.seed, len(self.specs)))
 
     def _explorer(self, robot: int, boot: int) -> Agent:
         specs = self.specs
@@ -123,6 +128,11 @@ class ExploreSimulation(Simulation):
     def held(self, robots: Sequence[int]) -> list[int]:
         """Return the digests of their maps."""
         return [self.missions[i].fusion.digest for i in robots]
+
+    def promised(self, robot: int) -> Impact | None:
+        """Return what a robot's strategy is to show of the map; None: it has none."""
+        impact: Impact | None = self.network.agents[robot].rounds.impact
+        return impact
 
     @property
     def missions(self) -> list[Exploring]:

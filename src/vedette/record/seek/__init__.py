@@ -1,0 +1,1 @@
+"""What is told of a search in an unknown building."""

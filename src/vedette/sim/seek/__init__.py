@@ -1,0 +1,1 @@
+"""Looking for somebody in an unknown building, in simulation."""
