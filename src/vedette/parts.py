@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache, wraps
 from importlib.metadata import EntryPoint, entry_points
+from math import isfinite
 from pathlib import Path
 from types import ModuleType
 from typing import Any, Generic, TypeVar
@@ -129,6 +130,18 @@ def telling(what: str) -> Iterator[None]:
         raise PartError(str(error)) from error
     except Exception as error:
         raise PartError(f"{what}: {said(error)}{_at(error)}") from error
+
+
+def number(returned: Any) -> None:
+    """Raise TypeError or ValueError for what is no finite number."""
+    if not isfinite(returned):
+        raise ValueError(f"gives {returned}; a finite number is asked for")
+
+
+def numbers(returned: Any) -> None:
+    """Raise TypeError or ValueError for what has another thing than finite numbers in it."""
+    for each in returned:
+        number(each)
 
 
 def told(part: T, checks: Mapping[str, Check], name: str) -> T:

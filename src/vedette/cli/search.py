@@ -32,6 +32,7 @@ MOST_TRIALS = 1_000_000
 @click.pass_context
 def search(
     context: click.Context,
+    /,
     scenario_path: Path | None,
     unknown_map: bool,
     trials: int | None,

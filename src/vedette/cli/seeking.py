@@ -21,6 +21,7 @@ from vedette.run.seeking import Seek
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 
 OF_UNKNOWN_MAPS = ("robots", "team", "resolution", "order", "reach")
+MAX_TIME = 3600.0  # [s]
 OF_VEHICLES = ("coordination", "fusion", "trials", "no_compare")
 
 
@@ -75,8 +76,7 @@ def seek(
 ) -> NoReturn:
     """Let robots look for somebody in a building that they do not know."""
     world, specs = world_named(map_path, resolution), team_named(team, robots, None)
-    limits = {} if max_time is None else {"max_time": max_time}
-    mission = Seek(world, specs, **options, **limits)
+    mission = Seek(world, specs, max_time=MAX_TIME if max_time is None else max_time, **options)
     mission.inputs += files_of(None, team)
     simulate(SEEKING, mission, mission.scene, output)
 

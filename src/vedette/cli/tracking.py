@@ -8,9 +8,9 @@ from typing import Any, TypeVar
 
 import click
 
-from vedette.cli.options import FILE, OneOf, Positive, seed_option, with_options
+from vedette.cli.options import FILE, Named, OneOf, Positive, seed_option, with_options
 from vedette.cli.running import Kind
-from vedette.domains.tracking.objective import OBJECTIVES
+from vedette.domains.tracking.objective import OBJECTIVE
 from vedette.fusion.gaussian import WAYS
 from vedette.missions.pairs import SCHEME
 from vedette.missions.track.options import COORDINATIONS
@@ -48,7 +48,7 @@ def tracking_options(command: CommandT) -> CommandT:
         ),
         click.option(
             "--objective",
-            type=OneOf(list(OBJECTIVES)),
+            type=Named(OBJECTIVE),
             help="What they gain.  [default: the scenario's, else trajectory]",
         ),
         click.option(

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Unpack
 
+from vedette.missions.seek.options import SeekOptions
 from vedette.record.explore.log import ExploreSnapshot
 from vedette.record.explore.observer import ExploreReport
 from vedette.record.seek.summary import SeekSummary
@@ -14,7 +15,7 @@ from vedette.run.exploring import Explore, ExploreResult
 from vedette.run.inputs import ROBOTS, AnyTeam, AnyWorld, Conditions, files_of, setup_of, team_of, world_of
 from vedette.run.mission import ProgressSink
 from vedette.sim.seek.run import SeekRun, prepare
-from vedette.sim.seek.simulation import SeekOptions, SeekSetup
+from vedette.sim.seek.simulation import SeekSetup
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vedette.errors import InputError
+from vedette.parts import PartKind, telling
 
 DELAYS = np.array([0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0])  # after the horizon [horizons], first in each layer
 
@@ -25,6 +28,7 @@ class Worth:
 
     def __post_init__(self) -> None:
         weights = np.asarray(self.weights, np.float64)
+        object.__setattr__(self, "weights", weights)
         if self.horizon < 1 or weights.shape not in (
             (self.horizon,),
             (self.horizon + len(DELAYS),),
@@ -94,4 +98,34 @@ def _worth(weights: NDArray[np.float64], tail: float) -> Worth:
     return Worth(np.append(weights, tail * weights[-1] / (1.0 + DELAYS)), len(weights))
 
 
-WORTHS = {"plain": plain, "discounted": discounted, "endless": endless, "mean-time": mean_time}
+# From the horizon [steps], the worth of a step's delay, and that of what is promised after the horizon.
+WorthOf: TypeAlias = Callable[[int, float, float], Worth]
+WORTHS: dict[str, WorthOf] = {
+    "plain": lambda horizon, gamma, tail: plain(horizon, tail),
+    "discounted": discounted,
+    "endless": endless,
+    "mean-time": lambda horizon, gamma, tail: mean_time(horizon, tail),
+}
+
+
+def _wrong(part: Any) -> str | None:
+    return None if callable(part) else f"is {type(part).__name__}, not a function that returns a Worth"
+
+
+WORTH: PartKind[WorthOf] = PartKind("worths", "worth", WORTHS, _wrong, "docs/how-to/own-objective.md")
+
+
+def worth_of(name: str, horizon: int, gamma: float, tail: float) -> Worth:
+    """Return what detections are worth.
+
+    Raises:
+        InputError: there is no worth of this name, or it cannot be so.
+    """
+    make = WORTH.find(name)
+    if name in WORTHS:
+        return make(horizon, gamma, tail)
+    with telling(f"worth {name}"):
+        own = make(horizon, gamma, tail)
+        if not isinstance(own, Worth) or own.horizon != horizon:
+            raise TypeError(f"gives {type(own).__name__}; a Worth of {horizon} steps is asked for")
+    return own

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,8 +11,8 @@ from numpy.typing import NDArray
 from vedette.domains.tracking import impact as impacts
 from vedette.domains.tracking.belief import Tracks
 from vedette.domains.tracking.impact import Impact, Impacts
-from vedette.errors import InputError, nearest_name
 from vedette.kernels.tracking import Measure, chain_gradient, chain_values
+from vedette.parts import PartKind, number, numbers, telling, told
 from vedette.problem import Objective, Reach
 
 
@@ -173,12 +174,27 @@ OBJECTIVES: dict[str, type[TrackingObjective]] = {
 }
 
 
+def _wrong(part: Any) -> str | None:
+    return None if callable(part) else f"is {type(part).__name__}, not a class of objectives"
+
+
+OBJECTIVE: PartKind[Callable[[], TrackingObjective]] = PartKind(
+    "objectives", "objective", OBJECTIVES, _wrong, "docs/how-to/own-objective.md"
+)
+
+
 def objective(name: str) -> TrackingObjective:
     """Return the objective of this name.
 
     Raises:
-        InputError: there is none.
+        InputError: there is none, or what its class makes is none.
     """
-    if name not in OBJECTIVES:
-        raise InputError(f"unknown objective {name!r}; {nearest_name(name, OBJECTIVES)}")
-    return OBJECTIVES[name]()
+    make = OBJECTIVE.find(name)
+    if name in OBJECTIVES:
+        return make()
+    where = f"objective {name}"
+    with telling(where):
+        own = make()
+        if not isinstance(own, TrackingObjective):
+            raise TypeError(f"gives {type(own).__name__}; a TrackingObjective is asked for")
+    return told(own, {"value": number, "values": numbers}, where)

@@ -20,6 +20,7 @@ from vedette.maps import GridFrame
 from vedette.missions.search.prior import parts_of, prior_of
 from vedette.missions.search.scenario import SearchScenario
 from vedette.missions.search.suits import MOST_CELLS, check_cells, check_drift
+from vedette.parts import look_in
 from vedette.scenario import as_scenario, load_scenario
 
 DEFAULT = "search.yaml"
@@ -78,6 +79,7 @@ def read_case(path: Path | str) -> SearchCase:
     Raises:
         InputError: as ``vedette.scenario.load_scenario`` and `made`.
     """
+    look_in(Path(path).parent)
     return made(load_scenario(path, SearchScenario, "search scenario"), Path(path))
 
 
@@ -94,6 +96,7 @@ def made(scenario: SearchScenario, path: Path) -> SearchCase:
         _check_area(scenario)
         _check_step(scenario)
         _check_vehicles(scenario)
+        _ = scenario.weights
         frame, target = scenario.frame, scenario.target
         if target.start is not None:
             _check_inside("target.start", target.start, frame)

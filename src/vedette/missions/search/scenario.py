@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 
 from msgspec import Meta, Struct, field
 
-from vedette.domains.search.worth import Worth, discounted, endless, mean_time, plain
+from vedette.domains.search.worth import Worth, worth_of
 from vedette.maps import GridFrame
 from vedette.scenario import Metre, Name
 
@@ -128,7 +128,7 @@ class SearchScenario(Struct, forbid_unknown_fields=True, frozen=True, kw_only=Tr
     horizon: Annotated[int, Meta(ge=2, le=60)] = 10  # [steps]
     replan: Annotated[int, Meta(ge=1, le=60)] = 1  # a round each so many [steps]
     decisions: Annotated[int, Meta(ge=1, le=5)] = 4  # turn rates chosen in a horizon
-    worth: Literal["plain", "discounted", "endless", "mean-time"] = "discounted"
+    worth: str = "discounted"  # a name of ``vedette.domains.search.worth.WORTH``
     gamma: Annotated[float, Meta(gt=0.0, le=1.0)] = (
         0.97  # worth of a step's delay, for `discounted` and `endless`
     )
@@ -150,12 +150,4 @@ class SearchScenario(Struct, forbid_unknown_fields=True, frozen=True, kw_only=Tr
     @property
     def weights(self) -> Worth:
         """What detections are worth when."""
-        match self.worth:
-            case "plain":
-                return plain(self.horizon, self.tail)
-            case "discounted":
-                return discounted(self.horizon, self.gamma, self.tail)
-            case "endless":
-                return endless(self.horizon, self.gamma, self.tail)
-            case "mean-time":
-                return mean_time(self.horizon, self.tail)
+        return worth_of(self.worth, self.horizon, self.gamma, self.tail)

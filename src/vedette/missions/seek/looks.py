@@ -43,7 +43,8 @@ class Looker:
         cells = (tops[:, None] * -(-cols // factor) + lefts)[near]
         free = self.classes.ravel()[ahead] == FREE
         ahead, cells = ahead[free], cells[free]
-        return cells[line_of_sight(self.classes != FREE, int(cell), ahead)]
+        seen: NDArray[np.int64] = cells[line_of_sight(self.classes != FREE, int(cell), ahead)]
+        return seen
 
 
 def room_for_somebody(classes: NDArray[np.uint8], factor: int) -> NDArray[np.float64]:
@@ -52,7 +53,7 @@ def room_for_somebody(classes: NDArray[np.uint8], factor: int) -> NDArray[np.flo
     rows, cols = -(-classes.shape[0] // factor), -(-classes.shape[1] // factor)
     padded = np.zeros((rows * factor, cols * factor))
     padded[: classes.shape[0], : classes.shape[1]] = room
-    return padded.reshape(rows, factor, cols, factor).sum(axis=(1, 3))
+    return np.asarray(padded.reshape(rows, factor, cols, factor).sum(axis=(1, 3)))
 
 
 def search_belief(belief: MapBelief, looked: NDArray[np.int64]) -> SearchBelief:

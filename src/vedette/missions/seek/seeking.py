@@ -93,8 +93,8 @@ class Seeking(Exploring):
         if looker.classes[row, col] != FREE:
             return
         seen = looker.seen(row * looker.classes.shape[1] + col)
-        row, col = np.divmod(seen, -(-looker.classes.shape[1] // factor))
-        cells = (row + rows.start // factor) * self._planning.cols + col + cols.start // factor
+        tops, lefts = np.divmod(seen, -(-looker.classes.shape[1] // factor))
+        cells = (tops + rows.start // factor) * self._planning.cols + lefts + cols.start // factor
         self._looked[cells] += levels(self.seek.detection)
 
     def _own_counts(self) -> NDArray[np.int64]:

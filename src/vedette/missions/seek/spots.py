@@ -37,7 +37,8 @@ def good_spots(
     least = LEAST_ROOM / belief.frame.resolution**2
     waiting = _bounds(belief, ground, unsearched, reach, least)
     chosen: list[int] = []
-    looks, round_of = 0, {}
+    looks = 0
+    round_of: dict[int, int] = {}  # in which each was looked at last
     while waiting and len(chosen) < MOST_SPOTS and looks < MOST_LOOKS:
         bound, cell = heapq.heappop(waiting)
         if -bound < least:

@@ -7,7 +7,7 @@ import warnings
 from collections.abc import Sequence
 from importlib import resources
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import Annotated, Any, TypeAlias
 
 import numpy as np
 import yaml
@@ -17,11 +17,13 @@ from numpy.typing import NDArray
 from vedette.agent.body import TICK
 from vedette.domains.tracking.belief import Tracks, tracks
 from vedette.domains.tracking.models import STATE, TargetModel, constant_velocity, static
+from vedette.domains.tracking.objective import OBJECTIVE
 from vedette.domains.tracking.sensing import Sensor
 from vedette.domains.tracking.sensors import sensor_of
 from vedette.domains.tracking.tail import edges
 from vedette.errors import InputError, InputWarning
 from vedette.number import many
+from vedette.parts import look_in
 from vedette.scenario import Metre, Name, as_scenario, load_scenario
 
 Numbers: TypeAlias = tuple[Annotated[float, Meta(ge=-1e12, le=1e12)], ...]
@@ -103,7 +105,7 @@ class TrackScenario(Struct, forbid_unknown_fields=True, frozen=True, kw_only=Tru
     horizon: Annotated[int, Meta(ge=1, le=50)] = 6  # [steps]
     decisions: Annotated[int, Meta(ge=1, le=5)] = 5  # turn rates chosen independently in a horizon
     tail: Annotated[float, Meta(ge=0.0, le=86400.0)] | None = None  # [s] after the horizon; see ``layers``
-    objective: Literal["trajectory", "endless", "final-entropy", "final-variance"] = "trajectory"
+    objective: str = "trajectory"  # a name of ``vedette.domains.tracking.objective.OBJECTIVE``
 
     @property
     def vehicle_names(self) -> list[str]:
@@ -170,6 +172,7 @@ def read_scenario(path: Path | str) -> TrackScenario:
     Raises:
         InputError: as ``vedette.scenario.load_scenario`` and `checked`.
     """
+    look_in(Path(path).parent)
     return checked(load_scenario(path, TrackScenario, "tracking scenario"), str(path))
 
 
@@ -199,6 +202,7 @@ def checked(scenario: TrackScenario, where: str) -> TrackScenario:
                 _check_inside(f"targets[{i}].start", target.start, scenario.area)
             _tell_if_it_goes_far(f"{where}: targets[{i}]", target, scenario)
         _ = scenario.sensors
+        OBJECTIVE.find(scenario.objective)
     except InputError as error:
         raise InputError(f"{where}: {error}") from error
     return scenario
