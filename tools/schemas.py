@@ -28,6 +28,7 @@ from vedette.net.status import TeamStatus
 from vedette.record.explore.summary import ExploreSummary
 from vedette.record.merge.summary import MergeSummary
 from vedette.record.monitor.summary import MonitorSummary
+from vedette.record.own.summary import OwnSummary
 from vedette.record.replay.summary import ReplaySummary
 from vedette.record.search.summary import SearchSummary
 from vedette.record.seek.summary import SeekSummary
@@ -43,6 +44,7 @@ KINDS: Mapping[str, type] = {
     "replay-summary": ReplaySummary,
     "merge": MergeSummary,
     "seek-summary": SeekSummary,
+    "own-summary": OwnSummary,
     "timing": Timing,
     "status": TeamStatus,
     "robot-summary": RobotSummary,

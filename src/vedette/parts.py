@@ -71,6 +71,11 @@ class PartKind(Generic[T]):
         return name if is_reference(name) else _entries(self.group)[name].value
 
 
+def named(group: str) -> list[str]:
+    """Return the names of the entry points of a group."""
+    return list(_entries(group))
+
+
 def is_reference(name: object) -> bool:
     """Tell whether a name is ``module:NAME``."""
     return isinstance(name, str) and all(name.partition(":"))

@@ -16,7 +16,8 @@ from vedette.cli.pipes import readers_may_leave
 from vedette.errors import InputError, InputWarning, check_word
 from vedette.interrupt import ending_on_any_signal
 from vedette.outcome import Outcome
-from vedette.sim.domains import DOMAINS, DomainEntry
+from vedette.parts import is_reference, named
+from vedette.sim.domains import DOMAINS, DomainEntry, entry_of, own_domain
 
 BAD_INPUT = 2
 
@@ -29,6 +30,7 @@ COMMANDS = {
     "map": "Fetch the map of a team on the network.",
     "merge": "Join maps whose frames are not known to each other.",
     **{name: domain.line for name, domain in DOMAINS.items()},
+    "new": "Begin something of your own from a skeleton.",
     "order": "Give a team on the network an order: pause, recall, a no-go area ...",
     "plot": "Draw the pictures of a run anew.",
     "replay": "Let recorded lidar data go through a team's agents.",
@@ -51,25 +53,25 @@ class _Commands(click.Group):
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names of all commands."""
-        return list(COMMANDS)
+        return [*COMMANDS, *(name for name in named("missions") if name not in COMMANDS)]
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
         """Return the command that is asked for; for another word, the nearest one is offered."""
-        if not ctx.resilient_parsing and not args[0].startswith("-"):
-            check_word("command", args[0], COMMANDS)
+        if not (ctx.resilient_parsing or args[0].startswith("-") or is_reference(args[0])):
+            check_word("command", args[0], self.list_commands(ctx))
         return super().resolve_command(ctx, args)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Return a command: its module and function have its name, if they can; or a domain has."""
-        if cmd_name not in COMMANDS:
-            return None
-        if cmd_name in DOMAINS:
+        if cmd_name in DOMAINS or (cmd_name not in COMMANDS and own_domain(cmd_name)):
             command_of: Callable[[DomainEntry], click.Command] = import_module(
                 "vedette.cli.domain"
             ).command_of
-            return command_of(DOMAINS[cmd_name])
+            return command_of(entry_of(cmd_name))
+        if cmd_name not in COMMANDS:
+            return None
         module = import_module(f"vedette.cli.{cmd_name}")
         command: click.Command = getattr(module, _FUNCTIONS.get(cmd_name, cmd_name))
         return command
@@ -77,7 +79,8 @@ class _Commands(click.Group):
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write what each command does, in a line."""
         with formatter.section("Commands"):
-            formatter.write_dl(list(COMMANDS.items()))
+            own = [(name, "A domain of somebody's own.") for name in self.list_commands(ctx)[len(COMMANDS) :]]
+            formatter.write_dl([*COMMANDS.items(), *own])
 
 
 @click.command(

@@ -51,7 +51,7 @@ from vedette.record.track.log import TrackScene
 from vedette.run.inputs import files_of, schedule_of, world_of
 from vedette.run.searching import case_of, heat_maps
 from vedette.run.tracking import scenario_of
-from vedette.sim.domains import DOMAINS, DomainEntry
+from vedette.sim.domains import DOMAINS, DomainEntry, entry_of, own_domain
 from vedette.sim.faults import Schedule, faults_text
 from vedette.sim.search.hidden import Hidden
 from vedette.sim.starts import choose_starts
@@ -90,9 +90,10 @@ class _Missions(click.Group):
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Return a mission's command."""
-        return (
-            _domain_command(DOMAINS[cmd_name]) if cmd_name in DOMAINS else super().get_command(ctx, cmd_name)
-        )
+        house = super().get_command(ctx, cmd_name)
+        if house is not None or not (cmd_name in DOMAINS or own_domain(cmd_name)):
+            return house
+        return _domain_command(entry_of(cmd_name))
 
 
 @click.group(cls=_Missions)

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from vedette.errors import check_word
+from vedette.parts import is_reference, look_in, named
 
 if TYPE_CHECKING:  # whoever asks for help does not wait for the domain itself
     from vedette.sim.domain import Domain
@@ -45,7 +47,33 @@ _ALL = (
         ("optimum",),
     ),
 )
+OWN = "vedette.sim.own.domain:OwnDomain"
 DOMAINS: Mapping[str, DomainEntry] = {each.name: each for each in _ALL}
+
+
+def own_domain(name: str) -> bool:
+    """Tell whether a word names a domain of somebody's own; this folder may have its module."""
+    if is_reference(name):
+        look_in(Path())
+        return True
+    return name in named("missions")
+
+
+def entry_of(name: str) -> DomainEntry:
+    """Return the entry of a domain by its name; ``module:NAME`` and entry points are somebody's own.
+
+    Raises:
+        InputError: there is none of that name.
+    """
+    if name in DOMAINS:
+        return DOMAINS[name]
+    if not (is_reference(name) or name in named("missions")):
+        check_word("domain", name, (*DOMAINS, *named("missions")))
+    # imported now: who asks for an own domain waits for it
+    theory = import_module("vedette.missions.own.theory").MISSION.find(name)
+    about = " ".join((theory.__doc__ or name).split())
+    line = about.partition(". ")[0].rstrip(".") + "."
+    return DomainEntry(name, line, about, "what is there, and all chance", OWN)
 
 
 def domain_of(name: str) -> Domain[Any, Any, Any, Any, Any]:
@@ -54,5 +82,4 @@ def domain_of(name: str) -> Domain[Any, Any, Any, Any, Any]:
     Raises:
         InputError: there is none of that name.
     """
-    check_word("domain", name, DOMAINS)
-    return DOMAINS[name].load()
+    return entry_of(name).load()

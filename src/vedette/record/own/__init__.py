@@ -1,0 +1,1 @@
+"""What is told of a mission of an own domain."""

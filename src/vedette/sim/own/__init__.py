@@ -1,0 +1,1 @@
+"""Missions of own domains, simulated."""
