@@ -14,7 +14,9 @@ from tests.support.own_parts import example, installed, module
 from vedette import parts, run
 from vedette.domains.mapping.planners import PLANNER, planner
 from vedette.errors import InputError
+from vedette.net.own import OwnSettings
 from vedette.parts import PartKind, look_in
+from vedette.team import PlatformSpec
 
 NUMBER: PartKind[int] = PartKind(
     "numbers", "number", {"one": 1}, lambda part: None if isinstance(part, int) else "is no number", "a.md"
@@ -127,6 +129,12 @@ def test_the_fingerprint_of_a_part_changes_with_all_code_beside_it_that_it_uses(
     (tmp_path / f"{helper}.py").write_text("def three(): return 1 + 2\n")
     assert fingerprint() != first
     assert NUMBER.fingerprint("one") is None
+
+
+def test_a_body_is_found_by_an_entry_point(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    installed(tmp_path, "bodies", monkeypatch, hall=f"{example('own_body', tmp_path)}:HallRobot")
+    body = OwnSettings("hall", {"size": [9.0, 6.0]}).body(PlatformSpec(start=(1.0, 1.0, 0.0)), tmp_path)
+    assert body.pose == (1.0, 1.0, 0.0)
 
 
 # -- planners -----------------------------------------------------------------------------------------

@@ -44,7 +44,6 @@ class SeekingPlatform(MappingPlatform):
 
     seek: SeekOptions = field(default_factory=SeekOptions)
     worth: float = 1.0  # of finding somebody [nat]
-    sought: SearchBelief | None = None  # of the round
     unsearched: NDArray[np.float64] | None = None  # (r, c) as ``good_spots`` has it
     looks: Footprints | None = None  # of the round's stops, probabilities of seeing somebody
 

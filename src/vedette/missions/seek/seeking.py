@@ -111,9 +111,8 @@ class Seeking(Exploring):
         self, belief: Belief, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float
     ) -> None:
         """Find the stops of a round, frontiers and places to look from."""
-        known, sought = belief
-        self._seeker.sought, self._seeker.unsearched = sought, self._unsearched(belief)
-        super().prepare(known, pose, mates, blocked, now)
+        self._seeker.unsearched = self._unsearched(belief)
+        super().prepare(belief[0], pose, mates, blocked, now)
 
     def _unsearched(self, belief: Belief) -> NDArray[np.float64]:
         """Return ``(r, c)`` free cells of each of the window's planning cells that nobody has looked at.
