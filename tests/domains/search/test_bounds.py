@@ -23,6 +23,12 @@ def test_a_definite_sensor_sweeps_its_diameter_and_effort_is_its_log_miss() -> N
     assert bounds.search_effort(DefiniteRange(detection=1.0)) == np.inf
 
 
+def test_the_effort_of_a_faint_look_is_the_integral_of_its_probability_over_the_disc() -> None:
+    faint = ExponentialRange(detection=1e-7, range=50.0, sigma=50.0, view=90.0)
+    whole = 1e-7 * np.pi * 50.0**2 * (1.0 - np.exp(-1.0))
+    assert bounds.search_effort(faint) == pytest.approx(0.25 * whole, rel=1e-6, abs=0.0)
+
+
 def test_faint_looks_sweep_as_wide_as_their_effort_over_their_spacing() -> None:
     sensor = ExponentialRange(detection=0.01, range=200.0, sigma=50.0)
     spacing = 40.0 * 1.0
