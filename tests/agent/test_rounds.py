@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.fuzz.fingerprint import fingerprint
-from tests.support.agent_team import Post, Team, nested_kind, toy, toy_team
+from tests.support.agent_team import Post, Team, nested_kind, toy, toy_agent, toy_team
 from vedette import Tree, negotiate
 from vedette.agent import Pace, messages
 from vedette.agent.effects import TrafficKind
@@ -80,6 +80,18 @@ def test_all_freeze_a_round_with_the_same_time_by_the_roots_clock() -> None:
     [t0] = {t0 for agent in team.agents for t0 in toy(agent).frozen_at}
     [sent] = {post.time for post in team.log if nested_kind(post) == "Freeze" and post.sender == 0}
     assert t0 == pytest.approx(sent, abs=5e-4)
+
+
+@pytest.mark.parametrize("worth", [1e-3, 1.0, 1e3])
+def test_of_a_round_with_a_bound_its_value_over_that_is_kept_however_little_is_at_stake(worth: float) -> None:
+    tree = Tree.chain(3)
+    _, candidates, belief = toy_team(tree, 2)
+    team = Team([toy_agent(i, own, worth * belief) for i, own in enumerate(candidates)], tree)
+    team.run_round()
+    agreed = negotiate(Coverage(), worth * belief, candidates, tree, max_sweeps=12)
+    assert agreed.bound is not None
+    for agent in team.agents:
+        assert agent.rounds.bound_ratios == pytest.approx([agreed.value / agreed.bound])
 
 
 @pytest.mark.parametrize("size", [1, 2, 7, 64])

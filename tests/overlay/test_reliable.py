@@ -242,6 +242,16 @@ def test_memory_is_bounded_at_either_end() -> None:
         assert (ack, more) == (0, int(is_kept))
 
 
+def test_no_more_messages_are_under_way_than_the_other_end_keeps() -> None:
+    link = ReliableLink(1)
+    link.open(2, STAMP, 0.0)
+    for _ in range(link_module.WINDOW + 40):
+        link.send(PAYLOAD, 0.0)
+    for now in (0.0, 0.5, 3.0):
+        link.poll(now)
+    assert link.carried == link_module.WINDOW * len(PAYLOAD)
+
+
 def wire_session() -> int:
     """The session of packets from robot life 1 to 2 on the stamp."""
     link = ReliableLink(1)
