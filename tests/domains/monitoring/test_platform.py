@@ -125,6 +125,12 @@ def test_two_that_stand_together_do_not_take_the_same_way() -> None:
     assert np.hypot(*np.subtract(one.places[-1], other.places[-1])) > 2.0
 
 
+def test_a_lawn_mower_turns_at_the_end_of_each_line_to_the_next() -> None:
+    places = np.array(lawnmower((0.0, 10.0, 2.0, 8.0), 1.5).places)
+    legs = np.hypot(*np.diff(places, axis=0).T)
+    np.testing.assert_allclose(legs, [10.0, 1.5, 10.0, 1.5, 10.0, 1.5, 10.0])
+
+
 def test_a_lawn_mower_comes_within_half_the_spacing_of_every_place() -> None:
     way = lawnmower((0.0, 10.0, 2.0, 8.0), 1.5)
     places = way.at(np.linspace(0.0, way.length, 4000))
