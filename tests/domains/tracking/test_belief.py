@@ -168,6 +168,7 @@ def test_information_that_is_no_belief_is_refused(changed: dict[str, object], li
         (np.eye(3), np.eye(4), 4, r"F must be 4x4, all finite; got shape \(3, 3\)"),
         (np.eye(4), np.full((4, 4), np.nan), 4, "Q must be 4x4, all finite"),
         (np.eye(4), -np.eye(4), 4, "Q must be symmetric without negative eigenvalues"),
+        (np.eye(4), np.diag([1.0, 1.0, 1.0, -0.1]), 4, "Q must be symmetric without negative eigenvalues"),
         (np.zeros((4, 4)), np.eye(4), 4, "F must be invertible"),
         (np.eye(4), np.eye(4), 3, "d must be 2 or 4; got 3"),
     ],

@@ -308,6 +308,17 @@ def test_only_an_objective_with_a_bound_has_a_finite_slack() -> None:
         assert math.isfinite(slack) == objective.submodular
 
 
+def test_a_target_on_the_rim_of_the_range_counts_in_what_a_reply_can_add_at_most() -> None:
+    belief = tracks([static(1.0, 0.0)], [[50.0, 0.0]], [np.eye(2)], dt=1.0, horizon=2)
+    platform = TrackingPlatform(0.0, 0.5, Position(range=50.0), continuous=True)
+    platform.place(0.0, 0.0, 0.0)
+    platform.prepare(belief)
+    nobody = OBJECTIVE.nothing(belief)
+    reply = platform.reply(belief, nobody, platform.carry_over(belief, None))
+    gain = OBJECTIVE.value(belief, platform.impact(belief, reply))
+    assert 0.0 < gain <= platform.slack(belief, nobody)
+
+
 def test_the_teams_continuous_replies_stay_below_the_bound_that_slack_gives() -> None:
     rng = np.random.default_rng(1)
     belief = random_tracks(rng, targets=4)
