@@ -7,7 +7,6 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import uniform_filter
 
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.stops import Ground
@@ -62,9 +61,19 @@ def _bounds(
     row, col = np.meshgrid(np.arange(step // 2, rows, step), np.arange(step // 2, cols, step), indexing="ij")
     cells = (row * cols + col).ravel()
     cells = cells[np.isfinite(ground.field.ravel()[cells])]
-    side = 2 * (int(reach / belief.planning.resolution) + 1) + 1
-    around = uniform_filter(unsearched, side, mode="constant") * side**2
+    around = _in_squares(unsearched, int(reach / belief.planning.resolution) + 1)
     bound = around[cells // cols // belief.factor, cells % cols // belief.factor]
     heap = [(-float(most), int(cell)) for most, cell in zip(bound, cells, strict=True) if most >= least]
     heapq.heapify(heap)
     return heap
+
+
+def _in_squares(numbers: NDArray[np.float64], half: int) -> NDArray[np.float64]:
+    """Return the sum (r, c) of all numbers that are at most ``half`` rows and columns from each."""
+    summed = np.pad(numbers.cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
+    (top, bottom), (left, right) = (
+        (np.maximum(np.arange(size) - half, 0), np.minimum(np.arange(size) + half + 1, size))
+        for size in numbers.shape
+    )
+    across = summed[:, right] - summed[:, left]
+    return np.asarray(across[bottom] - across[top])
