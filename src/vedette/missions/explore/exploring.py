@@ -21,6 +21,7 @@ from vedette.domains.mapping.belief import (
     shortest_frontier,
 )
 from vedette.domains.mapping.budget import needed
+from vedette.domains.mapping.frozen import Frozen
 from vedette.domains.mapping.impact import Impact, MapImpactCodec, check_claim, discounted, promised
 from vedette.domains.mapping.leftovers import Leftover, given_up, leftovers
 from vedette.domains.mapping.objective import MappingObjective
@@ -183,20 +184,24 @@ class Exploring:
         """Snapshot the team map for a round; tours count time from when it is frozen."""
         self._t0 = t0
         known = self.fusion.known
-        belief = freeze(
-            self.fusion.classes.window(*known),
-            self.frame,
-            reach=max(self.spec.range, NEARBY + self.frame.resolution),
-            extent=longest_frontier(self.spec.range),
-            shortest=shortest_frontier(self.spec.radius),
-            hidden=self.planner.hidden,
-            return_price=self.planner.return_price,
-            turn=self.planner.turn,
-            layers=self.planner.layers,
-            counts=self.fusion.counts[: 4 * BINS].reshape(4, BINS).copy(),
-            known=known,
-            leave=self._leave or None,
-            priorities=self._priorities,
+        classes = self.fusion.classes.window(*known)
+        counts = self.fusion.counts[: 4 * BINS].reshape(4, BINS).copy()
+        about: dict[str, Any] = {
+            "reach": max(self.spec.range, NEARBY + self.frame.resolution),
+            "extent": longest_frontier(self.spec.range),
+            "shortest": shortest_frontier(self.spec.radius),
+            "hidden": self.planner.hidden,
+            "return_price": self.planner.return_price,
+            "turn": self.planner.turn,
+            "layers": self.planner.layers,
+            "known": known,
+            "leave": self._leave or None,
+            "priorities": self._priorities,
+        }
+        belief = Frozen.once(
+            (classes, counts),
+            (self.frame, *about.values()),
+            lambda: freeze(classes, self.frame, counts=counts, **about),
         )
         self.frontiers = len(belief.frontier_starts) - 1
         return belief
