@@ -5,14 +5,16 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from vedette.cli.options import Positive, with_options
 from vedette.interrupt import ending_on_ctrl_c
-from vedette.window.hub import Hub
-from vedette.window.server import LOOPBACK, WindowServer
+from vedette.window.hub import LOOPBACK, Hub
+
+if TYPE_CHECKING:
+    from vedette.window.server import WindowServer
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 PACE = 5.0
@@ -48,6 +50,8 @@ def watch_options(command: CommandT) -> CommandT:
 @contextmanager
 def opened(hub: Hub, host: str = LOOPBACK, port: int = 0) -> Iterator[WindowServer]:
     """Serve a hub, and say where."""
+    from vedette.window.server import WindowServer  # who opens none does not wait for a web server
+
     with WindowServer(hub, host, port) as window:
         click.echo(f"watch it at {window.address}", err=True)
         yield window

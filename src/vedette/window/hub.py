@@ -16,6 +16,7 @@ from vedette.scenario import as_scenario
 from vedette.window.history import History
 from vedette.window.picture import Picture, said
 
+LOOPBACK = "127.0.0.1"  # where a window is served, unless somebody wants it elsewhere
 FRESH = 3.0  # an order given on an older picture is refused [s]
 MOST_EVENTS = 500
 PER_SECOND = 10.0  # pictures, at most

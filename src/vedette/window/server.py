@@ -22,10 +22,9 @@ from websockets.http11 import Request, Response
 from websockets.sync.server import Server, ServerConnection, serve
 
 from vedette.errors import InputError
-from vedette.window.hub import Hub
+from vedette.window.hub import LOOPBACK, Hub
 from vedette.window.picture import Picture, changes
 
-LOOPBACK = "127.0.0.1"
 MOST_ASKED = 16 << 10  # bytes of what a page says
 INLINE = "script-src 'unsafe-inline'; style-src 'unsafe-inline'"  # the page is one file
 POLICY = f"default-src 'none'; {INLINE}; connect-src 'self'; img-src data:"
