@@ -86,6 +86,7 @@ def test_map_errors_are_those_of_a_cell_by_cell_count(seed: int) -> None:
     rng = np.random.default_rng(seed)
     solid = np.kron(rng.random((3, 4)) < 0.4, np.ones((4, 4))).astype(np.bool_)
     classes = rng.integers(0, 3, solid.shape).astype(np.uint8)
+    classes[: rng.integers(0, 7)] = classes[:, rng.integers(4, 17) :] = UNKNOWN
     padded = np.pad(solid, 1, constant_values=True)
     wrong = 0
     for row, col in np.ndindex(*solid.shape):

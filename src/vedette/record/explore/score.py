@@ -73,9 +73,19 @@ def map_errors(world: World, classes: NDArray[np.uint8]) -> tuple[int, int]:
     neighbours are in truth of its own kind: next to a true boundary a range error below a cell decides.
     Outside the grid counts as solid.
     """
-    wrong = np.where(world.solid, classes == FREE, classes == OCCUPIED)
-    wrong &= ~_near_boundary(world.solid)
+    rows, cols = _where(classes != UNKNOWN)
+    solid, classes = world.solid[rows, cols], classes[rows, cols]
+    wrong = np.where(solid, classes == FREE, classes == OCCUPIED)
+    wrong &= ~_near_boundary(world.solid, rows, cols)
     return int(wrong.sum()), int(np.count_nonzero(classes != UNKNOWN))
+
+
+def _where(known: NDArray[np.bool_]) -> Extent:
+    """Return the rows and columns outside of which there is nothing."""
+    rows, cols = (np.flatnonzero(known.any(axis=axis)) for axis in (1, 0))
+    if not len(rows):
+        return slice(0, 0), slice(0, 0)
+    return slice(int(rows[0]), int(rows[-1]) + 1), slice(int(cols[0]), int(cols[-1]) + 1)
 
 
 def overlap(own_known: Iterable[NDArray[np.bool_]]) -> float:
@@ -119,13 +129,18 @@ class CoverageProgress:
         return float(np.diff(steps) @ (1.0 - np.array([0.0, *self.coverages])))
 
 
-def _near_boundary(solid: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return the cells with an 8-neighbour of the other kind."""
-    padded = np.pad(solid, 1, constant_values=True)
-    rows, cols = solid.shape
-    windows = [padded[r : r + rows, c : c + cols] for r in range(3) for c in range(3)]
-    some, every = np.zeros_like(solid), np.ones_like(solid)
-    for window in windows:
-        some |= window
-        every &= window
+def _near_boundary(solid: NDArray[np.bool_], rows: slice, cols: slice) -> NDArray[np.bool_]:
+    """Return which cells of some rows and columns have an 8-neighbour of the other kind."""
+    top, left = max(rows.start - 1, 0), max(cols.start - 1, 0)
+    near = solid[top : rows.stop + 1, left : cols.stop + 1]
+    shape = rows.stop - rows.start, cols.stop - cols.start
+    padded = np.ones((shape[0] + 2, shape[1] + 2), np.bool_)
+    first = top - rows.start + 1, left - cols.start + 1
+    padded[first[0] : first[0] + near.shape[0], first[1] : first[1] + near.shape[1]] = near
+    some, every = np.zeros(shape, np.bool_), np.ones(shape, np.bool_)
+    for row in range(3):
+        for col in range(3):
+            window = padded[row : row + shape[0], col : col + shape[1]]
+            some |= window
+            every &= window
     return some & ~every
