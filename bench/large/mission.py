@@ -20,9 +20,9 @@ from vedette.sim.worlds import office
 
 def main(width: float, height: float, resolution: float, robots: int, max_time: float, folder: Path) -> None:
     """Explore an office; CPU time counts from where the team is put into it until its record is closed."""
-    world = office(np.random.default_rng(0), width, height, resolution)
+    world, explore = office(np.random.default_rng(0), width, height, resolution), run.Explore
     began = time.process_time()
-    mission = run.Explore(world, robots, max_time=max_time, record=folder)
+    mission = explore(world, robots, max_time=max_time, record=folder)
     while mission.step(10) is None:
         pass
     result = mission.result()
