@@ -11,10 +11,10 @@ from msgspec import structs
 from tests.agent.test_proofs import agent, hears, notary
 from tests.support.agent_team import Float
 from vedette.agent import Agent, messages
-from vedette.agent.account import Claimed, account_of, words_of
+from vedette.agent.account import Claimed, account_of, contradicts, words_of
 from vedette.agent.audit import EVERY, WAITS
 from vedette.agent.effects import Send
-from vedette.agent.messages import Account, Audit, Proof
+from vedette.agent.messages import MOST_ANSWERED, Account, Audit, Proof
 from vedette.agent.rounds import IDLE_ROUNDS
 
 WORTH = np.arange(1.0, 13.0)
@@ -160,6 +160,16 @@ def test_who_gives_two_accounts_of_one_round_is_convicted_and_not_who_gives_one_
     judge, proofs = judged(first, second)
     assert {proof.robot for proof in proofs} == {2}
     assert judge.rounds.distrusted >= {2}
+
+
+def test_a_robot_with_many_links_answers_for_some_of_its_sums_and_is_understood() -> None:
+    made = robot(1, (0,))
+    links = range(2, 2 + 3 * MOST_ANSWERED)
+    many = Claimed(STAMP, WORTH, SOME, dict.fromkeys(links, NOTHING), dict.fromkeys(links, SOME), {})
+    own = account_of(many, made.mission, 1, 1)
+    assert len(own.told) == MOST_ANSWERED
+    assert not contradicts(own, made.mission)
+    assert messages.decode(messages.encode(own)) == own
 
 
 def test_an_account_in_anothers_name_counts_for_nothing() -> None:

@@ -18,9 +18,9 @@ from vedette.agent.events import Message, Pose, TreeChanged
 from vedette.agent.messages import Proof
 from vedette.agent.proofs import AGAIN
 from vedette.fusion import contradictions
-from vedette.fusion.contradictions import Accounted, SignedWord, Twice
+from vedette.fusion.contradictions import Accounted, Histories, SignedWord, Twice
 from vedette.fusion.particulars import Capabilities
-from vedette.fusion.seals import BEACON, EVIDENCE
+from vedette.fusion.seals import BEACON, EVIDENCE, STEPS
 from vedette.fusion.signed import SignedEvidence
 
 LIAR = 0
@@ -83,6 +83,8 @@ NO_PROOFS = {
     "a kind that there is not": Twice(word("x", LIAR, 1, 3, 1), word("x", LIAR, 1, 3, 2)),
     "no kind": Twice(word(7, LIAR), word(7, LIAR, 1)),
     "a seal and a beacon": Twice(seal(3, b"a" * 16), word(BEACON, b"")),
+    "a beacon that is a number": Twice(word(BEACON, 5), word(BEACON, 6)),
+    "a version that is text": Twice(word(EVIDENCE, LIAR, 1, "x", 1), word(EVIDENCE, LIAR, 1, "y", 1)),
     "words cut short": Twice(word(EVIDENCE, LIAR), word(EVIDENCE, LIAR, 1)),
 }
 
@@ -96,6 +98,18 @@ def test_what_is_no_proof_convicts_nobody_but_who_says_so_is_named(no_proof: Twi
     assert hearer.signed.out == frozenset()
     assert "no proof" in hearer.complaints[1]
     assert LIAR not in hearer.complaints
+
+
+@pytest.mark.parametrize("odd", [[1], {}, None, 1.5, True])
+def test_words_of_other_kinds_are_refused(odd: Any) -> None:
+    """Signed or not: whoever lies could sign them."""
+    hearer, words = agent(2, (1, 3)), structs.replace(TWICE.first, what=(STEPS, LIAR, 1, odd, 100, b""))
+    histories = Histories(words, words, b"")
+    hears(hearer, 1, Proof(LIAR, notary(LIAR).certificate, contradictions.encode(histories)))
+    hears(hearer, 1, proof(Twice(words, structs.replace(words, what=(odd, LIAR)))))
+    assert hearer.dropped == 2
+    assert hearer.signed is not None
+    assert hearer.signed.out == frozenset()
 
 
 def test_nobody_is_convicted_in_anothers_name() -> None:

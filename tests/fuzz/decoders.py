@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -20,14 +21,18 @@ from vedette.domains.mapping.impact import MapImpactCodec as MappingCodec
 from vedette.domains.search.impact import SearchImpactCodec as SearchCodec
 from vedette.domains.tracking.codec import TrackImpactCodec as TrackingCodec
 from vedette.domains.tracking.impact import impact_of
+from vedette.fusion import contradictions
 from vedette.fusion.codec import EvidenceCodec as FusionCodec
+from vedette.fusion.contradictions import Accounted, Histories, SignedWord, Twice
 from vedette.fusion.gaussian import Information, TrackPacking
 from vedette.fusion.gaussian import wire as track_wire
 from vedette.fusion.link import Greeting, Payload
 from vedette.fusion.packing import CodePacking, WordPacking
-from vedette.fusion.snapshots import Delta
+from vedette.fusion.seals import Seal
+from vedette.fusion.snapshots import Delta, Voucher
 from vedette.fusion.steps import SparseIntegers
 from vedette.fusion.steps import wire as step_wire
+from vedette.fusion.steps.sealed import SealedEntries
 from vedette.kernels.tiles import CELLS, Tiling
 from vedette.maps import GridFrame
 from vedette.negotiation import messages as negotiation_messages
@@ -73,6 +78,11 @@ def _agent_messages() -> list[Any]:
         agent_messages.Flushed(3, 7, 2, ((1, 2, 3),), ((0, 0, 9, 9),)),
         agent_messages.Freeze(3, 7, 12_000, 1 << 60, 4, ((1, 2, 3), (4, 5, 6)), ((0, 0, 9, 9),)),
         agent_messages.Orders((b"one", b"another")),
+        agent_messages.Audit(3, 7),
+        agent_messages.Account(2, 1, 3, 7, b"impact", ((1, 2, b"sum"),), ((1, bytes(16)),), bytes(64)),
+        agent_messages.Vouched(b"beacon", bytes(64), b"certificate"),
+        agent_messages.Proof(2, b"certificate", b"proof"),
+        agent_messages.Proven((1, 2)),
         agent_messages.Negotiate(3, 7, msgspec.msgpack.encode([4, [1.0, 2.0, 1, True, 0], None])),
     ]
 
@@ -165,6 +175,29 @@ def _step_payloads() -> list[Any]:
     return [Payload(5, Greeting(-1, True)), Payload(5, None, {(1, 5): 2}, [((1, 5), entries)])]
 
 
+def _sealed_payloads() -> list[Any]:
+    plain = _map_payloads(np.uint8)
+    times = np.array([(90, 95), (90, 100), (1, 2)])
+    voucher = Voucher(times, b"particulars", b"place", Seal(100, bytes(64)), b"certificate")
+    return [
+        replace(each, sections=[(key, replace(delta, voucher=voucher)) for key, delta in each.sections])
+        for each in plain
+    ]
+
+
+def _sealed_entries() -> list[Any]:
+    return [SealedEntries(0, 1, step_wire.pack(4, b"body" * 9), Seal(100, bytes(64)), b"certificate")]
+
+
+def _unsealed(data: bytes) -> SealedEntries:
+    return SealedEntries.unpacked(step_wire.Entries(0, 1, data))
+
+
+def _contradictions() -> list[Any]:
+    one, other = (SignedWord(("evidence", 2, 1, 3, 100, root), bytes(64)) for root in (b"a", b"b"))
+    return [Twice(one, other), Histories(one, other, b"entries"), Accounted(b"account")]
+
+
 def _entries() -> list[Any]:
     return [[(3, b"abc" * 9)], [(0, b""), (7, b"x")]]
 
@@ -245,6 +278,7 @@ def decoders() -> list[Target]:
     say = partial(negotiation_messages.encode, codec=mapping)
     hear = partial(negotiation_messages.decode, codec=mapping)
     codes, words = _map_codec(words=False), _map_codec(words=True)
+    sealed = replace(codes, sealed=True)
     message = track_wire.TrackMessage(9, -1, 2, 1, 0, 14, b"tracks")
     return [
         _decoder("decode-agent", agent_messages.decode, agent_messages.encode, _agent_messages),
@@ -256,6 +290,9 @@ def decoders() -> list[Target]:
         _decoder("decode-impact-search", searching.decode, searching.encode, partial(_misses, searching)),
         _decoder("decode-impact-tracking", tracking.decode, tracking.encode, _information),
         _decoder("decode-map-codes", codes.decode, codes.encode, partial(_map_payloads, np.uint8)),
+        _decoder("decode-map-sealed", sealed.decode, sealed.encode, _sealed_payloads),
+        _decoder("decode-steps-sealed", _unsealed, lambda told: told.packed().data, _sealed_entries),
+        _decoder("decode-proof", contradictions.decode, contradictions.encode, _contradictions),
         _decoder("decode-map-words", words.decode, words.encode, partial(_map_payloads, np.int32)),
         _decoder("decode-steps", step_wire.decode, step_wire.encode, _step_payloads),
         _decoder("decode-entries", _unpacked, _packed, _entries),

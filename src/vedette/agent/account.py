@@ -9,7 +9,7 @@ from typing import Any
 
 from msgspec import structs
 
-from vedette.agent.messages import PRINT_BYTES, Account, encode
+from vedette.agent.messages import MOST_ANSWERED, PRINT_BYTES, Account, encode
 from vedette.agent.mission import Mission
 from vedette.agent.promises import weighed
 from vedette.fusion.seals import ACCOUNT, Notary
@@ -41,7 +41,7 @@ def account_of(claimed: Claimed, mission: Mission[Any, Any, Any], robot: int, bo
     account = Account(robot, boot, *claimed.stamp, pack(claimed.own), heard, ())
     told = [(k, pack(impact)) for k, impact in sorted(claimed.told.items())]
     stands = tuple((k, print_of(data)) for k, data in told if data == pack(sum_towards(account, mission, k)))
-    return structs.replace(account, told=stands)
+    return structs.replace(account, told=stands[:MOST_ANSWERED])
 
 
 def sum_towards(account: Account, mission: Mission[Any, Any, Any], link: int) -> Any:

@@ -103,6 +103,7 @@ class Audit(msgspec.Struct, frozen=True, array_like=True, tag=8):
 
 
 Heard = tuple[Robot, Halvings, bytes]  # the sum that came over a link, and how much it counted
+MOST_LINKS, MOST_ANSWERED = 1024, 16  # of a robot, and sums that it answers for: who checks adds up each
 PRINT_BYTES = 16
 Print = Annotated[bytes, Meta(min_length=PRINT_BYTES, max_length=PRINT_BYTES)]
 Told = tuple[Robot, Print]  # a fingerprint of the sum of all else, as it went over a link
@@ -116,8 +117,8 @@ class Account(msgspec.Struct, frozen=True, array_like=True, tag=9):
     epoch: Count
     sequence: Count
     impact: bytes
-    links: Annotated[tuple[Heard, ...], Meta(max_length=MOST_ROBOTS)]  # what it added up
-    told: Annotated[tuple[Told, ...], Meta(max_length=MOST_ROBOTS)]  # sums of that, where it told them last
+    links: Annotated[tuple[Heard, ...], Meta(max_length=MOST_LINKS)]  # what it added up
+    told: Annotated[tuple[Told, ...], Meta(max_length=MOST_ANSWERED)]  # sums of that, where it told them last
     signature: bytes = b""  # under the same without it
 
 

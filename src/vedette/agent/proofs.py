@@ -23,15 +23,20 @@ from vedette.fusion.standing import Signed
 AGAIN = 10.0  # neighbours are told so often of whom there are proofs [s]
 
 
-def _of_beacon(words: Words) -> tuple[Any, ...]:
+def _said(words: Words) -> bytes:
     _, data = words
-    beacon = decode_beacon(data)
+    if not isinstance(data, bytes):
+        raise ValueError("a word that is no message")
+    return data
+
+
+def _of_beacon(words: Words) -> tuple[Any, ...]:
+    beacon = decode_beacon(_said(words))
     return beacon.robot, BEACON, beacon.boot, beacon.sequence
 
 
 def _of_account(words: Words) -> tuple[Any, ...]:
-    _, data = words
-    account = decode_account(data)
+    account = decode_account(_said(words))
     return account.robot, ACCOUNT, account.boot, account.epoch, account.sequence
 
 

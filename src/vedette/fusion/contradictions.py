@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Any, NamedTuple
 
 import msgspec
-from msgspec import Meta
+from msgspec import Meta, structs
 
 from vedette import wire
 from vedette.fusion.seals import SIGNATURE_BYTES, Notary
@@ -57,7 +57,13 @@ def decode(data: bytes) -> Contradiction:
     """Return the contradiction; ValueError if it is malformed."""
     if len(data) > MOST_BYTES:
         raise ValueError(f"a proof of {len(data)} bytes; at most {MOST_BYTES} are taken")
-    return wire.decode(_DECODER, data, "proof")
+    proof = wire.decode(_DECODER, data, "proof")
+    for word in structs.astuple(proof):
+        if isinstance(word, SignedWord) and not all(
+            isinstance(each, int | bytes | str) for each in word.what
+        ):
+            raise ValueError("proof: a word of something else than numbers, bytes and text")
+    return proof
 
 
 class ProvenLie(NamedTuple):
