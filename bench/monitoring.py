@@ -1,6 +1,6 @@
 """``python -m bench.monitoring``: how well six robots know a field, by how they decide, and what that takes.
 
-Robots begin in one corner of 100 x 100 cells drawn from the model. The error is compared at equal ways.
+Robots begin in one corner of 60 x 60 cells of 1 m. The error is compared at equal ways.
 """
 
 from __future__ import annotations
@@ -26,17 +26,17 @@ from vedette.sim.domains import domain_of
 COORDINATIONS = ("negotiated", "shared", "none", "lawnmower", "random")
 ASKED, BUDGET_MS = 0.85, 50.0  # of the shared belief's error; CPU time of a replan
 
-DURATION = 240.0  # [s]
+SIDE, DURATION = 60, 120.0  # of the area [m], of a mission [s]
 STARTS = ((3, 3), (6, 3), (9, 3), (3, 6), (6, 6), (9, 6))
 FIELDS: dict[str, dict[str, Any]] = {
-    "still": {"field": {"type": "drawn"}, "model": {"mean": 20, "deviation": 3, "length": 14}},
+    "still": {"field": {"type": "drawn"}, "model": {"mean": 20, "deviation": 3, "length": 10}},
     "changing": {
         "field": {"type": "drawn"},
-        "model": {"mean": 20, "deviation": 3, "length": 14, "lasting": 300},
+        "model": {"mean": 20, "deviation": 3, "length": 10, "lasting": 300},
     },
     "plume": {
-        "field": {"type": "plume", "source": [20, 20], "wind": [0.35, 0.25], "width": 4, "spreading": 0.3},
-        "model": {"lasting": 120, "drift": [0.35, 0.25]},
+        "field": {"type": "plume", "source": [20, 20], "wind": [0.15, 0.1]},
+        "model": {"lasting": 300, "drift": [0.15, 0.1]},
     },
     "jacksboro": {"field": {"type": "jacksboro"}, "sensor": {"noise": 10}},
 }
@@ -86,12 +86,12 @@ class FieldRun:
 
 
 def scenario(field: str) -> dict[str, Any]:
-    """Return six robots in a corner of 100 x 100 cells."""
+    """Return six robots in a corner of 60 x 60 cells."""
     return {
-        "area": [0, 0, 100, 100],
+        "area": [0, 0, SIDE, SIDE],
         "cell": 1,
         "sensor": {"noise": 0.5},
-        "vehicles": [{"start": list(start), "speed": 1.5} for start in STARTS],
+        "vehicles": [{"start": list(start), "speed": 1} for start in STARTS],
         "duration": DURATION,
         "horizon": 24,
         "replan": 4,

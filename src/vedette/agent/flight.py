@@ -5,6 +5,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from math import atan2, ceil, floor, hypot, inf
 from typing import TypeAlias
 
@@ -150,7 +151,12 @@ class Itinerary:
         """
         end = max((plan.end for plan in self.plans), default=begin)
         times = np.arange(begin, max(end, begin) + 1e-6, every)
-        return np.array([self.fly(pose, speed, begin, time)[:2] for time in times])
+        if self.loiter is not None:
+            return np.array([self.fly(pose, speed, begin, time)[:2] for time in times])
+        places = [np.asarray(pose, np.float64)]  # straight lines add up as well as they are
+        for start, time in pairwise(times.tolist()):
+            places.append(self.fly(places[-1], speed, start, time))
+        return np.array(places)[:, :2]
 
 
 def _moved(pose: NDArray[np.float64], control: Control, speed: float, duration: float) -> NDArray[np.float64]:

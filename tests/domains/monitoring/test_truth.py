@@ -56,10 +56,12 @@ def test_a_raster_is_averaged_over_each_cell_where_it_lies() -> None:
 
 def test_a_plume_goes_with_the_wind_and_is_the_same_whoever_asks_first() -> None:
     frame = GridFrame(1.0, 40, 60)
-    of = Plume(source=(5.0, 20.0), wind=(1.0, 0.0), wander=0.0, spreading=0.0)
-    puffs = plume(frame, of, 1.0, np.random.default_rng(1)).first
-    assert puffs[20].argmax() > 4
-    assert puffs[20, 40] > 10 * puffs[35, 40]
+    of = Plume(source=(20.0, 20.0), wind=(1.0, -0.5), wander=0.0, spreading=0.0)
+    puffs = plume(frame, of, 1.0, np.random.default_rng(1))
+    np.testing.assert_allclose(puffs.at(10)[:-5, 10:], puffs.first[5:, :-10], atol=1e-9)
+    grown = plume(frame, Plume(source=(30.0, 20.0), spreading=0.5), 1.0, np.random.default_rng(1))
+    assert grown.at(10).max() < grown.first.max()
+    assert grown.at(10).sum() == pytest.approx(grown.first.sum(), rel=0.02)
     one, other = (plume(frame, Plume(source=(5.0, 20.0)), 1.0, np.random.default_rng(1)) for _ in range(2))
     late = one.at(7)
     other.at(3)

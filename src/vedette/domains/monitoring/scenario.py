@@ -36,12 +36,12 @@ class Drawn(Struct, forbid_unknown_fields=True, frozen=True, tag_field="type", t
 
 
 class Plume(Struct, forbid_unknown_fields=True, frozen=True, kw_only=True, tag_field="type", tag="plume"):
-    """Puffs from a source, a new one each step, which the wind carries on and turbulence spreads."""
+    """A cloud of puffs that the wind carries on; turbulence drives them apart and spreads each."""
 
-    source: tuple[Metre, Metre]
-    wind: tuple[float, float] = (0.5, 0.2)  # [m/s]
-    strength: Positive = 100.0  # of a puff at its middle, at first
-    width: Positive = 3.0  # of a puff at first: its standard deviation [m]
+    source: tuple[Metre, Metre]  # about which it is at first
+    wind: tuple[float, float] = (0.2, 0.1)  # [m/s]
+    strength: Positive = 10.0  # of a puff at its middle, at first
+    width: Positive = 4.0  # of a puff at first: its standard deviation [m]
     spreading: Annotated[float, Meta(ge=0.0, le=1e6)] = 0.1  # of a puff [m^2/s]
     wander: Annotated[float, Meta(ge=0.0, le=1e6)] = 0.2  # of a puff's middle, process noise [m^2/s]
 

@@ -24,7 +24,7 @@ _SHIPPED = {  # file, array, and whether its first row is the northernmost
     Topobathy: ("topobathy.npz", "topo", False),
 }
 _LEAST_COVERED = 0.5  # of a cell, by pixels that hold a number
-_OLDEST = 300  # puffs that are kept, and that there are at the beginning
+_PUFFS = 12  # of a cloud
 
 
 @dataclass(eq=False)
@@ -56,10 +56,8 @@ def drawn(model: FieldModel, dt: float, rng: np.random.Generator) -> TrueField:
 
 
 def plume(frame: GridFrame, of: Plume, dt: float, rng: np.random.Generator) -> TrueField:
-    """Return what puffs come to that the wind carries; the oldest have been under way for 300 steps."""
+    """Return what the puffs of a cloud come to that the wind carries, in steps of dt [s]."""
     puffs = _Puffs(frame, of, dt, rng)
-    for _ in range(_OLDEST):
-        puffs.go_on()
     return TrueField(puffs.sum(), lambda present, step: puffs.go_on().sum())
 
 
@@ -107,27 +105,24 @@ def averaged(frame: GridFrame, values: Floats, extent: Extent | None, what: str)
     return np.asarray(rows @ np.where(there, values, 0.0) @ cols.T / covered)
 
 
-@dataclass(eq=False)
 class _Puffs:
-    frame: GridFrame
-    of: Plume
-    dt: float
-    rng: np.random.Generator
-    places: Floats = field(default_factory=lambda: np.empty((0, 2)))  # (k, 2) [m], the newest last
-    ages: Floats = field(default_factory=lambda: np.empty(0))  # [s]
+    def __init__(self, frame: GridFrame, of: Plume, dt: float, rng: np.random.Generator) -> None:
+        """Put them about the source."""
+        self.frame, self.of, self.dt, self.rng = frame, of, dt, rng
+        self.places = np.array(of.source) + of.width * rng.normal(size=(_PUFFS, 2))  # (k, 2) [m]
+        self.age = 0.0  # [s]
 
     def go_on(self) -> _Puffs:
-        """Let a step pass: puffs drift and wander, and a new one leaves the source."""
-        wander = math.sqrt(2.0 * self.of.wander * self.dt) * self.rng.normal(size=(len(self.places) + 1, 2))
-        self.places = np.vstack((self.places + self.dt * np.array(self.of.wind), self.of.source)) + wander
-        self.ages = np.append(self.ages + self.dt, 0.0)
-        self.places, self.ages = self.places[-_OLDEST:], self.ages[-_OLDEST:]
+        """Let a step pass: all drift alike, and each wanders."""
+        wander = math.sqrt(2.0 * self.of.wander * self.dt) * self.rng.normal(size=self.places.shape)
+        self.places = self.places + self.dt * np.array(self.of.wind) + wander
+        self.age += self.dt
         return self
 
     def sum(self) -> Floats:
         """Return the concentration (R, C); a puff that spreads keeps its mass."""
-        square = self.of.width**2 + 2.0 * self.of.spreading * self.ages
-        peaks = self.of.strength * self.of.width**2 / square
+        square = self.of.width**2 + 2.0 * self.of.spreading * self.age
+        peak = self.of.strength * self.of.width**2 / square
         rows, cols = self.frame.shape
         x = self.frame.origin_x + (np.arange(cols) + 0.5) * self.frame.resolution
         y = self.frame.origin_y + (np.arange(rows) + 0.5) * self.frame.resolution
@@ -135,7 +130,7 @@ class _Puffs:
             np.exp(-0.5 * (at[:, None] - places) ** 2 / square)
             for at, places in zip((x, y), self.places.T, strict=True)
         )
-        return np.asarray((along * peaks) @ across.T)
+        return np.asarray(peak * along @ across.T)
 
 
 def _shares(cells: int, start: float, end: float, pixels: int) -> Floats:
