@@ -27,7 +27,7 @@ COORDINATIONS = ("negotiated", "shared", "none", "lawnmower", "random")
 ASKED, BUDGET_MS = 0.85, 50.0  # of the shared belief's error; CPU time of a replan
 
 SIDE, DURATION = 60, 120.0  # of the area [m], of a mission [s]
-STARTS = ((3, 3), (6, 3), (9, 3), (3, 6), (6, 6), (9, 6))
+STARTS = ((3, 3), (4, 3), (5, 3), (3, 4), (4, 4), (5, 4))  # where they are set down together [m]
 FIELDS: dict[str, dict[str, Any]] = {
     "still": {"field": {"type": "drawn"}, "model": {"mean": 20, "deviation": 3, "length": 10}},
     "changing": {
@@ -93,7 +93,7 @@ def scenario(field: str) -> dict[str, Any]:
         "sensor": {"noise": 0.5},
         "vehicles": [{"start": list(start), "speed": 1} for start in STARTS],
         "duration": DURATION,
-        "horizon": 24,
+        "horizon": 40,
         "replan": 4,
         **FIELDS[field],
     }
