@@ -18,6 +18,7 @@ from bench.compare import CompareReport
 from bench.criteria import BenchReport
 from bench.crowds import CrowdResult
 from bench.decomposition import Shares
+from bench.frames.trial import Trial
 from bench.large.cases import LargeResult
 from bench.latency import LatencyReport
 from bench.monitoring import FieldRun
@@ -60,6 +61,7 @@ KINDS: Mapping[str, type] = {
     "bench-decomposition": Shares,
     "bench-large": LargeResult,
     "bench-monitoring": FieldRun,
+    "bench-frames": Trial,
 }
 
 

@@ -41,7 +41,7 @@ class Fit:
 
 
 def fitted(a: Charted, b: Charted, guess: FramePose, walls: int) -> Fit:
-    """Return the pose of least squares over the distances along A's normals, (V141), with its covariance.
+    """Return the pose of least squares over the distances along A's normals, (V142), with its covariance.
 
     Args:
         a: whose walls stay.
