@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -20,6 +21,7 @@ from vedette.team import PlatformSpec
 from vedette.window.explore import Shower
 from vedette.window.export import Show, export_page
 from vedette.window.hub import Hub
+from vedette.window.picture import picture
 
 STORMS = {
     "The team is cut in two for a minute": (
@@ -51,7 +53,7 @@ def storm(name: str) -> Show:
         mission = Explore(_world(SEED), robots, SEED, radio=radio, faults=faults, max_time=240.0)
         for at, what in entries:
             hub.note(what, at)
-        mission.play([Shower(hub, mission.scene)])
+        mission.play([Shower(hub, partial(picture, mission.scene))])
     return Show(name, hub.history, hub.events(0)[1])
 
 
@@ -63,7 +65,8 @@ def liar() -> Show:
     team: ExploreSimulation = LyingTeam(_world(SEED), specs, setup, MODES["free"], 1)
     hub = Hub(name, live=False)
     hub.note("robot-2 lies from now on", 0.0)
-    observer = observer_of(team, [Shower(hub, ExploreScene.of(team.world, [spec.name for spec in specs]))])
+    scene = ExploreScene.of(team.world, [spec.name for spec in specs])
+    observer = observer_of(team, [Shower(hub, partial(picture, scene))])
     named: set[tuple[int, int]] = set()
 
     def look() -> None:

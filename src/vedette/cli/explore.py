@@ -11,15 +11,16 @@ import click
 from vedette.agent.orders import Order, OrderBook
 from vedette.cli.exploring import EXPLORING, exploring_options, team_named, world_named
 from vedette.cli.options import FILE, Output, fault_options, output_options
-from vedette.cli.running import simulate
-from vedette.cli.windows import linger, opened, watch_options
+from vedette.cli.running import simulate, simulate_watched
+from vedette.cli.windows import watch_options
 from vedette.errors import InputError
-from vedette.outcome import Outcome
+from vedette.record.explore.log import ExploreSnapshot
 from vedette.run import Explore
 from vedette.run.inputs import files_of
 from vedette.run.saved import seed_of
 from vedette.window.explore import Shower
 from vedette.window.hub import Hub
+from vedette.window.picture import Beside, Picture, ordered, picture
 
 
 @click.command()
@@ -62,17 +63,16 @@ def explore(
     mission.inputs += files_of(None if saved is None else saved / "map.yaml", team)
     if not watch:
         simulate(EXPLORING, mission, mission.scene, output)
-    names = mission.scene.vehicles
     hub = Hub(mission.scene.name, partial(_order, mission))
-    shower = Shower(hub, mission.scene, lambda: zip(names, map(_in_force, mission.books), strict=True), pace)
-    with opened(hub):
-        try:
-            simulate(EXPLORING, mission, mission.scene, output, more=[shower])
-        finally:
-            hub.close()
-            if mission.over is not Outcome.INTERRUPTED:
-                click.echo("the mission is over; the page stays until Ctrl-C", err=True)
-                linger()
+    shower = Shower[ExploreSnapshot](hub, partial(_drawn, mission), pace)
+    simulate_watched(EXPLORING, mission, mission.scene, output, hub, shower)
+
+
+def _drawn(mission: Explore, snapshot: ExploreSnapshot) -> Picture:
+    """Return a snapshot with the orders that robots hold."""
+    held = zip(mission.scene.vehicles, map(_in_force, mission.books), strict=True)
+    orders, areas = ordered(held)
+    return picture(mission.scene, snapshot, Beside(orders=orders, areas=areas))
 
 
 def _order(mission: Explore, order: Order) -> str:

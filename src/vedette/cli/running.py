@@ -12,6 +12,7 @@ import click
 
 from vedette.cli.ends import telling_what_is_missing
 from vedette.cli.options import Output
+from vedette.cli.windows import linger, opened
 from vedette.interrupt import ending_on_ctrl_c
 from vedette.record.display import Display
 from vedette.record.folder import OutputFolder
@@ -20,6 +21,7 @@ from vedette.record.mcap import Place
 from vedette.record.summary import MissionSummary
 from vedette.run.mission import RECORD, StepwiseMission
 from vedette.run.result import MissionReport
+from vedette.window.hub import Hub
 
 SceneT = TypeVar("SceneT", bound=MissionScene)
 SnapshotT = TypeVar("SnapshotT", bound=Timed)
@@ -83,6 +85,26 @@ def simulate(
     """
     with ending_on_ctrl_c(mission.stop):
         kind.run(scene, output, mission.inputs, lambda sinks, folder: mission.play([*sinks, *more]), beside)
+
+
+def simulate_watched(
+    kind: Kind[SceneT, SnapshotT, ReportT],
+    mission: StepwiseMission[SnapshotT, Any, Any, ReportT],
+    scene: SceneT,
+    output: Output,
+    hub: Hub,
+    shower: Sink[SnapshotT],
+    beside: Callable[[ReportT, Say], ReportT] = lambda report, say: report,
+) -> NoReturn:
+    """Run a simulated mission as `simulate` does, shown in a browser, where it stays until Ctrl-C."""
+    with opened(hub):
+        try:
+            simulate(kind, mission, scene, output, beside, [shower])
+        finally:
+            hub.close()
+            if not mission.stopped:
+                click.echo("the mission is over; the page stays until Ctrl-C", err=True)
+                linger()
 
 
 def end(summary: MissionSummary, lines: Sequence[str], as_json: bool) -> NoReturn:

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import click
 
 from vedette.cli.options import Output, fault_options, output_options
-from vedette.cli.running import Say, simulate
+from vedette.cli.running import Say, simulate, simulate_watched
 from vedette.cli.searching import SEARCHING, searching_options
 from vedette.cli.seeking import OF_UNKNOWN_MAPS, OF_VEHICLES, check_together, seek, seeking_options
+from vedette.cli.windows import watch_options
+from vedette.record.search.log import SearchSnapshot
 from vedette.record.search.observer import SearchReport
 from vedette.run import Search
+from vedette.window.explore import Shower
+from vedette.window.flights import search_picture
+from vedette.window.hub import Hub
 
 MOST_TRIALS = 1_000_000
 
@@ -28,6 +34,7 @@ MOST_TRIALS = 1_000_000
     help="Targets drawn for the counted curve; 0: none.  [default: 1000, or 20 whole searches: see the docs]",
 )
 @output_options
+@watch_options
 @click.option("--no-compare", is_flag=True, help="Leave out the other ways of coordination.")
 @click.pass_context
 def search(
@@ -37,6 +44,8 @@ def search(
     unknown_map: bool,
     trials: int | None,
     output: Output,
+    watch: bool,
+    pace: float,
     no_compare: bool,
     **options: Any,
 ) -> None:
@@ -55,4 +64,8 @@ def search(
     def beside(report: SearchReport, say: Say) -> SearchReport:
         return mission.assessed(report, not no_compare, trials, say)
 
-    simulate(SEARCHING, mission, mission.scene, output, beside)
+    if not watch:
+        simulate(SEARCHING, mission, mission.scene, output, beside)
+    hub = Hub(mission.scene.name)
+    shower = Shower[SearchSnapshot](hub, partial(search_picture, mission.scene), pace)
+    simulate_watched(SEARCHING, mission, mission.scene, output, hub, shower, beside)

@@ -22,7 +22,7 @@ CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 
 OF_UNKNOWN_MAPS = ("robots", "team", "resolution", "order", "reach")
 MAX_TIME = 3600.0  # [s]
-OF_VEHICLES = ("coordination", "fusion", "trials", "no_compare")
+OF_VEHICLES = ("coordination", "fusion", "trials", "watch", "pace", "no_compare")
 
 
 def seeking_options(command: CommandT) -> CommandT:

@@ -2,23 +2,32 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import click
 
 from vedette.cli.options import Output, fault_options, output_options
-from vedette.cli.running import simulate
+from vedette.cli.running import simulate, simulate_watched
 from vedette.cli.tracking import TRACKING, tracking_options
+from vedette.cli.windows import watch_options
+from vedette.record.track.log import TrackSnapshot
 from vedette.run import Track
+from vedette.window.explore import Shower
+from vedette.window.flights import track_picture
+from vedette.window.hub import Hub
 
 
 @click.command()
 @tracking_options
 @fault_options
 @output_options
+@watch_options
 @click.option("--no-compare", is_flag=True, help="Leave out the other ways of coordination.")
-def track(scenario_path: Path | None, output: Output, no_compare: bool, **options: Any) -> None:
+def track(
+    scenario_path: Path | None, output: Output, watch: bool, pace: float, no_compare: bool, **options: Any
+) -> None:
     """Let a team of vehicles follow the targets of SCENARIO in simulation: every vehicle runs its own agent.
 
     SCENARIO is a YAML file; without it, four vehicles follow six targets over 800 x 600 m for two minutes.
@@ -27,4 +36,8 @@ def track(scenario_path: Path | None, output: Output, no_compare: bool, **option
     """
     mission = Track(scenario_path, **options)
     beside = (lambda report, say: report) if no_compare else mission.compared
-    simulate(TRACKING, mission, mission.scene, output, beside)
+    if not watch:
+        simulate(TRACKING, mission, mission.scene, output, beside)
+    hub = Hub(mission.scene.name)
+    shower = Shower[TrackSnapshot](hub, partial(track_picture, mission.scene), pace)
+    simulate_watched(TRACKING, mission, mission.scene, output, hub, shower, beside)

@@ -149,6 +149,11 @@ class StepwiseMission(ABC, Generic[SnapshotT, StrategyT, ImpactT, ReportT]):
         return self._watched.over
 
     @property
+    def stopped(self) -> bool:
+        """Whether it has been told to end."""
+        return self._stopped
+
+    @property
     def now(self) -> float:
         """Simulated time [s]."""
         return self._simulation.now

@@ -1,27 +1,28 @@
-"""An exploration in the operator's window: a sink that shows what it is given, no faster than asked."""
+"""Missions in the operator's window: a sink that shows what it is given, no faster than asked; a record."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from math import inf
 from pathlib import Path
+from typing import Generic, TypeVar
 
-from vedette.agent.orders import Order
-from vedette.record.explore.log import ExploreScene, ExploreSnapshot
 from vedette.record.explore.read import read_scene, read_snapshots
+from vedette.record.log import Timed
 from vedette.window.hub import Hub
-from vedette.window.picture import Beside, ordered, picture
+from vedette.window.picture import Picture, picture
+
+SnapshotT = TypeVar("SnapshotT", bound=Timed)
 
 
-class Shower:
+class Shower(Generic[SnapshotT]):
     """A sink of snapshots."""
 
     def __init__(
         self,
         hub: Hub,
-        scene: ExploreScene,
-        held: Callable[[], Iterable[tuple[str, Iterable[Order]]]] = lambda: (),
+        draw: Callable[[SnapshotT], Picture],
         pace: float = inf,
         clock: Callable[[], float] = time.monotonic,
         sleep: Callable[[float], None] = time.sleep,
@@ -30,23 +31,21 @@ class Shower:
 
         Args:
             hub: that shows.
-            scene: of the mission.
-            held: the orders that each robot holds, by its name.
+            draw: a snapshot as a picture.
             pace: the mission's seconds a second, at most: who gives snapshots has to wait.
             clock, sleep: [s].
         """
-        self._hub, self._scene, self._held = hub, scene, held
+        self._hub, self._draw = hub, draw
         self._pace, self._clock, self._sleep = pace, clock, sleep
         self._began: float | None = None
 
-    def update(self, snapshot: ExploreSnapshot) -> None:
+    def update(self, snapshot: SnapshotT) -> None:
         """Show a snapshot, and let others wait until it is time for it."""
         now = self._clock()
         self._began = now - snapshot.t / self._pace if self._began is None else self._began
         if (early := self._began + snapshot.t / self._pace - now) > 0.0:
             self._sleep(early)
-        orders, areas = ordered(self._held())
-        self._hub.show(picture(self._scene, snapshot, Beside(orders=orders, areas=areas)))
+        self._hub.show(self._draw(snapshot))
 
 
 def recorded(path: Path) -> Hub:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import msgspec
 import numpy as np
@@ -15,6 +15,7 @@ from vedette.maps import OCCUPIED, UNKNOWN, GridFrame
 from vedette.record import palette
 from vedette.record.explore.log import ExploreScene, ExploreSnapshot, RobotSample
 from vedette.record.explore.told import progress
+from vedette.record.links import Link
 
 SHADES = 8  # of what is about to be seen, in the place of UNKNOWN: cells of the page's map from 3 on
 MOST_LEFT = 100  # frontiers that robots leave, of which each is shown
@@ -67,32 +68,85 @@ class Picture:
     classes: NDArray[np.uint8]  # (R, C), never changed afterwards
 
 
+class Mark(NamedTuple):
+    """An ellipse about what is known of a target."""
+
+    x: float  # [m], team frame
+    y: float
+    width: float  # [m]
+    height: float
+    angle: float  # of its width [deg]
+    name: str
+
+
 def picture(scene: ExploreScene, snapshot: ExploreSnapshot, beside: Beside = NOTHING) -> Picture:
     """Return a moment of an exploration."""
-    numbers = beside.numbers or range(1, len(scene.vehicles) + 1)
-    robots = [
-        _robot(number, name, robot, beside.silent.get(number))
-        for number, name, robot in zip(numbers, scene.vehicles, snapshot.robots, strict=True)
-    ]
     figures = list(progress(snapshot))
     if snapshot.coverage is not None:
         figures.insert(0, ("covered", f"{100 * snapshot.coverage:.1f} %"))
+    left = [
+        (round(spot.x, 2), round(spot.y, 2), f"{spot.why.replace('_', ' ')}, says {spot.by}")
+        for spot in snapshot.left_out[-MOST_LEFT:]
+    ]
+    share = snapshot.known_fraction if snapshot.coverage is None else snapshot.coverage
+    return drawn(
+        snapshot.t,
+        scene.frame,
+        shaded(scene, snapshot),
+        snapshot.robots,
+        figures,
+        share=share,
+        links=snapshot.links or (),
+        left=left,
+        beside=beside,
+    )
+
+
+def drawn(
+    t: float,
+    frame: GridFrame,
+    ground: NDArray[np.uint8],
+    robots: Sequence[RobotSample],
+    figures: Sequence[tuple[str, str]],
+    *,
+    share: float | None = None,
+    links: Sequence[Link] = (),
+    left: Sequence[tuple[float, float, str]] = (),
+    marks: Sequence[Mark] = (),
+    beside: Beside = NOTHING,
+) -> Picture:
+    """Return a moment [s] of any mission.
+
+    Args:
+        t: [s].
+        frame: of the ground.
+        ground: ``(R, C)`` UNKNOWN, FREE, OCCUPIED, or a shade from 3 on.
+        robots: with their names.
+        figures: names and values, for the page's head.
+        share: of what there is to do that is done, 0..1; None: nobody knows.
+        links: between robots.
+        left: x, y [m] and why nobody goes there.
+        marks: of targets.
+        beside: what is told beside.
+    """
+    numbers = beside.numbers or range(1, len(robots) + 1)
     told = {
-        "t": round(snapshot.t, 2),
-        "robots": robots,
+        "t": round(t, 2),
+        "robots": [
+            _robot(number, robot.name, robot, beside.silent.get(number))
+            for number, robot in zip(numbers, robots, strict=True)
+        ],
         "figures": figures,
-        "share": snapshot.known_fraction if snapshot.coverage is None else snapshot.coverage,
-        "links": [(link.a, link.b, link.on_tree, round(link.loss, 2)) for link in snapshot.links or ()],
+        "share": share,
+        "links": [(link.a, link.b, link.on_tree, round(link.loss, 2)) for link in links],
         "orders": beside.orders,
         "areas": beside.areas,
-        "alerts": [*_lost(scene, snapshot), *beside.alerts],
-        "left": [
-            [round(spot.x, 2), round(spot.y, 2), f"{spot.why.replace('_', ' ')}, says {spot.by}"]
-            for spot in snapshot.left_out[-MOST_LEFT:]
-        ],
+        "alerts": [*_lost(robots), *beside.alerts],
+        "left": left,
+        "marks": marks,
     }
     text = msgspec.json.encode(told, enc_hook=lambda number: number.item())  # NumPy's
-    return Picture(snapshot.t, text, scene.frame, shaded(scene, snapshot))
+    return Picture(t, text, frame, ground)
 
 
 def shaded(scene: ExploreScene, snapshot: ExploreSnapshot) -> NDArray[np.uint8]:
@@ -126,10 +180,9 @@ def _robot(number: int, name: str, robot: RobotSample, silent: float | None) -> 
     }
 
 
-def _lost(scene: ExploreScene, snapshot: ExploreSnapshot) -> list[str]:
+def _lost(robots: Sequence[RobotSample]) -> list[str]:
     """Return what an operator should look at."""
-    pairs = zip(scene.vehicles, snapshot.robots, strict=True)
-    return [f"{name}: {robot.fate or robot.state}" for name, robot in pairs if _is_bad(robot)]
+    return [f"{robot.name}: {robot.fate or robot.state}" for robot in robots if _is_bad(robot)]
 
 
 def _is_bad(robot: RobotSample) -> bool:

@@ -1,0 +1,51 @@
+"""Vehicles in the window: trackers with what they know of their targets, searchers with their pdf."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
+from vedette.record.explore.log import RobotSample
+from vedette.record.log import VehicleSample
+from vedette.record.search.log import SearchScene, SearchSnapshot
+from vedette.record.track.ellipse import ellipse_axes
+from vedette.record.track.log import TrackScene, TrackSnapshot
+from vedette.window.picture import SHADES, Mark, Picture, drawn
+
+ACROSS = 200  # cells of the ground under trackers
+
+
+def track_picture(scene: TrackScene, snapshot: TrackSnapshot) -> Picture:
+    """Return a moment of tracking: targets as ellipses in which they are to 95 %."""
+    x0, y0, x1, y1 = scene.area
+    side = (x1 - x0) / ACROSS
+    frame = GridFrame(side, max(round((y1 - y0) / side), 1), ACROSS, x0, y0)
+    marks = [
+        Mark(float(mean[0]), float(mean[1]), *ellipse_axes(covariance), name)
+        for name, mean, covariance in zip(scene.targets, snapshot.means, snapshot.covariances, strict=True)
+    ]
+    figures = [
+        ("entropy", f"{snapshot.entropy:.1f} nat"),
+        ("error", f"{float(np.sqrt(snapshot.squared_error)):.1f} m"),
+    ]
+    ground = np.full(frame.shape, FREE, np.uint8)
+    return drawn(snapshot.t, frame, ground, _named(scene.vehicles, snapshot.vehicles), figures, marks=marks)
+
+
+def search_picture(scene: SearchScene, snapshot: SearchSnapshot) -> Picture:
+    """Return a moment of a search: the likelier the target is somewhere, the deeper the shade."""
+    most = float(snapshot.mass.max(initial=0.0)) or 1.0
+    shade = np.ceil(snapshot.mass / most * SHADES - 0.5).astype(np.uint8)
+    ground = np.where(shade > 0, OCCUPIED + shade, UNKNOWN).astype(np.uint8)
+    figures = [("detected", f"{100 * snapshot.detection:.1f} %"), ("entropy", f"{snapshot.entropy:.1f} nat")]
+    vehicles = _named(scene.vehicles, snapshot.vehicles)
+    return drawn(snapshot.t, scene.frame, ground, vehicles, figures, share=snapshot.detection)
+
+
+def _named(names: Sequence[str], vehicles: Sequence[VehicleSample]) -> list[RobotSample]:
+    return [
+        RobotSample(each.x, each.y, each.heading, each.state, each.alive, each.path, name, None)
+        for name, each in zip(names, vehicles, strict=True)
+    ]
