@@ -136,6 +136,38 @@ def test_a_frozen_leaf_costs_one_epoch_and_comes_back_for_free() -> None:
     assert {place.epoch for place in net.places().values()} == epochs
 
 
+@pytest.mark.parametrize("n", [3, 5, 8])
+def test_a_root_that_all_have_shunned_comes_back_to_their_tree_and_not_they_to_its_own(n: int) -> None:
+    net = whole(n, [(a, b) for b in range(n) for a in range(b)])
+    bad = root(net)
+    for i in net.nodes.keys() - {bad}:
+        net.nodes[i].overlay.shun(bad, net.nodes[i].clock(net.now))
+        net._act(i)
+    net.run(5.0)
+    assert {place.size for i, place in net.places().items() if i != bad} == {n - 1}
+    net.run(15.0)
+    assert net.is_whole()
+    assert bad not in {place.parent for place in net.places().values()}
+    assert net.places()[bad].parent is not None
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_of_two_ways_to_the_root_that_by_a_neighbour_which_was_shunned_is_the_last(seed: int) -> None:
+    net = whole(4, [(0, 1), (0, 2), (1, 3), (2, 3)], seed)
+    top, far, shunned = 3, 0, 1
+    net.nodes[far].overlay.shun(shunned, net.nodes[far].clock(net.now))
+    net._act(far)
+    net.run(15.0)
+    for starts in (far, top):
+        overlay, now = net.nodes[starts].overlay, net.nodes[starts].clock(net.now)
+        overlay._position._start(now)
+        overlay._announce(now)
+        net._act(starts)
+        net.run(5.0)
+    assert net.is_whole()
+    assert net.places()[far].parent == 2
+
+
 def test_a_short_freeze_is_not_noticed_at_all() -> None:
     net = whole(4, CHAIN)
     before = net.places()

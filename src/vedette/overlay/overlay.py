@@ -191,7 +191,7 @@ class Overlay:
             if peer.up and not was_up:
                 self.complaints.pop(peer.robot, None)
         before = self._position.stamp
-        self._position.settle(now)
+        self._position.settle(self.place.size, now)
         if self._position.stamp != before:
             self._announce(now)
         self._count(now)

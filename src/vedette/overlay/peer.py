@@ -37,6 +37,7 @@ class Peer:
     heard: float = -float("inf")  # when anything was [s]
     greeted: float = -float("inf")  # when the latest hello was [s]
     up: bool = False  # we would use the link
+    outdone: bool = False  # a tree of its has been, since the link came up
     twice: int | None = None  # boot of another process under this number, started later
     twice_heard: float = -float("inf")  # when it was [s]
     loss: float = 0.0  # share of its hellos that do not arrive
@@ -159,7 +160,7 @@ class Peer:
         fresh = self._trusted <= self.heard and now < self.heard + self.lease
         up = self.reachable and two_way and agrees and fresh
         if up and not self.up:
-            self.up, self._up_since = True, now
+            self.up, self._up_since, self.outdone = True, now, False
             self.tell(now)
         elif self.up and not up:
             self._go_down(now)
@@ -173,6 +174,10 @@ class Peer:
             self._trusted = now + self._hold
             self.up = False
             self.tell(now)
+
+    def is_doubted(self, now: float) -> bool:
+        """Tell whether it was shunned, and has not been good for long since."""
+        return self._shun >= FIRST_SHUN and not (self.up and now >= self._up_since + SETTLED)
 
     def shun(self, now: float) -> None:
         """Leave the link alone for a while, however well it works; one that was good for long, anew."""

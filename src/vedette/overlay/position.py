@@ -4,7 +4,9 @@ The highest stamp wins. It spreads from its root as a wave; each robot takes as 
 that the wave reaches it by, and keeps that parent and its own distance for as long as it keeps the stamp.
 Within a stamp, therefore, every edge leads to a smaller distance and none is ever exchanged for another:
 edges of one stamp never form a cycle, not even those of different moments taken together. Whoever loses
-an edge starts a tree with a higher stamp at once; a robot that has no edge left goes alone.
+an edge starts a tree with a higher stamp at once; a robot that has no edge left goes alone. A neighbour that
+was shunned comes back to the tree of the others, and does not become their root: they outdo the tree that it
+has started.
 """
 
 from __future__ import annotations
@@ -17,6 +19,7 @@ from vedette.overlay.stamp import Stamp
 
 GRACE = 0.2  # for which a robot alone waits to be taken in, before it starts a tree itself [s]
 IDLE = 2.0  # a robot alone that starts no tree within so long is not waited for [s]
+ANOTHER_WAY = 0.3  # than by a neighbour that was shunned is waited for [s]
 MUCH_BETTER = 3  # hops saved that are worth a new tree
 UNEASE, MOST_UNEASE = 30.0, 480.0  # if they have been there to save for so long, doubling [s]
 
@@ -35,15 +38,20 @@ class TreePosition:
         self._unease, self._uneasy_since = UNEASE, float("inf")
         self._take(Stamp(1, robot, boot), now)
 
-    def settle(self, now: float) -> None:
-        """Leave a tree that has lost an edge, go over to a higher one, or start one where that is due."""
+    def settle(self, size: int, now: float) -> None:
+        """Leave a tree that has lost an edge, go over to a higher one, or start one where that is due.
+
+        ``size``: robots on this robot's tree.
+        """
         self.children.update(k for k, peer in self._peers.items() if self._is_child(peer))
-        offer = self._best_offer()
+        if (rival := self._rival(size, now)) is not None:
+            self._outdo(rival, now)
+        offer = self._best_offer(now)
         edges = self.edges
         whole = [k for k in edges if self._holds(self._peers[k])]
         if len(whole) < len(edges):
             self._repair(offer, alone=not whole, now=now)
-        elif offer is not None and now >= offer.since + patience(offer.cost):
+        elif offer is not None and now >= self._ripe(offer, now):
             self._adopt(offer, now)
         elif self._must_start(now) or self._is_uneasy(now):
             self._start(now)
@@ -55,8 +63,8 @@ class TreePosition:
     def wake(self, now: float) -> float:
         """Return when time alone will next change something here [s]."""
         times = [self._uneasy_since + self._unease]
-        if (offer := self._best_offer()) is not None:
-            times.append(offer.since + patience(offer.cost))
+        if (offer := self._best_offer(now)) is not None:
+            times.append(self._ripe(offer, now))
         if self.stamp.is_alone and now < self.since + GRACE:
             times.append(self.since + GRACE)
         return min(times)
@@ -94,18 +102,48 @@ class TreePosition:
             return False
         return peer.stamp.root != self._robot and _distance_by(peer) <= MOST_DISTANCE
 
-    def _best_offer(self) -> Peer | None:
+    def _best_offer(self, now: float) -> Peer | None:
         offers = [peer for peer in self._peers.values() if self._is_offer(peer)]
         if not offers:
             return None
         highest = max(peer.stamp for peer in offers)
         on_it = (peer for peer in offers if peer.stamp == highest)
-        return min(on_it, key=lambda peer: (_distance_by(peer), peer.robot != self.parent, peer.robot))
+        return min(
+            on_it,
+            key=lambda peer: (
+                peer.is_doubted(now),
+                _distance_by(peer),
+                peer.robot != self.parent,
+                peer.robot,
+            ),
+        )
+
+    def _ripe(self, offer: Peer, now: float) -> float:
+        """Return until when to wait for a better way to its root than by who offers it [s]."""
+        return offer.since + patience(offer.cost) + (ANOTHER_WAY if offer.is_doubted(now) else 0.0)
 
     def _adopt(self, offer: Peer, now: float) -> None:
         self._take(offer.stamp, now, offer.robot, _distance_by(offer))
 
     # -- starting a tree -----------------------------------------------------------------------------
+
+    def _rival(self, size: int, now: float) -> Peer | None:
+        """Return who offers a higher tree, no larger than ours, that a shunned neighbour has started.
+
+        Once for each time that its link comes up: two robots that have shunned each other will agree.
+        """
+        for peer in filter(self._is_offer, self._peers.values()):
+            root = self._peers.get(peer.stamp.root)
+            if root is None or root.outdone or not root.is_doubted(now):
+                continue
+            if peer.hello is not None and 1 < size >= peer.hello.size:
+                return peer
+        return None
+
+    def _outdo(self, rival: Peer, now: float) -> None:
+        """Start a tree that ranks above another."""
+        self._peers[rival.stamp.root].outdone = True
+        self._take(rival.stamp.next_tree(self._robot, self._boot), now)
 
     def _must_start(self, now: float) -> bool:
         """Tell whether this robot, alone, has to start a tree: nobody within its reach ranks above it.
