@@ -4,18 +4,27 @@ from __future__ import annotations
 
 import pytest
 
-from tests.support.bad_member import MODES, play
+from tests.support.bad_member import MODES, plan_of, play
 from tests.support.mutants import CASES
 
 SEEDS = 4
-ALL, BATCH = 100, 10
+ALL, BATCH = 124, 10
 MUTANTS = 40
+TWO_HUNG = 100223  # a seed
 
 
 @pytest.mark.parametrize("mode", MODES)
 def test_no_member_stops_the_others(mode: str) -> None:
     for seed in range(SEEDS):
         play(mode, seed)
+
+
+def test_a_team_parts_and_goes_on_where_two_that_hang_are_a_thirds_only_links() -> None:
+    plan, bad = plan_of("hung", TWO_HUNG)
+    alone = set(range(len(plan.places))) - set(bad) - {0, 3, 4}
+    assert len(bad) == 2
+    assert all(a in bad or b in bad for a, b in plan.edges if {a, b} & alone)
+    play("hung", TWO_HUNG)
 
 
 @pytest.mark.parametrize("mode", ["mates", "epoch", "echo", "wrong map"])

@@ -181,6 +181,16 @@ def test_without_a_new_tree_a_silent_child_is_cut_and_those_behind_it_keep_their
     assert team.choices() == (alone.index, *chosen[1:])
 
 
+def test_who_says_what_makes_no_sense_in_a_round_is_not_waited_for() -> None:
+    team, _, _ = toy_team(Tree.chain(2), lose=lambda post: nested_kind(post) == "Gather")
+    team.run_until(lambda: any(nested_kind(post) == "Gather" for post in team.log))
+    epoch, sequence = team.agents[0].rounds.stamp
+    team.tell(0, Message(1, messages.encode(messages.Negotiate(epoch, sequence, b"?"))))
+    team.run(0.3)
+    assert team.agents[0].rounds.cuts == 1
+    assert team.decisions() == [1, 0]
+
+
 def test_messages_of_an_old_epoch_are_void() -> None:
     team, _, _ = toy_team(Tree.chain(3))
     team.run_round()
@@ -264,6 +274,17 @@ def test_a_finished_mission_goes_on_when_something_is_worth_doing_again() -> Non
     team.tell(0, Message(1, messages.encode(messages.Call(1))))
     team.run(2.0)
     assert not any(agent.finished or agent.done for agent in team.agents)
+
+
+def test_a_finished_team_on_another_tree_agrees_once_more_and_has_finished() -> None:
+    team = finished_team()
+    before = team.decisions()
+    team.plant(Tree.star(3), range(3))
+    team.run(0.1)
+    assert not any(agent.finished for agent in team.agents)
+    team.run(4.0)
+    assert all(agent.finished and agent.done for agent in team.agents)
+    assert team.decisions() == [count + 1 for count in before]
 
 
 def test_a_robot_with_something_put_off_keeps_the_mission_from_ending() -> None:

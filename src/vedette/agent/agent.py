@@ -46,6 +46,7 @@ def step(agent: Agent, events: Iterable[Event], now: float) -> list[Effect]:
 def _take(agent: Agent, event: Event, now: float) -> list[Effect]:
     match event:
         case Message(sender, payload):
+            agent.rounds.heard(sender, now)
             return _guarded(agent, sender, lambda: _hear(agent, sender, payload, now))
         case Pose():
             agent.pose, agent.posed = event, now
@@ -57,7 +58,7 @@ def _take(agent: Agent, event: Event, now: float) -> list[Effect]:
             return _prepared(agent, key, now)
         case TreeChanged():
             if event.epoch != agent.rounds.tree.epoch:
-                agent.quiet = 0  # who is new may know of something left to do
+                agent.quiet = min(agent.quiet, 1)  # who is new may know of something left to do
             agent.rounds.join(event, now)
             agent.mission.fusion.set_neighbours(event.neighbours)
             return obeying.tell_all(agent)

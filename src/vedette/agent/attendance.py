@@ -11,6 +11,7 @@ from vedette.agent.events import TreeChanged
 MISSES = 2  # rounds in a row that a child may be cut from before the next ones go on without it
 PAUSE, MOST_PAUSE = 10.0, 160.0  # for which they do, doubling each time [s]
 UNLIKE = 4  # rounds in a row may be planned on another belief than the root's, for each link to it
+BRIEF, THRICE = 0.2, 3.0  # of the patience, or of what it took last: for a child that has missed a round
 FARTHEST = 8  # a robot farther from the root, in links, counts as no farther
 
 
@@ -19,12 +20,14 @@ class Attendance:
     """A child that keeps being cut from rounds is left out of them for a while, then asked again.
 
     It stays on the tree: evidence goes both ways, and nobody else waits for it any more. Whoever takes part
-    in no round plans alone meanwhile (``vedette.agent.rounds``).
+    in no round plans alone meanwhile (``vedette.agent.rounds``). Until it is there again to a round's end,
+    its first word in a round, which takes no thought, is waited for but briefly.
     """
 
     _missed: Counter[int] = field(default_factory=Counter)  # rounds in a row, by child
     _pauses: dict[int, float] = field(default_factory=dict)  # the latest of each [s]
     _until: dict[int, float] = field(default_factory=dict)  # left out until [s]
+    _took: dict[int, float] = field(default_factory=dict)  # until its first word in a round, lately [s]
 
     def keep(self, neighbours: Iterable[int]) -> None:
         """Ask all but these again when they come again; who was left out before has one round to be there."""
@@ -38,6 +41,16 @@ class Attendance:
         if self._missed[child] >= MISSES or child in self._pauses:
             self._pauses[child] = min(2.0 * self._pauses.get(child, PAUSE / 2.0), MOST_PAUSE)
             self._until[child] = now + self._pauses[child] * tempo
+
+    def flushed(self, child: int, took: float) -> None:
+        """Note how long a child's first word in a round took [s]."""
+        self._took[child] = took
+
+    def bears(self, child: int, patience: float) -> float:
+        """Return how long to wait for a child's first word in a round, at most so long [s]."""
+        if child not in self._missed and child not in self._pauses:
+            return patience
+        return min(patience, max(BRIEF * patience, THRICE * self._took.get(child, 0.0)))
 
     def attended(self, children: Iterable[int]) -> None:
         """Note that children were there to a round's end."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from vedette.agent.pace import Pace
+from vedette.agent.silence import LONG
 
 SLOW = 0.5  # of the least patience that a preparation takes [1]
 IDLE = 1.0  # a robot that did not look after its rounds for longer did not want any [s of the transport]
@@ -56,6 +57,11 @@ class TeamPatience:
     def least(self, size: int, depth: int = 0) -> float:
         """Return how long a robot would wait whose own preparation takes no time [s]."""
         return self.tempo * patience(size, depth)
+
+    @property
+    def is_no_wonder(self) -> float:
+        """How long others may be silent while they prepare [s]: longer where this robot's own takes long."""
+        return self.tempo * LONG + self._preparation
 
     def is_over(self, size: int, now: float) -> bool:
         """Tell whether it has decided with nobody for so long that it had better plan alone."""

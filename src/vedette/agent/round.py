@@ -28,6 +28,7 @@ from vedette.agent.messages import (
 from vedette.agent.mission import Mission
 from vedette.agent.participant import RoundParticipant
 from vedette.agent.reaches import reaches_to_tell
+from vedette.agent.silence import Silences
 from vedette.negotiation import Claims, Negotiator, RoundOutcome, messages, node_of
 from vedette.negotiation import Outgoing as Reply
 from vedette.problem import Reach
@@ -85,6 +86,8 @@ class Round:
     )  # the last impact from each neighbour, as it was told
     told: dict[int, Any] = field(default_factory=dict)  # the last impact to each neighbour
     early: list[tuple[int, Negotiate]] = field(default_factory=list)  # came before this robot was ready
+    spoilt: set[int] = field(default_factory=set)  # neighbours whose word made no sense
+    silences: Silences = field(default_factory=Silences)  # of neighbours, since the belief was frozen
 
     def __post_init__(self) -> None:
         self.waiting = set(self.children)
@@ -194,6 +197,7 @@ class Round:
         self.approximate = self.digest != message.digest
         self.mission.hear_notes(message.notes)
         self.belief = self.mission.freeze(message.t0 / 1000.0)
+        self.silences.begin(now)
         return effects
 
     def _told(self, now: float) -> dict[int, Areas | None]:

@@ -27,6 +27,7 @@ from vedette.agent.pace import Pace
 from vedette.agent.patience import TeamPatience
 from vedette.agent.promises import Suspicion
 from vedette.agent.round import Round, say, send_news
+from vedette.agent.silence import Slowness
 from vedette.fusion.standing import signed_by
 from vedette.number import many
 
@@ -77,6 +78,8 @@ class Rounds:
     _ended: float = -1e9
     _attendance: Attendance = field(default_factory=Attendance)
     _upwards: Upwards = field(default_factory=Upwards)
+    _slowness: Slowness = field(default_factory=Slowness)
+    _shunned: set[int] = field(default_factory=set)  # parents by which no round has ended since
     _opinion: Opinion = field(default_factory=Opinion)
     suspicion: Suspicion = field(default_factory=Suspicion)  # of neighbours, by what their claims come to
     auditor: Auditor | None = None  # where claims can be signed
@@ -158,10 +161,14 @@ class Rounds:
     def _hurry(self, now: float) -> list[Effect]:
         """Cut children that do not answer in time from the round; give it up if it is the parent."""
         round_ = self.round
-        if round_ is None or now <= round_.heard + self.patience.waits(self._size, round_.depth):
+        if round_ is None:
             return []
         effects: list[Effect] = []
+        waits, waited = self.patience.waits(self._size, round_.depth), now - round_.heard
         for silent in sorted(round_.awaited - {round_.tree.parent}):
+            bears = self._attendance.bears(silent, waits) if round_.belief is None else waits
+            if waited <= bears and silent not in round_.spoilt:
+                continue
             if self.round is not round_:  # cutting the one before has ended it
                 break
             self.cuts += 1
@@ -169,7 +176,7 @@ class Rounds:
             effects += self._after(round_.cut(silent, now), now)
         lonely, size = self._is_lonely(now), self._size
         most = self.patience.least(size) if lonely else 1.5 * self.patience.waits(size)
-        if effects or now <= round_.heard + most:
+        if effects or (waited <= max(waits, most) and round_.tree.parent not in round_.spoilt):
             return effects
         return self._give_up(round_, now)
 
@@ -180,6 +187,16 @@ class Rounds:
         self._end(now)
         self._wanted = True
         return self._fail()
+
+    def heard(self, neighbour: int, now: float) -> None:
+        """Note that a neighbour's agent has said something, whatever it is."""
+        if self.round is not None:
+            self.round.silences.heard(neighbour, now)
+
+    @property
+    def slow(self) -> frozenset[int]:
+        """Neighbours that round after round waits for."""
+        return self._slowness.slow
 
     @property
     def _size(self) -> int:
@@ -192,10 +209,13 @@ class Rounds:
 
     def _fail(self) -> list[Effect]:
         """Note that the parent let a round come to nothing."""
-        return self._shun() if self._upwards.fails(self.tree) else []
+        return self._shun() if self._upwards.fails(self.tree) or self.tree.parent in self._shunned else []
 
     def _shun(self) -> list[Effect]:
-        return [] if self.tree.parent is None else [Shun(self.tree.parent)]
+        if self.tree.parent is None:
+            return []
+        self._shunned.add(self.tree.parent)
+        return [Shun(self.tree.parent)]
 
     def _ask(self, now: float) -> list[Effect]:
         if self.tree.parent is None:
@@ -245,6 +265,7 @@ class Rounds:
         if took_part:
             self.patience.together(now)
             self._attendance.attended(round_.children)
+            self._shunned -= {round_.tree.parent}
             effects = effects + self._scrutinise(round_, now)
         self._end(now)
         self.team_impact = round_.team_seen
@@ -286,6 +307,9 @@ class Rounds:
         return False
 
     def _end(self, now: float) -> None:
+        if self.round is not None:
+            bears = self.patience.is_no_wonder
+            self._slowness.note(self.round.silences, self.tree.neighbours, bears, now)
         self.round = None
         self._ended = now
 
@@ -328,7 +352,10 @@ class Rounds:
             raise ValueError(
                 f"flushed: {many(message.robots, 'robot')}; the team has {self.admitted} at most"
             )
-        return [] if round_ is None else round_.hear_flushed(sender, message, now)
+        if round_ is None:
+            return []
+        self._attendance.flushed(sender, now - self._began)
+        return round_.hear_flushed(sender, message, now)
 
     def freeze(self, message: Freeze, now: float) -> list[Effect]:
         """Hear that everything known has arrived.
@@ -368,12 +395,20 @@ class Rounds:
         return [] if self.round is None else self.round.take_early()
 
     def negotiate(self, sender: int, message: Negotiate, now: float) -> list[Effect]:
-        """Take in a negotiation message."""
+        """Take in a negotiation message.
+
+        Raises:
+            ValueError: it makes no sense; nobody waits for this neighbour any more in this round.
+        """
         round_ = self._of(message.epoch, message.sequence)
         if round_ is None:
             return []
         self.answers += round_.negotiator is not None
-        return self._after(round_.negotiate(sender, message, now), now)
+        try:
+            return self._after(round_.negotiate(sender, message, now), now)
+        except ValueError:
+            round_.spoilt.add(sender)
+            raise
 
     def _of(self, epoch: int, sequence: int) -> Round | None:
         """Return the round going on, if it is the one that is spoken of."""

@@ -134,9 +134,10 @@ class Agent:
     def complaints(self) -> dict[int, str]:
         """What is wrong with whom, by robot."""
         absent = dict.fromkeys(self.rounds.absent, "rounds go on without it: it does not answer")
+        slow = dict.fromkeys(self.rounds.slow, "it is slow: rounds wait for it")
         signed = {} if self.signed is None else self.signed.complaints
         caught = {} if self.rounds.auditor is None else self.rounds.auditor.caught
-        return absent | self.rounds.suspicion.complaints | caught | signed
+        return slow | absent | self.rounds.suspicion.complaints | caught | signed
 
     @property
     def state(self) -> State:
