@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, isfinite
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -17,17 +17,19 @@ import numpy as np
 from bench.journal import append, read
 from bench.table import figure, markdown
 from tests.support.bad_member import MODES
+from tests.support.lies import LIES
 from tests.support.net_processes import Doubled, Mission, misbehaving, plan_of, run
 from vedette.errors import InputError, check_word
 from vedette.maps import UNKNOWN
 from vedette.maps.world import World
+from vedette.missions.explore.options import ExploreOptions
 from vedette.net.launch import TeamProcesses
 from vedette.record.explore.score import Reference, coverage, map_errors
 from vedette.sim.worlds import office
 
 DEAD, DOUBLE, SLOW = "dead", "double", "slow"
 SLOW_BY = "slow=0.7"  # for every job [s]
-ALL = (*MODES, DOUBLE)
+ALL = (*MODES, *LIES, DOUBLE)
 SIZES = (3, 5)
 KNOWN, LATE, WRONG, NAMED = 0.99, 1.5, 0.005, 30.0  # asked: share, ratio, share, [s]
 MOST = 900.0  # a mission may last [s]
@@ -63,6 +65,8 @@ def measure(mode: str, robots: int, world: World, speed: float, commit: str) -> 
     others = list(range(robots - 1))
     with TemporaryDirectory(prefix="vedette-bench-") as logs:
         plan = plan_of(world, robots, speed)
+        if mode in LIES and LIES[mode].unbounded:
+            plan = replace(plan, options=ExploreOptions(unbounded=True))
         mission = run(plan, Path(logs), team=_team(mode, robots), max_time=MOST, enough=others)
     diary = mission.diary
     named = diary.named_at(others, robots - 1)

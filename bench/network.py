@@ -48,9 +48,11 @@ Progress = Callable[[str], None]
 
 
 @click.command()
-@click.option("--quick", is_flag=True, help="A smoke run: a small office, few missions.")
+@click.option("--quick", is_flag=True, help="A smoke run: a small office, few missions, nobody misbehaves.")
 @click.option("--speed", default=SPEED, show_default=True, help="Of the mission that is compared.")
-@click.option("--modes", help=f"Of a member that misbehaves, with commas between, or all: {', '.join(ALL)}.")
+@click.option(
+    "--modes", help=f"Only teams with a member that misbehaves so, with commas between: {', '.join(ALL)}."
+)
 @click.option("--robots", default="3,5", show_default=True, help="Of such teams, with commas between.")
 @click.option("--date", help="Of the run, to be put into the JSON.  [default: the commit's]")
 @click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for the JSON.")
@@ -59,13 +61,17 @@ def network(quick: bool, speed: float, modes: str | None, robots: str, date: str
     folder = command.results_folder(out)
     about = machine.describe()
     click.echo(f"{about['machine']}; Python {about['python']}; commit {about['commit']}")
-    if modes is not None:
-        wanted = modes_of(modes), sizes_of(robots)
+    wanted = modes_of(modes or "all"), sizes_of(robots)
+    if modes is None:
+        _measure_all(folder, about, quick, speed, date)
+    if not quick or modes is not None:
         for each in results(folder / "members.jsonl", *wanted, speed, about["commit"]):
             click.echo(f"  {each.mode}, {each.robots} robots: {each.outcome}", err=True)
         click.echo(table(folder / "members.jsonl"), nl=False)
-        return
-    about |= {"date": date or about["commit_date"], "load_before": _load()}
+
+
+def _measure_all(folder: Path, about: dict[str, str], quick: bool, speed: float, date: str | None) -> None:
+    about = about | {"date": date or about["commit_date"], "load_before": _load()}
 
     def progress(text: str) -> None:
         click.echo(f"  {text} (load {_load()}) ...", err=True)

@@ -2,7 +2,7 @@
 
 ``slow=SECONDS`` takes so long for every job, ``ends=SIGNAL`` gets a signal in the middle of a round,
 ``late=SECONDS`` starts so late, the clock of ``stepped=SECONDS`` jumps by so much after ten; the others are
-the modes of ``tests.support.bad_member``.
+the modes of ``tests.support.lies``, but for ``double``.
 """
 
 from __future__ import annotations
@@ -16,9 +16,11 @@ from typing import Any
 import numpy as np
 
 from tests.support import misbehaving
-from tests.support.bad_member import MODES
+from tests.support.lies import MODES
 from vedette.cli import main
+from vedette.missions.explore.assemble import assemble
 from vedette.net import start
+from vedette.net.explore import robot
 from vedette.net.process import AgentProcess
 
 STEPPED_AFTER = 10.0  # [s]
@@ -43,8 +45,9 @@ def misbehave(mode: str) -> None:
 
         AgentProcess._run = slowly  # type: ignore[method-assign]
     else:
-        program = misbehaving.Dead if mode == "dead" else MODES[mode](np.random.default_rng(0))
+        program = MODES[mode].program(np.random.default_rng(0))
         start.NetworkedAgent = partial(program)  # type: ignore[attr-defined,misc]
+        robot.assemble = partial(assemble, explorer=MODES[mode].explorer)  # type: ignore[attr-defined]
 
 
 def _step_the_clock(seconds: float) -> None:

@@ -24,8 +24,9 @@ from vedette.outcome import Outcome
 from vedette.sim.faults import Schedule
 
 Program = Callable[..., NetworkedAgent]
+Make = Callable[[np.random.Generator], Program]
 
-MODES: Mapping[str, Callable[[np.random.Generator], Program]] = {
+MODES: Mapping[str, Make] = {
     "slow": lambda rng: partial(misbehaving.Slow, takes=misbehaving.delay_of(rng)),
     "hung": lambda rng: partial(misbehaving.Slow, takes=misbehaving.NEVER),
     "mute": lambda rng: misbehaving.Mute,

@@ -21,6 +21,7 @@ from vedette.agent.networked import BEACON, HELLO, Output
 NEVER = float("inf")
 EPOCH, ECHO = 4, -1  # fields of a hello
 BEACONS_EVERY, BEACONS_AT_ONCE = 0.1, 40  # [s]
+SECOND_AFTER = 5.0  # is a robot's second process started [s]
 ROUNDS = 3  # that a member whose process ends has taken part in
 
 
@@ -52,6 +53,44 @@ class Slow(NetworkedAgent):
         if any(isinstance(each, Job) for each in outputs):
             self.hold, self._back = True, now + self._takes
         return outputs
+
+
+class Twice(NetworkedAgent):
+    """A second process under the same number, started somewhat later; the body is the first one's."""
+
+    def __init__(self, agent: Agent, now: float, *, double: Agent, **how: Any) -> None:
+        super().__init__(agent, now, **how)
+        self._double, self._begins = NetworkedAgent(double, now + SECOND_AFTER, **how), now + SECOND_AFTER
+        self._reaches: frozenset[int] = frozenset()
+
+    @property
+    def wake(self) -> float:
+        """When either has something to do."""
+        return min(super().wake, max(self._double.wake, self._begins))
+
+    def hear(self, sender: int, datagram: bytes, now: float) -> list[Output]:
+        """Both hear it."""
+        told = super().hear(sender, datagram, now)
+        return [*told, *(self._done(self._double.hear(sender, datagram, now)) if now >= self._begins else [])]
+
+    def peers(self, robots: Iterable[int], now: float) -> list[Output]:
+        """The second one reaches the same."""
+        self._reaches = frozenset(robots)
+        return super().peers(robots, now)
+
+    def step(self, events: Iterable[Event], now: float) -> list[Output]:
+        """Let both take in what the robot senses."""
+        told = list(events)
+        outputs = super().step(told, now)
+        if now < self._begins:
+            return outputs
+        sensed = [event for event in told if not isinstance(event, JobDone)]
+        reached = self._double.peers(self._reaches, now)
+        return [*outputs, *self._done([*reached, *self._double.step(sensed, now)])]
+
+    def _done(self, outputs: list[Output]) -> list[Output]:
+        """Return the second one's datagrams; it moves nothing, and has no part in any round."""
+        return [each for each in outputs if isinstance(each, Datagram)]
 
 
 class Dead(NetworkedAgent):

@@ -231,8 +231,10 @@ class _Fate:
             self.stop()
         if len(self.diary.by_robot) < len(snapshot.robots):
             return
-        assert snapshot.coverage is not None, "the ground is known"
-        while self.faults and snapshot.coverage >= self.faults[0].coverage:
+        while self.faults:
+            assert snapshot.coverage is not None, "the ground is known"
+            if snapshot.coverage < self.faults[0].coverage:
+                return
             fault = self.faults.pop(0)
             self.diary.kept.append((time.monotonic(), fault.what))
             fault.strike(self.diary)
