@@ -7,13 +7,15 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
 from tests.fuzz.decoders import conditions
+from tests.support.memory import watched
 from tests.support.search_missions import case
-from tests.support.track_scenes import scenario
+from tests.support.track_scenes import content, scenario
 from vedette.cli.team import team
 from vedette.missions.flying import RoundTimes
 from vedette.missions.search.assemble import SearchTeam
@@ -98,6 +100,19 @@ def test_processes_track_as_well_as_the_simulation(tmp_path: Path) -> None:
     assert told["rounds"] > 90
     assert told["entropy_mean_nat"] < 39.0  # 36.4 simulated; with shared beliefs alone 38.9
     assert 0.6 < told["nees"] < 1.6
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="needs Linux's /proc")
+def test_memory_is_flat_over_half_an_hour(tmp_path: Path) -> None:
+    (tmp_path / "long.yaml").write_bytes(msgspec.yaml.encode(content(duration=1800)))
+    with watched(5.0) as samples:
+        result = ran("track", tmp_path / "long.yaml", "--speed", 8, "--out", tmp_path / "out")
+    assert result.exit_code == 0, result.output
+    team = [sample for sample in samples if len(sample) == 3 and min(sample) > 0.0]
+    early, late = (np.mean(team[at : at + 3], axis=0) for at in (len(team) // 6, len(team) - 4))
+    print(f"\nthree trackers' agents after 5 and 30 minutes: {early.round()} and {late.round()} MB")
+    assert (late < early + 10.0).all()
 
 
 @pytest.mark.slow

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tests.support.net_processes import (
@@ -27,6 +28,7 @@ from tests.support.net_processes import (
 from tests.support.small_missions import room_with_a_wall, small_office
 from vedette.net.launch import TeamProcesses
 from vedette.outcome import Outcome
+from vedette.sim.worlds import office
 
 pytestmark = pytest.mark.slow
 
@@ -109,6 +111,15 @@ def test_who_starts_late_joins_the_team_and_gets_the_whole_map(tmp_path: Path) -
     tell("one starts 12 s late", mission)
     assert mission.report.summary.outcome is Outcome.COMPLETE
     check_whole(mission, [0, 1, 2])
+
+
+def test_twenty_processes_are_twenty_contributors_to_one_map(tmp_path: Path) -> None:
+    mission = run(plan_of(office(np.random.default_rng(0)), 20, 1.0), tmp_path, max_time=600.0)
+    tell("a team of twenty", mission)
+    assert mission.report.summary.outcome is Outcome.COMPLETE
+    assert mission.diary.agree(range(20))
+    assert mission.report.summary.coverage >= 0.99
+    assert {mission.diary.last(i).size for i in range(20)} == {20}
 
 
 class OnAFullDisk(TeamProcesses):

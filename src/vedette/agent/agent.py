@@ -46,8 +46,7 @@ def step(agent: Agent, events: Iterable[Event], now: float) -> list[Effect]:
 def _take(agent: Agent, event: Event, now: float) -> list[Effect]:
     match event:
         case Message(sender, payload):
-            agent.rounds.heard(sender, now)
-            return _guarded(agent, sender, lambda: _hear(agent, sender, payload, now))
+            return _guarded(agent, sender, lambda: _listen(agent, sender, payload, now))
         case Pose():
             agent.pose, agent.posed = event, now
         case Scan() | Sensed():
@@ -86,6 +85,12 @@ def _prepared(agent: Agent, key: tuple[int, int], now: float) -> list[Effect]:
     effects = agent.rounds.prepared(key, now)
     for sender, message in agent.rounds.take_early():
         effects += _guarded(agent, sender, partial(agent.rounds.negotiate, sender, message, now))
+    return effects
+
+
+def _listen(agent: Agent, sender: int, payload: bytes, now: float) -> list[Effect]:
+    effects = _hear(agent, sender, payload, now)
+    agent.rounds.heard(sender, now)
     return effects
 
 

@@ -190,7 +190,7 @@ class Rounds:
 
     def heard(self, neighbour: int, now: float) -> None:
         """Note that a neighbour's agent has said something, whatever it is."""
-        if self.round is not None:
+        if self.round is not None and neighbour in self.round.tree.neighbours:
             self.round.silences.heard(neighbour, now)
 
     @property

@@ -29,8 +29,9 @@ class Silences:
 
     def heard(self, neighbour: int, now: float) -> None:
         """Note that a neighbour's agent has said something, whatever it is."""
-        self._longest[neighbour] = max(self._longest.get(neighbour, 0.0), self._lasts(neighbour, now))
-        self._spoke[neighbour] = now
+        if now >= self._since:
+            self._longest[neighbour] = self.longest(neighbour, now)
+            self._spoke[neighbour] = now
 
     def longest(self, neighbour: int, now: float) -> float:
         """Return for how long it was silent at a stretch [s]; 0 before the freezing."""
