@@ -157,7 +157,7 @@ class Inflating(NetworkedAgent):
         if isinstance(message, Negotiate) and rounds.round is not None:
             mission: Any = self.agent.mission
             belief = rounds.round.belief
-            said = negotiation.decode(message.data, mission.codec)
+            said: Any = negotiation.decode(message.data, mission.codec)
             if getattr(said, "mu", None) is not None:
                 more = mission.objective.combine(said.mu, largest_claim(belief, mission.most))
                 data = negotiation.encode(structs.replace(said, mu=more), mission.codec)
