@@ -122,3 +122,12 @@ def test_paths_that_see_nothing_gain_nothing() -> None:
     others = (np.array([3], np.uint32), np.array([9], np.uint8))
     gains = search.path_gains(np.full((2, 2), 0.25), still, 2, np.ones(2), others, nothing)
     assert gains.tolist() == [0.0, 0.0]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_target_gets_as_far_in_a_step_as_the_stencil_says_and_no_farther(seed: int) -> None:
+    stencil = random_stencil(np.random.default_rng(seed))
+    mass = np.zeros((21, 21))
+    mass[10, 10] = 1.0
+    away = np.abs(np.argwhere(search.propagate(mass, stencil) > 0.0) - 10)
+    assert away.max() == stencil.reach

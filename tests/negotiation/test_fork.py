@@ -75,6 +75,17 @@ def test_the_value_never_falls(scheme: str, seed: int) -> None:
     assert result.value == pytest.approx(value_of(weights, chosen), abs=1e-9)
 
 
+def test_without_rounds_too_a_child_is_cut_once_and_nobody_after_the_end() -> None:
+    node = AsyncNode([1, 2, 3], 1, Chooser(Coverage(), np.ones(2), [np.zeros(2)]))
+    node.start()
+    node.cut(2)
+    assert node.cut(2) == []
+    assert node.waiting_for == {3}
+    node.receive(1, Settled(RoundOutcome(2.0, 2.0, 1, converged=True), keep=True, quiet=True))
+    assert node.cut(3) == []
+    assert node.finished is not None
+
+
 def test_in_whatever_order_news_come_only_what_was_taken_counts_and_the_value_never_falls() -> None:
     """Facts are told while changes are still to be taken: one in a hundred teams shows where they mix."""
     for seed in range(400):

@@ -308,6 +308,20 @@ def test_only_an_objective_with_a_bound_has_a_finite_slack() -> None:
         assert math.isfinite(slack) == objective.submodular
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_the_slack_of_courses_to_choose_from_is_what_the_best_of_them_adds(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    belief = random_tracks(rng, targets=4)
+    platform = random_platform(rng, belief, continuous=False)
+    team = random_impact(rng, belief)
+    values = [
+        OBJECTIVE.value(belief, OBJECTIVE.combine(team, platform.impact(belief, course)))
+        for course in platform.courses
+    ]
+    most = max(0.0, max(values) - OBJECTIVE.value(belief, team))
+    assert platform.slack(belief, team) == pytest.approx(most, rel=1e-9, abs=1e-12)
+
+
 def test_a_target_on_the_rim_of_the_range_counts_in_what_a_reply_can_add_at_most() -> None:
     belief = tracks([static(1.0, 0.0)], [[50.0, 0.0]], [np.eye(2)], dt=1.0, horizon=2)
     platform = TrackingPlatform(0.0, 0.5, Position(range=50.0), continuous=True)
