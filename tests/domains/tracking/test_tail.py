@@ -6,6 +6,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -102,6 +103,17 @@ def test_a_look_in_the_tail_says_as_much_in_all_directions() -> None:
     belief = with_tail(np.random.default_rng(1))
     looks = Attending(Position(range=50.0, noise=2.0, detection=1.0), 5.0, 0.5).looks(belief.tail)
     np.testing.assert_allclose(looks, np.broadcast_to([0.25, 0.0, 0.25], looks.shape), rtol=1e-9)
+
+
+def test_who_goes_to_a_target_finds_what_is_within_its_range_when_it_arrives() -> None:
+    spread = np.diag([400.0, 400.0, 4.0, 4.0])
+    models, layers = [constant_velocity(1.0, 1.0)], (10.0, 26.0, 68.0)
+    belief = tracks(models, [[180.0, 0.0, 0.0, 0.0]], [spread], dt=1.0, horizon=2, layers=layers)
+    tail, sensor = belief.tail, Position(range=40.0, noise=5.0, detection=1.0)
+    told = Attending(sensor, 10.0, 0.5).blocks(tail, np.zeros((1, 3)), 0)[0, 0, :, 0]
+    assert told[0] == 0.0 < told[1]  # it arrives in the second layer
+    share = np.log1p(told * tail.spreads[:, 0]) / np.log1p(tail.spreads[:, 0] / 25.0)
+    assert share[2] == pytest.approx(1.0 - np.exp(-(40.0**2) / (2.0 * tail.spreads[1, 0])))
 
 
 def test_who_stays_in_its_place_sees_beside_a_target_what_is_in_its_view_when_it_faces_it() -> None:
