@@ -175,3 +175,16 @@ def test_what_is_no_box_is_refused_in_one_line(
 def test_dominance_asks_for_controls() -> None:
     with pytest.raises(InputError, match="a Controls for each platform"):
         diagonally_dominant(LogDet(), np.eye(2), [[np.eye(2)]])  # type: ignore[list-item]
+
+
+@pytest.mark.parametrize("start", [-50.0, 0.0, 50.0])
+def test_dominance_asks_nothing_of_controls_outside_their_limits(start: float) -> None:
+    asked: list[float] = []
+
+    def impact(u: Float) -> Float:
+        asked.extend(u.tolist())
+        return u
+
+    own = Controls(impact, np.array([-50.0]), np.array([50.0]), np.array([start]))
+    diagonally_dominant(Quadratic(), (np.eye(1), np.ones(1)), [own])
+    assert -50.0 <= min(asked) < max(asked) <= 50.0

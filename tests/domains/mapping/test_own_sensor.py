@@ -101,7 +101,7 @@ def test_a_tour_promises_what_a_lidars_would_times_how_likely_the_sensor_sees_it
     planning = mission.frame.coarse(2)
     for k, (target, at) in enumerate(zip(half.targets, half.views, strict=True)):
         same = int(np.argmin(np.abs(everything.targets - target).sum(axis=1)))
-        assert np.allclose(everything.views[same], at)
+        assert np.allclose(everything.views[same], at, atol=1e-9)
         lidar, seen = likely(everything, same), likely(half, k)
         x, y = (planning.centres(np.array(sorted(lidar))) - at).T
         bearing = np.arctan2(y, x) - np.arctan2(*(target - at)[::-1])

@@ -142,7 +142,7 @@ def test_an_own_worth_is_that_of_the_team(tmp_path: Path) -> None:
 def test_the_houses_worths_are_what_they_were() -> None:
     assert worth_of("plain", 4, 0.5, 0.0).weights.tolist() == [1.0] * 4
     assert worth_of("discounted", 3, 0.5, 0.0).weights.tolist() == [1.0, 0.5, 0.25]
-    assert np.allclose(worth_of("mean-time", 4, 0.5, 0.0).weights, [1.0, 0.75, 0.5, 0.25])
+    assert np.allclose(worth_of("mean-time", 4, 0.5, 0.0).weights, [1.0, 0.75, 0.5, 0.25], atol=0.0)
 
 
 def test_the_example_is_the_one_that_is_explained() -> None:
