@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from msgspec import structs
 
-from tests.agent.test_proofs import agent, hears, notary
 from tests.support.agent_team import Float
+from tests.support.signing_agents import agent, hears, notary
 from vedette.agent import Agent, messages
 from vedette.agent.account import Claimed, account_of, contradicts, words_of
 from vedette.agent.audit import EVERY, WAITS

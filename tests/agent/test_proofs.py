@@ -9,36 +9,19 @@ import numpy as np
 import pytest
 from msgspec import structs
 
-from tests.support.agent_team import FRAME, toy_agent
-from tests.support.notaries import certified
-from vedette.agent import Agent, messages, step
+from tests.support.signing_agents import agent, hears, notary
+from vedette.agent import messages
 from vedette.agent.account import Claimed, account_of, contradicts, words_of
 from vedette.agent.effects import Effect, Send
-from vedette.agent.events import Message, Pose, TreeChanged
+from vedette.agent.events import Pose
 from vedette.agent.messages import Proof
 from vedette.agent.proofs import AGAIN
 from vedette.fusion import contradictions
 from vedette.fusion.contradictions import Accounted, Histories, SignedWord, Twice
-from vedette.fusion.particulars import Capabilities
 from vedette.fusion.seals import BEACON, EVIDENCE, STEPS
-from vedette.fusion.signed import SignedEvidence
 
 LIAR = 0
 AT = Pose(1.0, 1.0, 0.0)
-
-
-def notary(robot: int) -> Any:
-    return certified(robot, lambda: 100.0)
-
-
-def agent(robot: int, neighbours: tuple[int, ...]) -> Agent:
-    """A robot that signs, on a chain."""
-    made = toy_agent(robot, [], None)  # type: ignore[arg-type]
-    limits = Capabilities(0.1, 8.0, 0.5)
-    made.mission.fusion = SignedEvidence(robot, 1, FRAME.shape, 4, notary=notary(robot), limits=limits)
-    made.__post_init__()
-    step(made, [TreeChanged(1, None, neighbours, 4)], 0.0)
-    return made
 
 
 def word(*what: int | bytes | str, robot: int = LIAR) -> SignedWord:
@@ -61,10 +44,6 @@ def proofs_in(effects: Iterable[Effect]) -> dict[int, Proof]:
     sends = [effect for effect in effects if isinstance(effect, Send)]
     said = [(send.to, messages.decode(send.payload)) for send in sends]
     return {to: message for to, message in said if isinstance(message, Proof)}
-
-
-def hears(hearer: Agent, sender: int, message: Any, now: float = 1.0) -> list[Effect]:
-    return step(hearer, [Message(sender, messages.encode(message))], now)
 
 
 # -- what is proof -----------------------------------------------------------------------------------------
