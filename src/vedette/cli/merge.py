@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from vedette.cli.options import FILE, Positive
 from vedette.maps import map_files, write_map
 from vedette.record.folder import OutputFolder
-from vedette.record.merge.summary import MergeSummary, PlacedMap
-from vedette.run import merging
-from vedette.run.merging import Merged, map_path
+
+if TYPE_CHECKING:
+    from vedette.record.merge.summary import PlacedMap
+    from vedette.run.merging import Merged
 
 NOT_JOINED = 1
 
@@ -30,13 +32,17 @@ def merge(maps: tuple[Path, ...], out: Path, resolution: float | None, force: bo
     merge.json with each map's place and what it rests on. Maps that look alike in more than one way are not
     joined. Exit status: 0 all are joined, 1 some cannot be joined safely and nothing is written, 2 bad input.
     """
+    # who only asks for help does not wait for SciPy
+    from vedette.record.merge.summary import MergeSummary
+    from vedette.run import merging
+
     saved = merging.read(maps, resolution)
     merged = merging.merge(saved)
     names = [each.name for each in saved]
     if not merged.joined.whole:
         click.echo(f"vedette: {_refusal(names, merged)}", err=True)
         raise SystemExit(NOT_JOINED)
-    inputs = [file for path in maps for file in map_files(map_path(path))]
+    inputs = [file for path in maps for file in map_files(merging.map_path(path))]
     with OutputFolder.make(out, force, "merge", inputs) as folder:
         summary = MergeSummary.told(names, merged.joined)
         summary.write(folder / "merge.json")
