@@ -15,7 +15,7 @@ from vedette.agent.account import Claimed, account_of, contradicts, words_of
 from vedette.agent.audit import EVERY, WAITS
 from vedette.agent.effects import Send
 from vedette.agent.messages import MOST_ANSWERED, Account, Audit, Proof
-from vedette.agent.rounds import IDLE_ROUNDS
+from vedette.agent.scrutiny import IDLE_ROUNDS
 
 WORTH = np.arange(1.0, 13.0)
 STAMP = (1, 7)
@@ -36,15 +36,15 @@ def robot(number: int, neighbours: tuple[int, ...]) -> Agent:
     made = agent(number, neighbours)
     mission: Any = made.mission
     mission.candidates, mission.strategy = [NOTHING, SOME], 0
-    made.rounds.impact, made.rounds.anybody_moves = NOTHING, lambda: False
+    made.rounds.scrutiny.anybody_moves = lambda: False
     return made
 
 
 # -- when ----------------------------------------------------------------------------------------------------
 
 
-def stands_about(made: Agent, claims: dict[int, Float]) -> list[bool]:
-    return [made.rounds._stands_about(WORTH, claims) for _ in range(IDLE_ROUNDS + 1)]
+def stands_about(made: Agent, claims: dict[int, Float], own: Float = NOTHING) -> list[bool]:
+    return [made.rounds.scrutiny._stands_about(WORTH, own, claims) for _ in range(IDLE_ROUNDS + 1)]
 
 
 def test_an_audit_is_called_for_where_nobody_goes_though_a_robot_would_without_one_link() -> None:
@@ -64,12 +64,10 @@ def test_an_audit_is_called_for_where_nobody_goes_though_a_robot_would_without_o
 )
 def test_otherwise_none_is_called_for(claims: dict[int, Float], goes: bool, moves: bool) -> None:
     made = robot(1, (0, 2))
-    made.rounds.anybody_moves = lambda: moves
-    if goes:
-        made.rounds.impact = SOME
+    made.rounds.scrutiny.anybody_moves = lambda: moves
     if not claims or claims[2] is NOTHING:
         made.mission.candidates = [NOTHING]  # type: ignore[attr-defined]
-    assert not any(stands_about(made, claims))
+    assert not any(stands_about(made, claims, SOME if goes else NOTHING))
 
 
 def claimed(own: Float = NOTHING, heard: dict[int, Float] | None = None, **told: Float) -> Claimed:
@@ -84,7 +82,7 @@ def said(effects: list[Any]) -> list[Any]:
 
 def test_audits_are_held_for_a_while_and_not_too_often() -> None:
     made = robot(1, (0,))
-    auditor = made.rounds.auditor
+    auditor = made.rounds.scrutiny.auditor
     assert auditor is not None
     assert auditor.decided(claimed(), (0,), 0.0) == []
     auditor.want(1.0)
@@ -99,7 +97,7 @@ def test_audits_are_held_for_a_while_and_not_too_often() -> None:
 def test_of_a_round_account_is_given_once_whatever_is_asked() -> None:
     """Who could get two of one round could have an honest robot convicted."""
     made = robot(1, (0, 2))
-    auditor = made.rounds.auditor
+    auditor = made.rounds.scrutiny.auditor
     assert auditor is not None
     auditor.decided(claimed(), (0, 2), 0.0)
     for stamp, own, gives in ((STAMP, NOTHING, True), ((1, 8), NOTHING, True), (STAMP, SOME, False)):
@@ -120,7 +118,7 @@ def account(teller: int, made: Agent, what: Claimed, **changes: Any) -> Account:
 def judged(*accounts: Account) -> tuple[Agent, list[Proof]]:
     """Let a robot hold an audit to which others give these accounts; return what it proves."""
     made = robot(1, (0, 2))
-    auditor = made.rounds.auditor
+    auditor = made.rounds.scrutiny.auditor
     assert auditor is not None
     for teller in (0, 2):
         auditor.standing.notary.admit(teller, notary(teller).certificate)

@@ -122,10 +122,10 @@ def _hear(agent: Agent, sender: int, payload: bytes, now: float) -> list[Effect]
             return agent.rounds.negotiate(sender, message, now)
         case messages.Orders(told):
             return obeying.take(agent, told, sender)
-        case messages.Audit() if agent.rounds.auditor is not None:
-            return agent.rounds.auditor.ask(sender, message, agent.rounds.tree.neighbours, now)
-        case messages.Account() if agent.rounds.auditor is not None:
-            return agent.rounds.auditor.hear(sender, message, agent.rounds.tree.neighbours)
+        case messages.Audit() if agent.rounds.scrutiny.auditor is not None:
+            return agent.rounds.scrutiny.auditor.ask(sender, message, agent.rounds.tree.neighbours, now)
+        case messages.Account() if agent.rounds.scrutiny.auditor is not None:
+            return agent.rounds.scrutiny.auditor.hear(sender, message, agent.rounds.tree.neighbours)
         case messages.Proof() if agent.proofs is not None:
             return agent.proofs.hear(sender, message, agent.rounds.tree.neighbours)
         case messages.Proven() if agent.proofs is not None:

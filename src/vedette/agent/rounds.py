@@ -14,9 +14,7 @@ from functools import partial
 from math import inf
 from typing import Any
 
-from vedette.agent.account import Claimed
 from vedette.agent.attendance import Attendance, Upwards
-from vedette.agent.audit import Auditor
 from vedette.agent.effects import Effect, Job, Shun
 from vedette.agent.events import Pose, TreeChanged
 from vedette.agent.mates import Mate
@@ -25,14 +23,12 @@ from vedette.agent.mission import Mission
 from vedette.agent.opinion import Opinion
 from vedette.agent.pace import Pace
 from vedette.agent.patience import TeamPatience
-from vedette.agent.promises import Suspicion
 from vedette.agent.round import Round, say, send_news
+from vedette.agent.scrutiny import Scrutiny
 from vedette.agent.silence import Slowness
-from vedette.fusion.standing import signed_by
 from vedette.number import many
 
 CALL_AGAIN = 1.0  # a call not answered is repeated after so long [s]
-IDLE_ROUNDS = 3  # in a row in which nobody goes, though somebody might, call for an audit
 SETTLING = 0.2  # a new tree is left alone for so long before a round [s]
 CLOCKS_APART = 20.0  # that the root's may be from this robot's, where rounds keep to beats [s]
 
@@ -56,8 +52,8 @@ class Rounds:
     decided: Callable[[Decision], None]
     pace: Pace = field(default_factory=Pace)
     patience: TeamPatience = field(init=False)
+    scrutiny: Scrutiny = field(init=False)
     forks: bool = False  # the token may fork in a large team
-    anybody_moves: Callable[[], bool] = lambda: True  # of the mates
     admitted: int = 1 << 16  # robots that there can be in the team
     mandate: Callable[[], int] = lambda: 0  # digest of the orders that are held
     tree: TreeChanged = field(default_factory=lambda: TreeChanged(0, None, (), 1))
@@ -81,13 +77,10 @@ class Rounds:
     _slowness: Slowness = field(default_factory=Slowness)
     _shunned: set[int] = field(default_factory=set)  # parents by which no round has ended since
     _opinion: Opinion = field(default_factory=Opinion)
-    suspicion: Suspicion = field(default_factory=Suspicion)  # of neighbours, by what their claims come to
-    auditor: Auditor | None = None  # where claims can be signed
-    _idle: int = 0  # rounds in a row in which nobody goes
     _solos: int = 0  # rounds that this robot began for itself alone
 
     def __post_init__(self) -> None:
-        self.patience = TeamPatience(self.pace)
+        self.patience, self.scrutiny = TeamPatience(self.pace), Scrutiny(self.mission)
 
     @property
     def busy(self) -> bool:
@@ -112,10 +105,7 @@ class Rounds:
     @property
     def distrusted(self) -> frozenset[int]:
         """Robots without which this one plans, for their word is not believed."""
-        signed, now = signed_by(self.mission.fusion), self.patience.ticked
-        if signed is None or self.auditor is None:
-            return self.suspicion.nothing(now)
-        return signed.out | self.auditor.left_out(now)
+        return self.scrutiny.distrusted(self.patience.ticked)
 
     # -- when rounds begin and end --------------------------------------------------------------------
 
@@ -149,8 +139,7 @@ class Rounds:
     def tick(self, now: float) -> list[Effect]:
         """Do what is due: go on without who does not answer, call or begin a round that is wanted."""
         self.patience.tick(now)
-        if self.auditor is not None:
-            self.auditor.tick(now)
+        self.scrutiny.tick(now)
         if self.tree.parent in self.distrusted:
             return self._shun()
         effects = self._hurry(now)
@@ -266,7 +255,9 @@ class Rounds:
             self.patience.together(now)
             self._attendance.attended(round_.children)
             self._shunned -= {round_.tree.parent}
-            effects = effects + self._scrutinise(round_, now)
+            effects = effects + self.scrutiny.decided(
+                round_, self.stamp, self.impact, self.tree.neighbours, now
+            )
         self._end(now)
         self.team_impact = round_.team_seen
         seen = None if self.team_impact is None else round_.participant.value(self.team_impact)
@@ -278,33 +269,6 @@ class Rounds:
         if not took_part:
             return [*effects, *self._fail()]
         return [*effects, *(self._shun() if self._upwards.ends(self.tree, round_.approximate) else [])]
-
-    def _scrutinise(self, round_: Round, now: float) -> list[Effect]:
-        """Find out whose claims come true; where something is wrong, have everybody sign theirs."""
-        claims, belief = round_.claims, round_.belief
-        halvings = {k: self.suspicion.halvings(k) for k in claims}
-        lost = self.suspicion.note(self.mission, belief, claims, now)
-        if self.auditor is None:
-            return []
-        if lost or self._stands_about(belief, claims):
-            self.auditor.want(now)
-        claimed = Claimed(self.stamp, belief, self.impact, claims, round_.told, halvings)
-        return self.auditor.decided(claimed, self.tree.neighbours, now)
-
-    def _stands_about(self, belief: Any, claims: dict[int, Any]) -> bool:
-        """Tell whether nobody goes, round after round, though this robot would if one link said nothing."""
-        own, objective = self.mission.strategy, self.mission.objective
-        goes = objective.value(belief, self.impact) > 0.0 or self.anybody_moves()
-        self._idle = 0 if goes else self._idle + 1
-        if self._idle < IDLE_ROUNDS:
-            return False
-        for silent in claims:
-            rest = objective.nothing(belief)
-            for k in claims.keys() - {silent}:
-                rest = objective.combine(rest, claims[k])
-            if self.mission.platform.reply(belief, rest, own) != own:
-                return True
-        return False
 
     def _end(self, now: float) -> None:
         if self.round is not None:
@@ -327,7 +291,7 @@ class Rounds:
         self._wanted = False
         absent = (self._attendance.absent(now) | self.distrusted) - {self.tree.parent}
         tree = replace(self.tree, neighbours=tuple(k for k in self.tree.neighbours if k not in absent))
-        weigh = partial(self.suspicion.weigh, self.mission)
+        weigh = partial(self.scrutiny.suspicion.weigh, self.mission)
         self.round = Round(
             self.mission,
             self.scheme,

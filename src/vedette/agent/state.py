@@ -114,10 +114,10 @@ class Agent:
 
     def __post_init__(self) -> None:
         self.rounds = Rounds(self.mission, self.scheme, self._decided, self.pace, forks=self.forks)
-        self.rounds.anybody_moves = self.mates.anybody_moves
+        self.rounds.scrutiny.anybody_moves = self.mates.anybody_moves
         self.rounds.mandate = lambda: self.orders.digest
         if self.signed is not None:
-            self.rounds.auditor = Auditor(self.robot, self.boot, self.mission, self.signed.standing)
+            self.rounds.scrutiny.auditor = Auditor(self.robot, self.boot, self.mission, self.signed.standing)
             self.proofs = Proofs(self.mission, self.signed)
 
     @property
@@ -136,8 +136,8 @@ class Agent:
         absent = dict.fromkeys(self.rounds.absent, "rounds go on without it: it does not answer")
         slow = dict.fromkeys(self.rounds.slow, "it is slow: rounds wait for it")
         signed = {} if self.signed is None else self.signed.complaints
-        caught = {} if self.rounds.auditor is None else self.rounds.auditor.caught
-        return slow | absent | self.rounds.suspicion.complaints | caught | signed
+        caught = {} if self.rounds.scrutiny.auditor is None else self.rounds.scrutiny.auditor.caught
+        return slow | absent | self.rounds.scrutiny.suspicion.complaints | caught | signed
 
     @property
     def state(self) -> State:
