@@ -121,6 +121,25 @@ def test_controls_end_at_the_edge_of_their_box_where_the_best_is_outside() -> No
     np.testing.assert_array_equal(controls(result), [0.5, -0.5])
 
 
+@pytest.mark.parametrize("scheme", ["token", "jacobi", "fork", "async"])
+def test_a_control_at_the_bottom_between_two_tops_leaves_it(scheme: str) -> None:
+    """Along the line that is known best, turning either way gains, though the slope is 0."""
+    prior, edge = np.diag([5.0, 1.0]), np.array([1.5])
+    team = [Controls(line_of_sight, -edge, edge, np.zeros(1))]
+    result = negotiate(LogDet(), prior, team, Tree.chain(1), scheme)
+    assert result.controls[0] is not None
+    assert abs(result.controls[0][0]) == 1.5
+    assert result.value == pytest.approx(LogDet().value(prior, line_of_sight(edge)))
+    assert result.converged
+
+
+def test_controls_have_a_start_of_their_own_and_no_other() -> None:
+    run = Quadratic(), (np.eye(2), np.ones(2)), platforms([1, 1]), Tree.chain(2)
+    np.testing.assert_allclose(controls(negotiate(*run, start=[0, 0])), 1.0, rtol=1e-6)
+    with pytest.raises(InputError, match=r"^start\[1\] = 2, but platform 1 has candidates 0 to 0$"):
+        negotiate(*run, start=[0, 2])
+
+
 def line_of_sight(u: Float) -> Float:
     """Information of a bearing along the direction ``u``."""
     h = np.array([math.cos(u[0]), math.sin(u[0])])
@@ -175,6 +194,12 @@ def test_what_is_no_box_is_refused_in_one_line(
 def test_dominance_asks_for_controls() -> None:
     with pytest.raises(InputError, match="a Controls for each platform"):
         diagonally_dominant(LogDet(), np.eye(2), [[np.eye(2)]])  # type: ignore[list-item]
+
+
+@pytest.mark.parametrize("seed", [-1, 1.5, "one", None, True])
+def test_dominance_asks_for_a_seed(seed: Any) -> None:
+    with pytest.raises(InputError, match=r"^seed must be a whole number >= 0; got "):
+        diagonally_dominant(Quadratic(), (np.eye(1), np.ones(1)), platforms([1]), seed=seed)
 
 
 @pytest.mark.parametrize("start", [-50.0, 0.0, 50.0])

@@ -101,7 +101,8 @@ def negotiate(
     listed = listed_impacts(candidates)
     check_problem(objective, belief, listed)
     check_round(tree, len(candidates), scheme, epsilon, max_sweeps, inverse, guard)
-    begun = [None] * tree.n if start is None else check_choice(start, listed, "start")
+    choices = [(own,) if isinstance(own, Controls) else own for own in candidates]
+    begun = [None] * tree.n if start is None else check_choice(start, choices, "start")
     reach = None if reach is None else checked_reach(objective, tree, scheme, reach)
     remove = remover(objective, tree, scheme) if inverse else None
     if codec is not None:

@@ -16,6 +16,8 @@ from vedette.problem.objective import BeliefT, ImpactT, Objective
 
 Float = NDArray[np.float64]
 
+_BESIDE = 1e-3  # where it is flat, a control is tried so far to either side, as a share of what it can be
+
 
 class Optimiser(Valued[BeliefT, ImpactT]):
     """``u <- argmax psi(Y(u) * a_{-i})`` over a box, from the present control uphill (paper, eq. (30)).
@@ -49,7 +51,7 @@ class Optimiser(Valued[BeliefT, ImpactT]):
 
     def reply(self, others: ImpactT) -> bool:
         """Climb against the rest of the team; tell if the control has changed by more than the threshold."""
-        from scipy.optimize import Bounds, minimize  # takes longer to import than all else here
+        from scipy.optimize import Bounds, OptimizeResult, minimize  # takes long to import
 
         low, width = self._controls.low, self._controls.high - self._controls.low
         scale = max(abs(self._worth(self.control, others)), 1e-300)
@@ -57,13 +59,20 @@ class Optimiser(Valued[BeliefT, ImpactT]):
         def depth(share: Float) -> float:
             return -self._worth(low + share * width, others) / scale
 
+        def climbed(begin: Float) -> OptimizeResult:
+            return minimize(
+                depth, begin, method="L-BFGS-B", jac="3-point", bounds=Bounds(0.0, 1.0),
+                options={"ftol": 1e-16, "gtol": 1e-12},
+            )  # fmt: skip
+
         begin = (self.control - low) / width
-        found = minimize(
-            depth, begin, method="L-BFGS-B", jac="3-point", bounds=Bounds(0.0, 1.0),
-            options={"ftol": 1e-16, "gtol": 1e-12},
-        )  # fmt: skip
+        here, found = depth(begin), climbed(begin)
+        if not found.fun < here:  # flat: a top, or the bottom between two
+            moves = _BESIDE * np.eye(len(begin))
+            beside = min(np.clip(begin + np.vstack((moves, -moves)), 0.0, 1.0), key=depth)
+            found = climbed(beside) if depth(beside) < here else found
         best = np.clip(low + found.x * width, low, self._controls.high)
-        if np.abs(best - self.control).max() <= self._controls.threshold or not found.fun < depth(begin):
+        if np.abs(best - self.control).max() <= self._controls.threshold or not found.fun < here:
             return False
         self._take(best)
         return True

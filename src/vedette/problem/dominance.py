@@ -69,6 +69,8 @@ def diagonally_dominant(
         check_impacts(objective, belief, own.examples, f"controls[{i}]: impact")
     if not is_whole(points) or points < 1:
         raise InputError(f"points must be a whole number >= 1; got {brief(points)}")
+    if not is_whole(seed) or seed < 0:
+        raise InputError(f"seed must be a whole number >= 0; got {brief(seed)}")
     low, high, start = (
         np.concatenate([getattr(c, end) for c in controls]) for end in ("low", "high", "start")
     )
