@@ -158,6 +158,10 @@ def test_a_frontier_that_a_visit_did_not_change_stays_given_up_until_the_map_nea
     for _ in range(3):
         placed(platform, frozen(classes))
         assert not reachable_near(platform, x, y).any()
+        stops = stops_of(platform)
+        near = np.hypot(*(stops.targets - (x, y)).T) < 0.4
+        assert near.any()
+        assert (stops.legs[:, near] == np.inf).all()  # from no other stop either
         assert platform.reply(frozen(classes), NOTHING, STAY).stops.tolist().count(2) == 0
     row, col = FRAME.cell(x, y)
     window = classes[row - 6 : row + 7, col - 6 : col + 7]

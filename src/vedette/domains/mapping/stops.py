@@ -52,8 +52,8 @@ class Stops:
     views: NDArray[np.float64]  # (K, 2) where to stand [m], team frame
     unknown: NDArray[np.int64]  # (K,) unknown cells near the frontier, to tell whether a visit changed it
     footprints: Footprints
-    first_leg: NDArray[np.float32]  # (K,) travel time from here [s]
-    legs: NDArray[np.float32]  # (K, K) travel time between [s]
+    first_leg: NDArray[np.float32]  # (K,) travel time from here [s], inf where unreachable
+    legs: NDArray[np.float32]  # (K, K) travel time between [s], inf where unreachable
 
     def __len__(self) -> int:
         return len(self.targets)
