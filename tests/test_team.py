@@ -109,8 +109,8 @@ def test_what_is_no_team_is_one_line(tmp_path: Path, text: str, message: str) ->
 
 def test_a_missing_file_a_folder_and_a_binary_are_bad_input(tmp_path: Path) -> None:
     (tmp_path / "noise").write_bytes(bytes(range(256)))
-    for name in ("gone.yaml", ".", "noise"):
-        with pytest.raises(InputError):
+    for name, said in (("gone.yaml", "No such file"), (".", "Is a directory"), ("noise", "not a YAML text")):
+        with pytest.raises(InputError, match=said):
             load_team(tmp_path / name)
 
 

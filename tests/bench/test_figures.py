@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import re
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -127,12 +126,12 @@ def test_a_report_is_read_by_heading_column_and_row(tmp_path: Path) -> None:
     path = tmp_path / "report.md"
     path.write_text("# R\n## A\n| n | x | y |\n|---|---|---|\n| `a` (b) | 1.5 (1-2) | 2 |\n\n## B\ntext\n")
     assert cell(path, "A", "x", "`a`") == "1.5"
-    wrong: list[tuple[Any, ...]] = [
-        ("B", "x", "`a`"),
-        ("C", "x", "`a`"),
-        ("A", "z", "`a`"),
-        ("A", "x", "`b`"),
+    wrong = [
+        ("B", "x", "`a`", "no table under 'B'"),
+        ("C", "x", "`a`", "no table under 'C'"),
+        ("A", "z", "`a`", "A: no 'z' of "),
+        ("A", "x", "`b`", "A: no 'x' of "),
     ]
-    for heading, column, row in wrong:
-        with pytest.raises(LookupError):
+    for heading, column, row, said in wrong:
+        with pytest.raises(LookupError, match=said):
             cell(path, heading, column, row)

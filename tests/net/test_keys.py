@@ -119,8 +119,9 @@ def test_a_number_is_never_given_twice_even_if_its_folder_has_been_moved_away(te
 
 def test_the_record_lists_every_certificate_with_its_serial_number(team: Path) -> None:
     add_robots(TEAM, team, 1, NOW, days=1)
-    for line in (team / "issued.txt").read_text().splitlines():
-        name, serial, expires = line.split()
+    record = [line.split() for line in (team / "issued.txt").read_text().splitlines()]
+    assert sorted(name for name, *_ in record) == ["operator", "robot-1", "robot-2", "robot-3"]
+    for name, serial, expires in record:
         certificate = x509.load_pem_x509_certificate((team / name / "cert.pem").read_bytes())
         assert (certificate.serial_number, str(certificate.not_valid_after_utc.date())) == (
             int(serial, 16),

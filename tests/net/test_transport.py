@@ -132,11 +132,16 @@ def test_a_payload_that_is_too_large_is_refused() -> None:
         a.send(1, bytes(MOST_PAYLOAD + 1))
 
 
-def test_what_is_sent_after_closing_is_lost() -> None:
-    with Transport(Ports().access(0), 0) as a:
-        a.send(1, b"x")
-    a.send(1, b"x")
-    a.publish(Topic.REPORT, b"x")
+def test_what_is_sent_after_closing_is_lost(ports: Ports) -> None:
+    with Transport(ports.access(0), 0) as a, Transport(ports.access(1, [0]), 1) as b:
+        wait_until(lambda: a.peers == {1} and b.peers == {0})
+        reports: list[Published] = []
+        b.subscribe(Topic.REPORT, reports.append)
+        assert_delivered(a, b, [b"before"])
+        a.close()
+        a.send(1, b"after")
+        a.publish(Topic.REPORT, b"after")
+        assert (datagrams(b.inbox), reports) == ([], [])
 
 
 def test_sending_to_a_frozen_peer_does_not_wait() -> None:
@@ -505,14 +510,17 @@ def test_a_bad_endpoint_is_told_in_one_line(text: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "bad",
+    ("bad", "said"),
     [
-        {"team": "a/b"}, {"team": ""}, {"team": "x" * 33}, {"team": "**"}, {"lease": 0.0},
-        {"lease": float("nan")}, {"robots": 0}, {"listen": ("tls/127.0.0.1:7447",)}, {"connect": ("x",)},
+        *(({"team": team}, "team must be 1 to 32 letters") for team in ("a/b", "", "x" * 33, "**")),
+        *(({"lease": lease}, "lease must lie in 0.2..60 s") for lease in (0.0, float("nan"))),
+        ({"robots": 0}, "robots must lie in 1..65536; got 0"),
+        ({"listen": ("tls/127.0.0.1:7447",)}, "cannot use 'tls'"),
+        ({"connect": ("x",)}, "endpoint must be tcp/HOST:PORT"),
     ],
-)  # fmt: skip
-def test_bad_access_is_refused(bad: dict[str, object]) -> None:
-    with pytest.raises(InputError):
+)
+def test_bad_access_is_refused(bad: dict[str, object], said: str) -> None:
+    with pytest.raises(InputError, match=said):
         Access(**{"team": TEAM, "insecure": True, **bad})  # type: ignore[arg-type]
 
 

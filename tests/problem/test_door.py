@@ -298,7 +298,9 @@ def test_numbers_that_are_believed_give_a_bound_that_holds(data: st.DataObject) 
     )
     candidates = [list(own) for own in misses]
     if not right:
-        with pytest.raises(InputError):
+        with pytest.raises(
+            InputError, match=r"^(belief: weights|candidates\[\d\]\[\d\]: miss prob\w+) must be"
+        ):
             agree(Coverage(), weights, candidates, Tree.chain(2))
     elif weights.max() < 1e90:
         found = agree(Coverage(), weights, candidates, Tree.chain(2))
@@ -317,7 +319,9 @@ def test_matrices_that_are_believed_give_a_bound_that_holds(data: st.DataObject)
     candidates = [measured[:2], measured[2:]]
     right = np.linalg.eigvalsh(prior)[0] > 1e-12 and np.linalg.eigvalsh(measured).min() >= -1e-12
     if not right:
-        with pytest.raises(InputError):
+        with pytest.raises(
+            InputError, match=r"^(belief|candidates\[\d\]\[\d\]): information must be positive"
+        ):
             agree(LogDet(), prior, candidates, Tree.chain(2))
     else:
         found = agree(LogDet(), prior, candidates, Tree.chain(2))

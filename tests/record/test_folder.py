@@ -63,7 +63,7 @@ def test_a_run_that_comes_to_nothing_leaves_no_folder_that_was_not_there(
     monkeypatch.chdir(tmp_path)
     if there:
         (tmp_path / "runs").mkdir()
-    with pytest.raises(InputError), OutputFolder.make(None, False, "x"):
+    with pytest.raises(InputError, match=r"^nothing$"), OutputFolder.make(None, False, "x"):
         raise InputError("nothing")
     assert [path.name for path in tmp_path.iterdir()] == ["runs"] * there
 

@@ -6,7 +6,7 @@ The oracle is matplotlib's own renderer: where it puts every text and legend.
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import combinations
+from itertools import combinations, product
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -161,15 +161,11 @@ def check(figure: Figure) -> None:
 
 
 def check_legends(figure: Figure) -> None:
-    """No legend lies on axes with data."""
-    for axes in figure.axes:
-        legend = axes.get_legend()
-        for other in figure.axes:
-            if legend is not None:
-                assert not extent(legend).overlaps(other.get_window_extent().padded(-1)), other.get_ylabel()
-    for legend in figure.legends:
-        for axes in figure.axes:
-            assert not extent(legend).overlaps(axes.get_window_extent().padded(-1))
+    """There is a legend, and none lies on axes with data."""
+    legends = [*figure.legends, *filter(None, (axes.get_legend() for axes in figure.axes))]
+    assert legends
+    for legend, axes in product(legends, figure.axes):
+        assert not extent(legend).overlaps(axes.get_window_extent().padded(-1)), axes.get_ylabel()
 
 
 @pytest.mark.parametrize(("count", "long"), TEAMS)
@@ -193,9 +189,10 @@ def test_a_tracking_mission(drawn: list[Figure], count: int, long: bool, targets
     check_legends(tracks)
     check_legends(entropy)
     check(entropy)
-    for axes in tracks.axes:
-        if axes.get_title(loc="left"):
-            _check_labels(axes, log)
+    panels = [axes for axes in tracks.axes if axes.get_title(loc="left")]
+    assert panels
+    for axes in panels:
+        _check_labels(axes, log)
 
 
 def _check_labels(axes: Axes, log: TrackLog) -> None:

@@ -67,7 +67,9 @@ def test_the_agent_leaves_out_what_ros_adds(given: list[str], own: list[str]) ->
 
 def test_what_the_package_installs_is_there_and_its_names_agree() -> None:
     setup = (PACKAGE / "setup.py").read_text()
-    for path in re.findall(r"\"((?:launch|rviz)/[^\"]+|package\.xml)\"", setup):
+    installed = re.findall(r"\"((?:launch|rviz)/[^\"]+|package\.xml)\"", setup)
+    assert {path.partition("/")[0] for path in installed} == {"launch", "rviz", "package.xml"}
+    for path in installed:
         assert (PACKAGE / path).is_file(), path
     assert ElementTree.parse(PACKAGE / "package.xml").findtext("name") == "vedette_ros"
     assert (PACKAGE / "resource" / "vedette_ros").is_file()

@@ -78,6 +78,8 @@ def test_a_fit_keeps_proportions_within_the_limit(shape: tuple[int, int]) -> Non
     rows, cols = fit(shape, (48, 70))
     assert 1 <= rows <= min(48, shape[0])
     assert 1 <= cols <= min(70, shape[1])
+    assert (rows, cols) == shape or rows == 48 or cols == 70  # the largest there is
+    assert abs(rows * shape[1] - cols * shape[0]) <= max(shape)  # to the row and the column
 
 
 def test_the_window_is_what_is_known_and_a_margin() -> None:
@@ -149,8 +151,8 @@ def test_odd_shapes_and_an_unknown_world_are_drawn(rows: int, cols: int, robots:
     explore_gif(log, tmp_path / "mission.gif")
     nothing = {"t50_s": None, "t90_s": None, "t95_s": None}
     curves_png(log, _summary(log, **nothing), tmp_path / "curves.png")
-    for file in tmp_path.iterdir():
-        with Image.open(file) as image:
+    for name in ("progress.png", "mission.gif", "curves.png"):
+        with Image.open(tmp_path / name) as image:
             assert max(image.size) <= 2400
 
 
@@ -199,7 +201,7 @@ def test_links_on_the_tree_are_drawn_dark_and_others_faint_and_the_legend_explai
     alone, size = _darkness(path, ())
     faint, _ = _darkness(path, (Link(0, 1, False, 0.0),))
     dark, _ = _darkness(path, (Link(0, 1, True, 0.0),))
-    assert alone < alone + 1e4 < faint < dark
+    assert alone + 1e4 < faint < dark
     assert size[0] == ideal[0]
     assert size[1] > ideal[1]  # by a line of the legend
 
