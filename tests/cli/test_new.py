@@ -70,7 +70,7 @@ def test_a_domain_of_ones_own_runs_on_two_processes(vedette: Command, of: str) -
     summary = json.loads(out)
     assert summary["lost"] == [], err
     assert summary["rounds"] > 2, "they have negotiated"
-    assert all(sent["fusion"] > 0 for sent in summary["messages"].values()), "they have told each other"
+    assert min(sent["fusion"] for sent in summary["messages"].values()) > 0, "they have told each other"
     if of == "skeleton":
         assert summary["figures"]["unseen"] < 3.0
     else:

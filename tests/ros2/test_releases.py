@@ -31,4 +31,4 @@ class Mixed(TeamProcesses):
 def test_agents_of_jazzy_and_of_kilted_explore_as_one_team(tmp_path: Path) -> None:
     ended = tried(plan(drawn(TWO_ROOMS), 2), tmp_path, team=Mixed)
     sound(ended, 2)
-    assert all(way > 0.0 for way in ended.report.summary.path_m.values())
+    assert min(ended.report.summary.path_m.values()) > 0.0
