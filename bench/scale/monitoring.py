@@ -25,7 +25,7 @@ SEEN = 0.2  # share of the cells that have been measured
 
 
 def dense(lots: Lots, rng: np.random.Generator) -> Team:
-    """return one robot a lot; in a horizon it crosses a third of it."""
+    """Return one robot a lot; in a horizon it crosses a third of it."""
     rows, cols = (max(2, round(n * lots.side / CELL)) for n in (lots.rows, lots.cols))
     return _team(GridFrame(CELL, rows, cols), lots.places(rng), rng)
 

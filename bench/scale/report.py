@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from bench.criteria import BenchReport, verdicts
 from bench.scale.picture import scale_png
-from bench.scale.series import QUICK_SIZES, SIZES, Row, rows
+from bench.scale.series import DOMAINS, QUICK_SIZES, SIZES, Row, rows
 from bench.scale.tables import brief, full
 from bench.scale.verdicts import judge
 from vedette.record.files import write_text
@@ -21,9 +21,15 @@ class ScaleReport(BenchReport):
     rows: tuple[Row, ...]
 
 
-def run(folder: Path, about: Mapping[str, str], quick: bool, progress: Callable[[str], None]) -> str:
+def run(
+    folder: Path,
+    about: Mapping[str, str],
+    quick: bool,
+    progress: Callable[[str], None],
+    domains: Sequence[str] = tuple(DOMAINS),
+) -> str:
     """Measure, write ``scale.json``, ``scale.md`` and ``scale.png``, and return what to show."""
-    table = list(rows(QUICK_SIZES if quick else SIZES, progress))
+    table = list(rows(domains, QUICK_SIZES if quick else SIZES, progress))
     judged = judge(table)
     path = folder / ("scale-quick.json" if quick else "scale.json")
     measurements = tuple(each.judged() for each in judged)

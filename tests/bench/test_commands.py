@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from bench.ablation import WHOLE, carry_out_variant, variants
+from bench.scale.series import DOMAINS
 from tests.support.places import ROOT
 from tests.support.schemas import valid
 from vedette.sim.explore.simulation import ExploreSetup
@@ -35,11 +36,11 @@ def measurements(path: Path) -> list[dict[str, Any]]:
 def test_the_smoke_run_of_all_measures_everything_but_large_teams(tmp_path: Path) -> None:
     said = run("bench", "--quick", "--out", tmp_path)
     speed, scale = measurements(tmp_path / "bench-quick.json"), measurements(tmp_path / "scale-quick.json")
-    assert (len(speed), len(scale)) == (9, 3 * 5)
+    assert (len(speed), len(scale)) == (9, len(DOMAINS) * 5)
     assert all(row["measured"] > 0 and row["name"] in said for row in speed)
     assert [row["name"].split(", ", 1)[1] for row in scale if row["measured"] is None] == [
         "constant density: median link, from n=256 on"
-    ] * 3
+    ] * len(DOMAINS)
 
 
 @pytest.mark.slow

@@ -191,11 +191,8 @@ def test_the_whole_sizes_are_those_of_the_median_link_and_of_one_with_most_platf
 # -- rows, verdicts, files --------------------------------------------------------------------------
 
 
-def test_a_row_spreads_a_rounds_figures_over_its_platforms_and_sweeps(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(series, "DOMAINS", {"tracking": DOMAINS["tracking"]})
-    table = list(series.rows((2, 4), lambda _: None))
+def test_a_row_spreads_a_rounds_figures_over_its_platforms_and_sweeps() -> None:
+    table = list(series.rows(["tracking"], (2, 4), lambda _: None))
     assert {(row.area, row.tree, row.clipped, row.n) for row in table} == {
         (area, tree, clipped, n)
         for n in (2, 4)
@@ -219,9 +216,8 @@ def test_a_row_spreads_a_rounds_figures_over_its_platforms_and_sweeps(
 
 
 def test_a_series_ends_before_a_round_that_would_take_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(series, "DOMAINS", {"tracking": DOMAINS["tracking"]})
     monkeypatch.setattr(series, "LONGEST", 0.0)
-    assert {row.n for row in series.rows((2, 4), lambda _: None)} == {2}
+    assert {row.n for row in series.rows(["tracking"], (2, 4), lambda _: None)} == {2}
 
 
 def test_the_worst_tree_is_judged_and_one_that_took_too_long_is_missed() -> None:
@@ -284,11 +280,8 @@ def test_the_tables_hold_every_row_and_say_what_is_not_flat() -> None:
     assert brief(rows).count("| chain") < text.count("| chain")
 
 
-def test_the_report_is_written_as_json_table_and_picture(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(series, "DOMAINS", {"tracking": DOMAINS["tracking"]})
-    text = report.run(tmp_path, {"machine": "m"}, True, lambda _: None)
+def test_the_report_is_written_as_json_table_and_picture(tmp_path: Path) -> None:
+    text = report.run(tmp_path, {"machine": "m"}, True, lambda _: None, ["tracking"])
     assert "tracking, fixed area: bytes, n=64 to 16" in text
     written = valid("bench-scale", (tmp_path / "scale-quick.json").read_bytes())
     assert written["about"] == {"machine": "m"}
