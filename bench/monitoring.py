@@ -1,6 +1,7 @@
 """``python -m bench.monitoring``: how well six robots know a field, by how they decide, and what that takes.
 
-Robots begin in one corner of 60 x 60 cells of 1 m. The error is compared at equal ways.
+Robots begin in one corner of 60 x 60 cells of 1 m. The error is compared at equal ways. SGP-Tools, which
+needs an environment of its own, plans a way a robot beforehand, and they share what they measure.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import click
 
 from bench import RESULTS, command
 from bench.missions import tabulate
+from bench.sgp import ways
 from bench.table import figure, markdown
 from vedette.errors import check_word
 from vedette.record.monitor.observer import MonitorReport
@@ -23,7 +25,9 @@ from vedette.record.summary import SCHEMA_VERSION
 from vedette.run import DomainMission
 from vedette.sim.domains import domain_of
 
-COORDINATIONS = ("negotiated", "shared", "none", "lawnmower", "random")
+OWN = ("negotiated", "shared", "none", "lawnmower", "random")
+SGP = "sgptools"
+COORDINATIONS = (*OWN, SGP)
 ASKED, BUDGET_MS = 0.85, 50.0  # of the shared belief's error; CPU time of a replan
 
 SIDE, DURATION = 60, 120.0  # of the area [m], of a mission [s]
@@ -49,6 +53,7 @@ class FieldCase:
     field: str
     coordination: str
     seed: int
+    sgptools: str | None = None  # Python of the environment that has it
 
     @property
     def key(self) -> tuple[str, str, int]:
@@ -102,9 +107,11 @@ def scenario(field: str) -> dict[str, Any]:
 def run_case(case: FieldCase, commit: str) -> FieldRun:
     """Run a mission and return what came of it."""
     began = time.process_time()
-    mission = DomainMission[MonitorReport](
-        domain_of("monitor"), scenario(case.field), case.seed, coordination=case.coordination
-    )
+    domain, coordination, elsewhere = domain_of("monitor"), case.coordination, 0.0
+    if coordination == SGP:
+        planned = ways.ask(str(case.sgptools), domain.case(scenario(case.field)), case.seed)
+        domain, coordination, elsewhere = ways.Given(planned), "lawnmower", planned.cpu_s
+    mission = DomainMission[MonitorReport](domain, scenario(case.field), case.seed, coordination=coordination)
     report = mission.run(compare=False)
     summary, spent = report.summary, report.timing.planning_ms
     return FieldRun(
@@ -117,7 +124,7 @@ def run_case(case: FieldCase, commit: str) -> FieldRun:
         worst_age_s=summary.worst_age_s,
         planning_ms=None if spent is None else spent.p50,
         planning_p95_ms=None if spent is None else spent.p95,
-        cpu_s=time.process_time() - began,
+        cpu_s=time.process_time() - began + elsewhere,
         commit=commit,
     )
 
@@ -164,15 +171,20 @@ def _against(results: Sequence[FieldRun], own: Sequence[FieldRun], other: str, w
 
 @click.command()
 @click.option("--fields", default=",".join(FIELDS), show_default=True, help="By name, with commas.")
-@click.option(
-    "--coordinations", default=",".join(COORDINATIONS), show_default=True, help="By name, with commas."
-)
+@click.option("--coordinations", default=",".join(OWN), show_default=True, help="By name, with commas.")
+@click.option("--sgptools", metavar="PYTHON", help=f"Compare SGP-Tools too: {ways.HOW}.")
 @click.option("--seeds", type=command.WholeNumbers(0), default="0-4", show_default=True)
 @click.option("--jobs", type=click.IntRange(min=1), default=2, show_default=True, help="Processes.")
 @click.option("--fresh", is_flag=True, help="Run the missions anew that were run before.")
 @click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for results and table.")
 def monitoring(
-    fields: str, coordinations: str, seeds: tuple[int, ...], jobs: int, fresh: bool, out: Path
+    fields: str,
+    coordinations: str,
+    sgptools: str | None,
+    seeds: tuple[int, ...],
+    jobs: int,
+    fresh: bool,
+    out: Path,
 ) -> None:
     """Tell how well six robots know a field; missions that are in the results file are not run again.
 
@@ -181,11 +193,15 @@ def monitoring(
     for word, known in ((fields, FIELDS), (coordinations, COORDINATIONS)):
         for each in word.split(","):
             check_word("name", each, known)
+    names = coordinations.split(",")
+    names += [SGP] if sgptools is not None and SGP not in names else []
+    if SGP in names:
+        ways.check(sgptools)
     cases = [
-        FieldCase(field, name, seed)
+        FieldCase(field, name, seed, sgptools)
         for seed in seeds
         for field in fields.split(",")
-        for name in coordinations.split(",")
+        for name in names
     ]
     tabulate(cases, out, "monitoring", jobs, fresh, run_case, FieldRun, monitoring_table)
 
