@@ -26,7 +26,7 @@ def test_a_search_in_an_unknown_map_leaves_its_files_and_says_who_found_whom(ved
     assert ran.status == 0, ran.err
     assert {path.name for path in Path("out").iterdir()} >= FILES["explore"]
     summary = valid("seek-summary", Path("out/summary.json").read_bytes())
-    assert (summary["outcome"], summary["order"], summary["reach_m"]) == ("found", "together", 3.0)
+    assert (summary["outcome"], summary["order"], summary["reach_m"]) == ("found", "map-first", 3.0)
     told = f"found after {summary['time_s']:.0f} s by {summary['found_by']}: somebody at "
     assert told in ran.out
 

@@ -39,8 +39,8 @@ def seeking_options(command: CommandT) -> CommandT:
             "--resolution", type=Positive("m per pixel"), help="Of a map that is a plain image [m]."
         ),
         click.option(
-            "--order", type=OneOf(ORDERS), default=ORDERS[0], show_default=True,
-            help="Whether they map and search together, or search once all is mapped.",
+            "--order", type=OneOf(ORDERS), default=SeekOptions.order, show_default=True,
+            help="Whether they search once all is mapped, or map and search together.",
         ),
         click.option(
             "--reach", type=Positive("m", most=100.0), default=SeekOptions.reach, show_default=True,

@@ -34,7 +34,7 @@ class Seek(Explore):
         team: AnyTeam = ROBOTS,
         seed: int = 0,
         *,
-        order: str = "together",
+        order: str = SeekOptions.order,
         reach: float = SeekOptions.reach,
         detection: float = SeekOptions.detection,
         scheme: str | None = None,
@@ -47,7 +47,7 @@ class Seek(Explore):
         Args:
             world, team, scheme, max_time, record, conditions: as for `Explore`.
             seed: also of where somebody is.
-            order: whether the team maps and searches ``together``, or ``map-first``.
+            order: ``map-first``, or whether the team maps and searches ``together``.
             reach: within which a robot may see somebody [m].
             detection: probability that it does, a look; there are two a second.
 

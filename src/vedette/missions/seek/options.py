@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from vedette.domains.search.detectors import DefiniteRange
 from vedette.errors import check_word
 
-ORDERS = ("together", "map-first")
+ORDERS = ("map-first", "together")
 WORTH = 2.0  # of finding somebody, in what knowing the whole ground is worth
 LATER = 1e-3  # of that, where the map comes first
 LOOK_PERIOD = 0.5  # between two looks for somebody [s]
@@ -21,7 +21,7 @@ class SeekOptions:
         InputError: an order that is none, or no detector can be so.
     """
 
-    order: str = "together"  # of ORDERS
+    order: str = "map-first"  # of ORDERS
     reach: float = 3.0  # within which somebody is seen [m]
     detection: float = 0.8  # probability of seeing somebody in reach, a look
 
