@@ -35,7 +35,11 @@ DELAY = 0.03  # of links and jobs [s]
 TICK = 0.1  # [s]
 MOST_SCENES = 2  # before messages of a kind from a sender
 AFTER = 8  # poses after a script
-NOT_STATE = frozenset({"dropped", "dropped_of", "answers"})  # mere counts
+NOT_STATE = frozenset({
+    "dropped", "dropped_of", "answers",  # mere counts
+    "silences",  # that a neighbour has said something, whatever it is
+    "spoilt",  # who is waited for no longer in a round, for its word made no sense
+})  # fmt: skip
 
 
 @dataclass(eq=False)

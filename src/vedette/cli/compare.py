@@ -49,7 +49,7 @@ def compare(runs: tuple[Path, ...], everything: bool, as_json: bool) -> None:
         click.echo(json_text({"runs": tuple(map(str, runs)), **figures}), nl=False)
         return
     if len(runs) > SHOWN:
-        raise InputError(f"{len(runs)} runs do not fit a table of {SHOWN}; ask for --json, or for fewer")
+        raise InputError(f"{len(runs)} are more than a table holds, {SHOWN}: ask for --json, or give fewer")
     shown = [each for each in compared if everything or each.differs]
     if not shown:
         click.echo("the runs have the same figures")
