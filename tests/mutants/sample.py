@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Self
 
 from tests.mutants.trial import Trial
+from vedette.record.files import write_text
 
 
 @dataclass
@@ -39,8 +40,8 @@ class Sample:
         return [name for name, each in self.tested.items() if each.verdict in ("survived", "no tests")]
 
     def save(self, path: Path) -> None:
-        """Write it down."""
-        path.write_text(json.dumps(asdict(self), indent=1), encoding="utf-8")
+        """Write it down, so that whoever is interrupted has the last that was written."""
+        write_text(path, json.dumps(asdict(self), indent=1))
 
     @classmethod
     def load(cls, path: Path) -> Self:

@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -79,6 +80,21 @@ def test_a_piece_goes_on_where_the_last_one_stopped(tmp_path: Path, monkeypatch:
     assert sorted({*tested}) == sorted(sample.diffs)
     assert len(tested) == 41  # the one that was stopped at, twice
     assert mutants.sample_of(4, 40).left
+
+
+def test_who_is_interrupted_in_the_middle_of_writing_has_what_was_written_before(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def half(path: Path, text: str, **_: Any) -> None:
+        path.write_bytes(text[: len(text) // 2].encode())
+        raise KeyboardInterrupt
+
+    path = tmp_path / "sample.json"
+    draw(7, 40, "abc", DIFFS).save(path)
+    monkeypatch.setattr(Path, "write_text", half)
+    with pytest.raises(KeyboardInterrupt):
+        draw(8, 40, "abc", DIFFS).save(path)
+    assert Sample.load(path).seed == 7
 
 
 def test_only_what_a_trial_says_something_of_counts() -> None:
