@@ -48,19 +48,29 @@ def condition() -> Condition:
 
 
 def test_tracks_that_a_vehicle_reports_are_its_own() -> None:
-    plan = TrackTeam(scenario(), TrackOptions(), TIMES)
-    agent = plan.assemble(0, 1)
-    view = tracks.view_of(condition(), tracks.TrackTeller(agent, plan.scenario).content(0.0), plan.prior)
+    """And not those that its team began with."""
+    still = [{"model": "static", "mean": [100 * k, 80]} for k in (1, 2)]
+    begun, plan = (
+        TrackTeam(scenario(targets=[each | {"sd": [sd, sd]} for each in still]), TrackOptions(), TIMES)
+        for sd in (25, 10)
+    )
+    told = tracks.TrackTeller(plan.assemble(0, 1), plan.scenario).content(0.0)
+    view = tracks.view_of(condition(), told, begun.prior)
     np.testing.assert_array_equal(view.tracks.means, plan.prior.means)
     np.testing.assert_array_equal(view.tracks.covariances, plan.prior.covariances)
+    assert (view.tracks.covariances != begun.prior.covariances).any()
 
 
 def test_a_pdf_that_a_vehicle_reports_is_its_own() -> None:
-    plan = SearchTeam(case(), SearchOptions(), TIMES)
-    agent = plan.assemble(0, 1)
-    view, looks = pdfs.view_of(condition(), pdfs.SearchTeller(agent, plan.case).content(0.0), plan.case.pdf)
+    begun, plan = (
+        SearchTeam(case(prior=[{"type": "gaussian", "mean": [x, 400], "sigma": 100}]), SearchOptions(), TIMES)
+        for x in (300, 800)
+    )
+    told = pdfs.SearchTeller(plan.assemble(0, 1), plan.case).content(0.0)
+    view, looks = pdfs.view_of(condition(), told, begun.case.pdf)
     assert view.pdf is not None
     np.testing.assert_allclose(view.pdf.mass, plan.case.pdf.mass, rtol=1e-6)
+    assert np.abs(view.pdf.mass - begun.case.pdf.mass).sum() > 1.0
     assert looks == {}
 
 
