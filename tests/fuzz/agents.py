@@ -38,7 +38,6 @@ AFTER = 8  # poses after a script
 NOT_STATE = frozenset({
     "dropped", "dropped_of", "answers",  # mere counts
     "silences",  # that a neighbour has said something, whatever it is
-    "spoilt",  # who is waited for no longer in a round, for its word made no sense
 })  # fmt: skip
 
 
@@ -106,6 +105,13 @@ def _hear(caught: Caught, sender: int, payload: bytes) -> bool:
     return caught.agent.dropped > before
 
 
+def _wait_no_longer(caught: Caught, sender: int) -> None:
+    """Do what is done with a neighbour whose word in a round makes no sense: it goes on without."""
+    if caught.agent.rounds.round is not None:
+        caught.agent.rounds.round.spoilt.add(sender)
+    _ready(caught)
+
+
 def _carry_out(caught: Caught, effects: list[Effect]) -> None:
     caught.pending += [effect for effect in effects if isinstance(effect, Job)]
 
@@ -158,6 +164,6 @@ def agents() -> list[Target]:
         "agent-track-channel": partial(_track, fusion="channel", scheme="jacobi"),
     }
     return [
-        scripted(name, partial(_stage, make), _hear, _go_on, NOT_STATE, _ready)
+        scripted(name, partial(_stage, make), _hear, _go_on, NOT_STATE, _ready, _wait_no_longer)
         for name, make in makers.items()
     ]

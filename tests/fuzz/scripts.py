@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import msgspec
 from msgspec import Meta
 
-from tests.fuzz.fingerprint import fingerprint
+from tests.fuzz.fingerprint import Digest, fingerprint
 from tests.fuzz.keep import Kept
 from tests.fuzz.mutation import mutate_message
 from tests.fuzz.target import Broken, Target
@@ -59,6 +59,7 @@ def scripted(
     go_on: Callable[[Any], None],
     leave_out: frozenset[str] = frozenset(),
     ready: Callable[[Any], None] = lambda state: None,
+    blame: Callable[[Any, int], None] = lambda state, sender: None,
 ) -> Target:
     """A target with a state.
 
@@ -69,22 +70,33 @@ def scripted(
         go_on: does with a state that has taken in messages what is done with it anyway.
         leave_out: fields that a refused message may change.
         ready: does with a state what is due, before a message comes.
+        blame: does with a state all that a refused message may do: what its sender has deserved.
     """
     stage = cache(make)
 
     def read(data: bytes) -> None:
         script = script_of(data)
         scenes = stage().scenes
-        state = scenes[script.scene % len(scenes)].copy()
-        taken = False
-        for told in script.told:
+        scene = scenes[script.scene % len(scenes)]
+        state, taken = scene.copy(), False
+        for i, told in enumerate(script.told):
             ready(state)
             before = fingerprint(state, leave_out)
             refused = hear(state, told.sender, told.payload)
-            if refused and fingerprint(state, leave_out) != before:
+            after = fingerprint(state, leave_out) if refused else before
+            if after != before and after != blamed(scene.copy(), script.told[:i], told.sender):
                 raise Broken(f"{name}: a message was refused and has changed something")
             taken |= not refused
         if taken:
             go_on(state)
+
+    def blamed(state: Any, told: Sequence[Told], sender: int) -> Digest:
+        """Return what a state is like that has heard messages, and of one only that it is bad."""
+        for each in told:
+            ready(state)
+            hear(state, each.sender, each.payload)
+        ready(state)
+        blame(state, sender)
+        return fingerprint(state, leave_out)
 
     return Target(name, lambda: [_ENCODER.encode(script) for script in stage().scripts], read, mutate_message)
