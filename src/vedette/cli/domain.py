@@ -18,13 +18,16 @@ from vedette.cli.options import (
     seed_option,
     with_options,
 )
-from vedette.cli.running import Kind, simulate
+from vedette.cli.running import Kind, simulate, simulate_watched
+from vedette.cli.windows import watch_options
 from vedette.missions.flights import FUSIONS
 from vedette.missions.pairs import SCHEME
 from vedette.negotiation import SCHEMES
 from vedette.run.domain import DomainMission
 from vedette.sim.domain import Domain
 from vedette.sim.domains import DomainEntry
+from vedette.window.explore import Shower
+from vedette.window.hub import Hub
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 STATUS = "Exit status: 0 complete, 1 incomplete, 2 bad input, 130 interrupted."
@@ -60,16 +63,22 @@ def domain_options(domain: DomainEntry) -> Callable[[CommandT], CommandT]:
 def command_of(declared: DomainEntry) -> click.Command:
     """Return ``vedette NAME``."""
 
-    def run(scenario_path: Path | None, output: Output, no_compare: bool, **options: Any) -> None:
+    def run(
+        scenario_path: Path | None, output: Output, watch: bool, pace: float, no_compare: bool, **options: Any
+    ) -> None:
         domain = declared.load()
         mission = DomainMission(domain, scenario_path, **options)
         beside = (lambda report, say: report) if no_compare else mission.compared
-        simulate(kind_of(domain), mission, mission.scene, output, beside)
+        kind = kind_of(domain)
+        if not watch:
+            simulate(kind, mission, mission.scene, output, beside)
+        from vedette.window.declared import pictures  # who watches nothing does not wait for it
 
-    options = output_options(
-        with_options(
-            run, click.option("--no-compare", is_flag=True, help="Leave out the other ways of coordination.")
-        )
-    )
+        hub = Hub(mission.scene.name)
+        shower = Shower[Any](hub, pictures(mission.scene), pace)
+        simulate_watched(kind, mission, mission.scene, output, hub, shower, beside)
+
+    no_compare = click.option("--no-compare", is_flag=True, help="Leave out the other ways of coordination.")
+    options = output_options(watch_options(with_options(run, no_compare)))
     about = f"{declared.about}\n\n{STATUS}"
     return click.command(declared.name, help=about)(domain_options(declared)(fault_options(options)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
 from vedette.record.explore.log import RobotSample
@@ -14,14 +15,12 @@ from vedette.record.track.ellipse import ellipse_axes
 from vedette.record.track.log import TrackScene, TrackSnapshot
 from vedette.window.picture import SHADES, Mark, Picture, drawn
 
-ACROSS = 200  # cells of the ground under trackers
+ACROSS = 200  # cells of the ground under vehicles
 
 
 def track_picture(scene: TrackScene, snapshot: TrackSnapshot) -> Picture:
     """Return a moment of tracking: targets as ellipses in which they are to 95 %."""
-    x0, y0, x1, y1 = scene.area
-    side = (x1 - x0) / ACROSS
-    frame = GridFrame(side, max(round((y1 - y0) / side), 1), ACROSS, x0, y0)
+    frame, ground = plain_ground(scene.area)
     marks = [
         Mark(float(mean[0]), float(mean[1]), *ellipse_axes(covariance), name)
         for name, mean, covariance in zip(scene.targets, snapshot.means, snapshot.covariances, strict=True)
@@ -30,8 +29,7 @@ def track_picture(scene: TrackScene, snapshot: TrackSnapshot) -> Picture:
         ("entropy", f"{snapshot.entropy:.1f} nat"),
         ("error", f"{float(np.sqrt(snapshot.squared_error)):.1f} m"),
     ]
-    ground = np.full(frame.shape, FREE, np.uint8)
-    return drawn(snapshot.t, frame, ground, _named(scene.vehicles, snapshot.vehicles), figures, marks=marks)
+    return drawn(snapshot.t, frame, ground, named(scene.vehicles, snapshot.vehicles), figures, marks=marks)
 
 
 def search_picture(scene: SearchScene, snapshot: SearchSnapshot) -> Picture:
@@ -40,11 +38,20 @@ def search_picture(scene: SearchScene, snapshot: SearchSnapshot) -> Picture:
     shade = np.ceil(snapshot.mass / most * SHADES - 0.5).astype(np.uint8)
     ground = np.where(shade > 0, OCCUPIED + shade, UNKNOWN).astype(np.uint8)
     figures = [("detected", f"{100 * snapshot.detection:.1f} %"), ("entropy", f"{snapshot.entropy:.1f} nat")]
-    vehicles = _named(scene.vehicles, snapshot.vehicles)
+    vehicles = named(scene.vehicles, snapshot.vehicles)
     return drawn(snapshot.t, scene.frame, ground, vehicles, figures, share=snapshot.detection)
 
 
-def _named(names: Sequence[str], vehicles: Sequence[VehicleSample]) -> list[RobotSample]:
+def plain_ground(area: tuple[float, float, float, float]) -> tuple[GridFrame, NDArray[np.uint8]]:
+    """Return the ground over x0, y0, x1, y1 [m], where there is nothing but it."""
+    x0, y0, x1, y1 = area
+    side = (x1 - x0) / ACROSS
+    frame = GridFrame(side, max(round((y1 - y0) / side), 1), ACROSS, x0, y0)
+    return frame, np.full(frame.shape, FREE, np.uint8)
+
+
+def named(names: Sequence[str], vehicles: Sequence[VehicleSample]) -> list[RobotSample]:
+    """Return vehicles with their names, as the page draws them."""
     return [
         RobotSample(each.x, each.y, each.heading, each.state, each.alive, each.path, name, None)
         for name, each in zip(names, vehicles, strict=True)

@@ -1,0 +1,63 @@
+"""Missions of declared domains in the window: a field as it is taken to be, or who moves on plain ground."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import singledispatch
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.maps import FREE, OCCUPIED
+from vedette.record.flights import FlightScene
+from vedette.record.monitor.log import MonitorScene, MonitorSnapshot
+from vedette.record.own.observer import OwnScene, OwnSnapshot
+from vedette.window.flights import named, plain_ground
+from vedette.window.picture import SHADES, Picture, drawn
+
+
+@singledispatch
+def pictures(scene: FlightScene) -> Callable[[Any], Picture]:
+    """Return who draws the snapshots of a mission in turn.
+
+    Raises:
+        TypeError: nothing is known of such missions' ground.
+    """
+    raise TypeError(f"no picture of {type(scene).__name__}")
+
+
+@pictures.register
+def _(scene: OwnScene) -> Callable[[OwnSnapshot], Picture]:
+    frame, ground = plain_ground(scene.area)
+
+    def draw(snapshot: OwnSnapshot) -> Picture:
+        figures = [(name.replace("_", " "), f"{value:.4g}") for name, value in snapshot.figures.items()]
+        return drawn(snapshot.t, frame, ground, named(scene.vehicles, snapshot.vehicles), figures)
+
+    return draw
+
+
+@pictures.register
+def _(scene: MonitorScene) -> Callable[[MonitorSnapshot], Picture]:
+    """The higher the field is taken to be, the deeper the shade; where robots must not go it is black."""
+    latest = MonitorSnapshot(0.0, (), 0.0, 0.0, 0.0)
+
+    def draw(snapshot: MonitorSnapshot) -> Picture:
+        nonlocal latest
+        latest = latest if snapshot.mean is None else snapshot
+        figures = [("last looked at", f"{snapshot.mean_age:.0f} s ago, {snapshot.worst_age:.0f} s at worst")]
+        if latest.rmse is not None and latest.entropy is not None:
+            figures += [("error", f"{latest.rmse:.3g}"), ("entropy", f"{latest.entropy:.0f} nat")]
+        ground = np.full(scene.frame.shape, FREE, np.uint8) if latest.mean is None else _shaded(latest.mean)
+        ground[scene.blocked] = OCCUPIED
+        return drawn(snapshot.t, scene.frame, ground, named(scene.vehicles, snapshot.vehicles), figures)
+
+    return draw
+
+
+def _shaded(mean: NDArray[np.float32]) -> NDArray[np.uint8]:
+    """Return a shade of each cell, (R, C): of the lowest the first, of the highest the last."""
+    low, high = float(mean.min()), float(mean.max())
+    share = (mean - low) / (high - low) if high > low else np.zeros_like(mean)
+    return np.asarray(OCCUPIED + 1 + np.minimum(share * SHADES, SHADES - 1).astype(np.uint8), np.uint8)
