@@ -116,22 +116,25 @@ def test_path_gains_equal_the_dense_filter_with_the_path_less_that_without(seed:
     np.testing.assert_allclose(mine, twin, atol=1e-13)
 
 
-def test_who_looks_in_the_last_step_detects_what_has_come_from_as_far_as_it_can_get() -> None:
-    """Three cells a step, and five steps: from the third column to the eighteenth."""
+@pytest.mark.parametrize("before", [False, True])
+def test_who_looks_in_the_last_step_detects_what_has_come_from_as_far_as_it_can_get(before: bool) -> None:
+    """Three cells a step, and five steps: from the third column to the eighteenth, by way of the sixth."""
     mass = np.zeros((3, 40))
     mass[1, 2] = 1.0
     drift = Stencil((0, 3), np.ones(1), np.ones(1))
-    one_after_another = Paths(
+    cells, levels = [*[40 + 5] * before, 40 + 17], [*[20] * before, 200]
+    looks = Paths(
         np.arange(-1, 4),
-        np.array([0, 0, 0, 0, 0, 1]),
-        np.array([40 + 17], np.uint32),
-        np.array([200], np.uint8),
+        np.array([0, *[len(cells) - 1] * 4, len(cells)]),
+        np.array(cells, np.uint32),
+        np.array(levels, np.uint8),
     )
     nobody = np.empty(0, np.uint32), np.empty(0, np.uint8)
-    gains = search.path_gains(mass, drift, 5, np.ones(5), nobody, one_after_another)
-    twin = reference_search.path_gains(mass, drift, 5, np.ones(5), nobody, one_after_another)
-    assert gains.tolist() == [0.0, 0.0, 0.0, 0.0, pytest.approx(twin[4])]
-    assert twin[4] > 0.9
+    gains = search.path_gains(mass, drift, 5, np.ones(5), nobody, looks)
+    twin = reference_search.path_gains(mass, drift, 5, np.ones(5), nobody, looks)
+    assert gains.tolist() == pytest.approx(twin.tolist())
+    assert bool(twin[0] > 0.1) is before
+    assert twin[4] - twin[3] > 0.1
 
 
 def test_paths_that_see_nothing_gain_nothing() -> None:
