@@ -90,6 +90,23 @@ def test_a_field_of_ones_own_is_read_and_measured(vedette: Command) -> None:
     assert 20.0 < summary("out")["deviation"] < 100.0
 
 
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"area": [0, 0, 2, 40], "vehicles": [{"start": [1, 1]}]},
+        {"area": [0, 0, 40, 2], "vehicles": [{"start": [1, 1]}]},
+        {"sensor": {"noise": 0.5, "side": 11}},
+    ],
+    ids=["narrow", "flat", "as wide a block as there is room for"],
+)
+def test_areas_and_blocks_of_odd_shapes_are_measured_and_drawn(
+    vedette: Command, changes: dict[str, Any]
+) -> None:
+    ran = vedette(scenario(**changes), *QUICK, "--out", "out")
+    assert ran.status == 1, ran
+    check_files(Path("out"), "monitor")
+
+
 # -- bad input ----------------------------------------------------------------------------------------
 
 VEHICLE = SMALL["vehicles"][0]
@@ -104,6 +121,16 @@ VEHICLE = SMALL["vehicles"][0]
         ({"sensor": {"noise": 1, "side": 4}}, ("sensor.side: must be odd", "4")),
         ({"model": {"deviation": 0}}, ("model.deviation", "0")),
         ({"model": {"length": 0.2}}, ("model: length 0.2 m is less than a cell",)),
+        ({"model": {"length": 1e6}}, ("model: length 1e+06 m is more than 1000 cells", "1000 m or less")),
+        ({"model": {"drift": [1e308, 0]}}, ("model.drift[0]: must be a number from -300 to 300",)),
+        ({"model": {"mean": 1e308}}, ("model.mean: must be a number from",)),
+        ({"field": {"type": "plume", "source": [5, 5], "wind": [0, 1e308]}}, ("field.wind[1]",)),
+        ({"area": [0, 0, 5000, 12]}, ("cell: the area is 5000 cells of 1 m long, at most 2048",)),
+        ({"sensor": {"noise": 1e-300}}, ("sensor.noise", "1e-300")),
+        (
+            {"sensor": {"noise": 1e-9}, "model": {"deviation": 3.0, "length": 5.0}},
+            ("sensor.noise: 1e-09 of rover is less than 1e-08 of the field's deviation of 3",),
+        ),
         ({"field": {"type": "drawm"}}, ("field", "drawm")),
         ({"field": {"type": "file", "file": "gone.npy"}}, ("gone.npy",)),
         ({"vehicles": []}, ("vehicles",)),
@@ -117,6 +144,15 @@ VEHICLE = SMALL["vehicles"][0]
             ("vehicles[0].budget.per_metre: energy is never spent",),
         ),
         ({"vehicles": [VEHICLE | {"budget": {"path": 5, "energy": 5}}]}, ("vehicles[0].budget.energy",)),
+        (
+            {"vehicles": [VEHICLE | {"budget": {"energy": 5, "per_second": 10}}]},
+            ("vehicles[0].budget: it lasts for 0.5 s", "the first step of 1 s"),
+        ),
+        (
+            {"vehicles": [VEHICLE | {"budget": {"energy": 5, "per_second": 4, "per_metre": 2}}]},
+            ("vehicles[0].budget: it lasts for 0.833 m", "next cell"),
+        ),
+        ({"vehicles": [VEHICLE | {"start": [16, 12]}]}, ("vehicles[0].start", "x is 0 to below 16 m")),
         ({"layers": 9}, ("layers: at most one a step",)),
         ({"gama": 0.5}, ("unknown field 'gama'", "gamma")),
     ],
@@ -148,4 +184,21 @@ def test_a_field_that_cannot_be_measured_is_refused_in_a_line(vedette: Command) 
     field = {"type": "file", "file": "holes.npy"}
     refused(vedette(scenario(field=field)), "field.file", "has no number in 12 cells")
     field = {"type": "file", "file": "holes.npy", "extent": [0, 0, 8, 12]}
-    refused(vedette(scenario(field=field)), "does not cover the area")
+    refused(vedette(scenario(field=field)), "does not cover the area's whole cells")
+
+
+@pytest.mark.parametrize("size", [1e30, 1e150, 1e300])
+def test_numbers_beyond_all_that_can_be_computed_with_are_refused_in_a_line(
+    vedette: Command, size: float
+) -> None:
+    np.save("huge.npy", np.linspace(-size, size, 192).reshape(12, 16))
+    ran = vedette(scenario(field={"type": "file", "file": "huge.npy"}, model={}))
+    refused(ran, "field.file: huge.npy has numbers up to", "another unit", "nan")
+
+
+def test_a_number_for_no_data_is_told_apart_from_a_field_that_varies_much(vedette: Command) -> None:
+    field = np.add.outer(np.arange(12.0), np.arange(16.0))
+    field[3, 4] = -9999.0
+    np.save("hole.npy", field)
+    ran = vedette(scenario(field={"type": "file", "file": "hole.npy"}, model={}))
+    refused(ran, "model.deviation: the field is up to", "nan for what stands for no data")

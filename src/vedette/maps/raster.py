@@ -125,7 +125,7 @@ def _values(path: Path, what: str, image: Image.Image) -> NDArray[np.float64]:
     apart = (pixels[..., :3].max(axis=2) - pixels[..., :3].min(axis=2))[opaque]
     if apart.size and apart.max() > _ALIKE:
         raise InputError(
-            f"{what} {path} has colours, and how bright a colour is does not say how likely it is; save it "
-            "in grey, or its numbers as a float TIFF or .npy"
+            f"{what} {path} has colours, and how bright a colour is says nothing of the number it stands "
+            "for; save it in grey, or its numbers as a float TIFF or .npy"
         )
     return np.asarray(pixels[..., 0] * (pixels[..., 3] / 255.0))

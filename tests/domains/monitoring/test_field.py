@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from vedette import InputError
+from vedette.domains.monitoring.belief import FieldBelief
 from vedette.domains.monitoring.factor import Factor
 from vedette.domains.monitoring.field import FieldModel, shifted
 from vedette.domains.monitoring.spots import Spots
@@ -136,3 +137,11 @@ def test_a_field_that_cannot_be_is_refused_in_one_line(changes: dict[str, float]
 def test_footprints_that_cannot_be_are_refused(sides: tuple[int, ...]) -> None:
     with pytest.raises(InputError, match="footprints: "):
         Spots(GridFrame(1.0, 4, 4), sides)
+
+
+def test_the_longest_length_there_is_leaves_deviations_right_to_five_digits() -> None:
+    frame = GridFrame(0.3, 20, 15)
+    known = FieldBelief.prior(FieldModel(frame, deviation=2.0, length=300.0), Spots(frame))
+    np.testing.assert_allclose(known.deviations(np.arange(frame.size)), 2.0, rtol=1e-5)
+    with pytest.raises(InputError, match="length 301 m is more than 1000 cells; take 300 m or less"):
+        FieldModel(frame, length=301.0)

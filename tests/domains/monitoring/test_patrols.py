@@ -45,14 +45,15 @@ def test_a_patrol_that_nobody_gets_to_is_staying() -> None:
 
 def test_a_budget_of_way_is_gone_with_the_way_and_leaves_the_sensor_awake() -> None:
     purse = Purse(Budget(path=100.0))
-    assert (purse.reach, purse.left(0.0, 20.0), purse.awake(0.0)) == (100.0, 100.0, math.inf)
+    assert (purse.reach(2.0), purse.left(0.0, 20.0), purse.awake(0.0)) == (100.0, 100.0, math.inf)
     purse.gone = 130.0
     assert (purse.left(50.0, 20.0), purse.awake(50.0)) == (0.0, math.inf)
 
 
 def test_energy_is_spent_on_way_and_time_and_what_measuring_takes_is_kept() -> None:
     purse = Purse(Budget(energy=100.0, per_metre=2.0, per_second=1.0))
-    assert purse.reach == 50.0
+    assert purse.reach(2.0) == pytest.approx(40.0)  # 20 s on the way: 80 J for it, 20 J for the time
+    assert purse.reach(1e-3) == pytest.approx(0.1, rel=0.01)  # next to all goes with the time
     assert purse.left(0.0, 20.0) == pytest.approx(40.0)  # 100 J less 20 s of measuring
     purse.gone = 20.0
     assert purse.awake(30.0) == pytest.approx(30.0)  # 100 - 40 - 30 J

@@ -110,3 +110,20 @@ def test_deviations_are_those_of_the_inverse_and_on_planning_cells_near_them() -
     some = rng.choice(FRAME.size, 30, replace=False)
     np.testing.assert_allclose(exact.ravel()[some], known.deviations(some), rtol=1e-8)
     assert np.abs(plan.deviations(known) - exact).mean() < 0.25 * exact.mean()
+
+
+@pytest.mark.parametrize(
+    ("rows", "cols", "sides"), [(2, 8, (5,)), (4, 4, (1, 3)), (6, 7, (5,)), (9, 8, (15,))]
+)
+def test_the_widest_blocks_of_a_small_field_are_factorised_in_its_band(
+    rows: int, cols: int, sides: tuple[int, ...]
+) -> None:
+    """Against the dense matrix."""
+    frame = GridFrame(1.0, rows, cols)
+    spots = Spots(frame, sides)
+    information = np.linspace(0.0, 5.0, spots.count)
+    belief = FieldBelief.prior(FieldModel(frame, length=3.0), spots).add(information, 0.0 * information)
+    posterior = BandedField(belief).posterior(np.zeros(spots.count))
+    dense = belief.precision.toarray()
+    assert posterior.log_det == pytest.approx(np.linalg.slogdet(dense)[1])
+    np.testing.assert_allclose(posterior.deviations.ravel(), np.sqrt(np.diag(np.linalg.inv(dense))))

@@ -15,12 +15,11 @@ from vedette.domains.monitoring.evidence import FieldPacking
 from vedette.domains.monitoring.field import FieldModel
 from vedette.domains.monitoring.platform import FieldSensor
 from vedette.domains.monitoring.purse import Purse
-from vedette.domains.monitoring.scenario import Budget, FieldFile, MonitorScenario, MonitorVehicle, Plume
+from vedette.domains.monitoring.scenario import FieldFile, MonitorScenario, MonitorVehicle, Plume
 from vedette.domains.monitoring.spots import Spots
 from vedette.domains.monitoring.survey import model_of
 from vedette.domains.monitoring.truth import Floats, TrueField, drawn, plume, read_field, still
 from vedette.errors import InputError
-from vedette.maps import GridFrame
 from vedette.maps.area import Area
 from vedette.scenario import as_scenario, load_scenario
 
@@ -142,9 +141,14 @@ def _check_area(scenario: MonitorScenario) -> None:
             f"cell: the area has {scenario.frame.size} cells of {scenario.cell:g} m, at most {MOST_CELLS}; "
             "take larger ones"
         )
+    if (side := max(scenario.frame.shape)) > MOST_SIDE:
+        raise InputError(
+            f"cell: the area is {side} cells of {scenario.cell:g} m long, at most {MOST_SIDE}; "
+            "take larger ones"
+        )
 
 
-MOST_CELLS = 100_000
+MOST_CELLS, MOST_SIDE = 100_000, 2048
 
 
 def _check_times(scenario: MonitorScenario) -> None:
@@ -167,11 +171,11 @@ def _blocked(scenario: MonitorScenario) -> NDArray[np.bool_]:
 
 
 def _check_numbers(scenario: MonitorScenario, model: FieldModel, seen: Floats | None) -> None:
-    """Refuse a field that the model has next to nothing to do with, and sensors that say next to nothing."""
+    """Refuse a field that the model has nothing to do with, and sensors that say next to nothing, or all."""
     if seen is not None and (away := float(np.abs(seen - model.mean).max())) > _FARTHEST * model.deviation:
         raise InputError(
             f"model.deviation: the field is up to {away:.3g} off its mean, more than {_FARTHEST} times the "
-            f"deviation of {model.deviation:.3g}; give a larger one"
+            f"deviation of {model.deviation:.3g}; give a larger one, or nan for what stands for no data"
         )
     for i, name in enumerate(scenario.vehicle_names):
         noise = scenario.sensor_of(i).noise
@@ -180,9 +184,14 @@ def _check_numbers(scenario: MonitorScenario, model: FieldModel, seen: Floats | 
                 f"sensor.noise: {noise:.3g} of {name} is more than {_NOISIEST} times the field's deviation "
                 f"of {model.deviation:.3g}, so that it says nothing; leave it out, or give model.deviation"
             )
+        if noise < _QUIETEST * model.deviation:
+            raise InputError(
+                f"sensor.noise: {noise:.3g} of {name} is less than {_QUIETEST:g} of the field's deviation of "
+                f"{model.deviation:.3g}, more precise than can be computed with; give more"
+            )
 
 
-_FARTHEST, _NOISIEST = 100, 100  # deviations
+_FARTHEST, _NOISIEST, _QUIETEST = 100, 100, 1e-8  # deviations
 
 
 def _check_vehicles(scenario: MonitorScenario, blocked: NDArray[np.bool_]) -> None:
@@ -195,7 +204,7 @@ def _check_vehicles(scenario: MonitorScenario, blocked: NDArray[np.bool_]) -> No
             x0, x1, y0, y1 = frame.extent
             raise InputError(
                 f"{where}.start: {x:.10g}, {y:.10g} is outside the area; "
-                f"x is {x0:.10g} to {x1:.10g} m, y is {y0:.10g} to {y1:.10g} m"
+                f"x is {x0:.10g} to below {x1:.10g} m, y is {y0:.10g} to below {y1:.10g} m"
             )
         if not vehicle.flies and blocked[frame.cell(x, y)]:
             raise InputError(f"{where}.start: {x:.10g}, {y:.10g} is in no_go; start elsewhere, or let it fly")
@@ -203,18 +212,25 @@ def _check_vehicles(scenario: MonitorScenario, blocked: NDArray[np.bool_]) -> No
         if side % 2 == 0 or side > min(frame.shape):
             own = f"{where}.sensor" if vehicle.sensor is not None else "sensor"
             raise InputError(f"{own}.side: must be odd and fit into the area; got {side} cells")
-        _check_budget(f"{where}.budget", vehicle.budget, frame)
+        _check_budget(f"{where}.budget", vehicle, scenario)
 
 
-def _check_budget(where: str, budget: Budget, frame: GridFrame) -> None:
+def _check_budget(where: str, vehicle: MonitorVehicle, scenario: MonitorScenario) -> None:
+    budget, cell, step = vehicle.budget, scenario.cell, scenario.step
     if budget.path is not None and budget.energy is not None:
         raise InputError(f"{where}.energy: give a path or energy, not both")
     if budget.energy is not None and budget.per_metre == budget.per_second == 0.0:
         raise InputError(
             f"{where}.per_metre: energy is never spent where both per_metre and per_second are 0"
         )
-    if (reach := Purse(budget).reach) < frame.resolution:
+    purse = Purse(budget)
+    if (awake := purse.awake(0.0)) <= step:
         raise InputError(
-            f"{where}: it lasts for {reach:.3g} m, less than to the next cell at {frame.resolution:g} m; "
+            f"{where}: it lasts for {awake:.3g} s, no longer than the first step of {step:g} s; give more, "
+            "or leave the vehicle out"
+        )
+    if (reach := purse.reach(vehicle.speed)) < cell:
+        raise InputError(
+            f"{where}: it lasts for {reach:.3g} m, less than to the next cell at {cell:g} m; "
             "give more, or leave the vehicle out"
         )

@@ -18,6 +18,7 @@ from vedette.number import is_number
 Floats = NDArray[np.float64]
 
 LEAST_LENGTH = 1.0  # of correlation [cells]: a grid holds nothing finer
+MOST_LENGTH = 1000.0  # [cells]: deviations are right to five digits; beyond, rounding eats the precision
 MOST_CELLS = 1 << 20
 
 
@@ -53,6 +54,10 @@ class FieldModel:
         if self.length < LEAST_LENGTH * self.frame.resolution:
             least = LEAST_LENGTH * self.frame.resolution
             raise InputError(f"field: length {self.length:g} m is less than a cell; take {least:g} m or more")
+        if self.length > (most := MOST_LENGTH * self.frame.resolution) * (1.0 + 1e-9):
+            raise InputError(
+                f"field: length {self.length:g} m is more than {MOST_LENGTH:g} cells; take {most:g} m or less"
+            )
         if not self.lasting > 0.0:
             raise InputError(f"field: lasting must be > 0 s; got {self.lasting}")
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 from vedette.domains.monitoring.belief import FieldBelief
-from vedette.domains.monitoring.field import LEAST_LENGTH, FieldModel
+from vedette.domains.monitoring.field import LEAST_LENGTH, MOST_LENGTH, FieldModel
 from vedette.domains.monitoring.spots import Spots
 from vedette.errors import InputError
 
@@ -42,13 +42,14 @@ def learned(
     """
     if len(values) < LEAST_MEASUREMENTS:
         raise InputError(
-            f"{len(values)} measurements are too few to learn from; take {LEAST_MEASUREMENTS} or more"
+            f"{len(values)} measurements are too few to learn from; take {LEAST_MEASUREMENTS} or more, or "
+            "state mean, deviation and length yourself"
         )
     mean, deviation = float(np.mean(values)), float(np.std(values))
     if not deviation > 0.0:
         raise InputError(f"all {len(values)} measurements are {mean:g}: state the field's deviation yourself")
     least = LEAST_LENGTH * model.frame.resolution
-    most = 2.0 * model.frame.resolution * math.hypot(*model.frame.shape)
+    most = model.frame.resolution * min(2.0 * math.hypot(*model.frame.shape), MOST_LENGTH)
 
     def at_logs(logs: Floats) -> FieldModel:
         found, length = np.exp(logs).tolist()

@@ -15,12 +15,12 @@ class Purse:
     budget: Budget
     gone: float = 0.0  # way so far [m]
 
-    @property
-    def reach(self) -> float:
-        """The way that it allows for if nothing else is spent [m]."""
+    def reach(self, speed: float) -> float:
+        """Return the way that it allows for in all, without a rest, at so many m/s [m]."""
         budget = self.budget
         if budget.energy is not None:
-            return budget.energy / budget.per_metre if budget.per_metre > 0.0 else inf
+            spent = budget.per_metre + budget.per_second / speed
+            return budget.energy / spent if spent > 0.0 else inf
         return inf if budget.path is None else budget.path
 
     def awake(self, now: float) -> float:

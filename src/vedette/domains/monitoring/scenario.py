@@ -11,6 +11,7 @@ from vedette.maps import GridFrame
 from vedette.scenario import Metre, Name
 
 Positive = Annotated[float, Meta(gt=0.0, le=1e9)]
+Speed = Annotated[float, Meta(ge=-300.0, le=300.0)]  # along an axis [m/s]
 Corners: TypeAlias = Annotated[tuple[tuple[Metre, Metre], ...], Meta(min_length=3)]
 
 MOST_VEHICLES = 64
@@ -39,7 +40,7 @@ class Plume(Struct, forbid_unknown_fields=True, frozen=True, kw_only=True, tag_f
     """A cloud of puffs that the wind carries on; turbulence drives them apart and spreads each."""
 
     source: tuple[Metre, Metre]  # about which it is at first
-    wind: tuple[float, float] = (0.2, 0.1)  # [m/s]
+    wind: tuple[Speed, Speed] = (0.2, 0.1)  # [m/s]
     strength: Positive = 10.0  # of a puff at its middle, at first
     width: Positive = 4.0  # of a puff at first: its standard deviation [m]
     spreading: Annotated[float, Meta(ge=0.0, le=1e6)] = 0.1  # of a puff [m^2/s]
@@ -56,18 +57,18 @@ Source: TypeAlias = Jacksboro | Topobathy | FieldFile | Drawn | Plume | Age
 class KnownField(Struct, forbid_unknown_fields=True, frozen=True, kw_only=True):
     """What is known of the field beforehand; without a number it is learned from a survey."""
 
-    mean: float | None = None  # [unit]
+    mean: Annotated[float, Meta(ge=-1e9, le=1e9)] | None = None  # [unit]
     deviation: Positive | None = None  # of each cell [unit]
     length: Positive | None = None  # distance at which cells have a correlation of 0.14 [m]
     lasting: Positive | None = None  # after so long a cell has 1/e in common with itself [s]; None: for ever
-    drift: tuple[float, float] = (0.0, 0.0)  # of the whole field [m/s]
+    drift: tuple[Speed, Speed] = (0.0, 0.0)  # of the whole field [m/s]
     survey: Annotated[int, Meta(ge=10, le=10_000)] = 80  # places measured beforehand to learn from
 
 
 class SensorSettings(Struct, forbid_unknown_fields=True, frozen=True):
     """Measures the mean over a block of cells about the vehicle at each step's end."""
 
-    noise: Positive = 1.0  # standard deviation [unit]
+    noise: Annotated[float, Meta(ge=1e-12, le=1e9)] = 1.0  # standard deviation [unit]
     side: Annotated[int, Meta(ge=1, le=15)] = 1  # of the block [cells], odd; 1: a point sensor
 
 

@@ -47,9 +47,11 @@ class Spots:
     @cached_property
     def weights(self) -> sp.csr_matrix:
         """``W``, sparse (spots, n): the share of each cell in what is measured at a spot; rows sum to 1."""
-        return sp.csr_matrix(
+        weights = sp.csr_matrix(
             sp.vstack([sp.kron(*(_window(n, side) for n in self.frame.shape)) for side in self.sides])
         )
+        weights.eliminate_zeros()  # which SciPy's product keeps where blocks are wide in a narrow grid
+        return weights
 
     @cached_property
     def whole(self) -> NDArray[np.bool_]:

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from vedette.domains.monitoring.field import LEAST_LENGTH, FieldModel
+from vedette.domains.monitoring.field import LEAST_LENGTH, MOST_LENGTH, FieldModel
 from vedette.domains.monitoring.learning import learned
 from vedette.domains.monitoring.scenario import Age, Drawn, MonitorScenario
 from vedette.domains.monitoring.spots import Spots
@@ -57,4 +57,5 @@ def _learned(scenario: MonitorScenario, truth: Floats) -> FieldModel:
     mean, deviation, length = (
         float(f"{number:.{_DIGITS}g}") for number in (found.mean, found.deviation, found.length)
     )
-    return FieldModel(frame, mean, deviation, max(length, LEAST_LENGTH * frame.resolution))
+    least, most = LEAST_LENGTH * frame.resolution, MOST_LENGTH * frame.resolution
+    return FieldModel(frame, mean, deviation, min(max(length, least), most))

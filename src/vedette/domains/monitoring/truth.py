@@ -25,6 +25,7 @@ _SHIPPED = {  # file, array, and whether its first row is the northernmost
 }
 _LEAST_COVERED = 0.5  # of a cell, by pixels that hold a number
 _PUFFS = 12  # of a cloud
+_MOST = 1e9  # that a number of a raster may be, as those of a scenario
 
 
 @dataclass(eq=False)
@@ -86,7 +87,7 @@ def averaged(frame: GridFrame, values: Floats, extent: Extent | None, what: str)
     """Return the mean of a raster's numbers over each cell, bottom row first; no extent: stretched.
 
     Raises:
-        InputError: the raster does not cover the area, or has no number somewhere in it.
+        InputError: the raster does not cover the area, has no number somewhere in it, or a huge one.
     """
     x0, x1, y0, y1 = frame.extent
     left, low, right, high = extent or (x0, y0, x1, y1)
@@ -94,7 +95,8 @@ def averaged(frame: GridFrame, values: Floats, extent: Extent | None, what: str)
     if left > x0 + slack or right < x1 - slack or low > y0 + slack or high < y1 - slack:
         raise InputError(
             f"{what} lies at x {left:.10g} to {right:.10g} m, y {low:.10g} to {high:.10g} m and does not "
-            f"cover the area of x {x0:.10g} to {x1:.10g} m, y {y0:.10g} to {y1:.10g} m; take a smaller area"
+            f"cover the area's whole cells, x {x0:.10g} to {x1:.10g} m, y {y0:.10g} to {y1:.10g} m; take a "
+            "smaller area"
         )
     rows = _shares(frame.rows, (y0 - low) / (high - low), (y1 - low) / (high - low), values.shape[0])
     cols = _shares(frame.cols, (x0 - left) / (right - left), (x1 - left) / (right - left), values.shape[1])
@@ -102,6 +104,11 @@ def averaged(frame: GridFrame, values: Floats, extent: Extent | None, what: str)
     covered = rows @ there @ cols.T
     if (missing := int(np.count_nonzero(covered < _LEAST_COVERED))) > 0:
         raise InputError(f"{what} has no number in {many(missing, 'cell')} of the area; take a smaller one")
+    if (largest := float(np.abs(values[there]).max())) > _MOST:
+        raise InputError(
+            f"{what} has numbers up to {largest:.3g}, at most {_MOST:g} make sense; give them in another "
+            "unit, and say which stand for no data (GDAL_NODATA in a TIFF, nan in an array)"
+        )
     return np.asarray(rows @ np.where(there, values, 0.0) @ cols.T / covered)
 
 

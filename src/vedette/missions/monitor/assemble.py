@@ -87,7 +87,7 @@ class MonitorTeam(FlightTeam[MonitorCase]):
     def _route(self, robot: int, here: Place) -> Way:
         """Return the patrol of one that follows a fixed one."""
         case, vehicle = self.case, self.case.vehicles[robot]
-        length = min(Purse(vehicle.budget).reach, vehicle.speed * case.duration)
+        length = min(Purse(vehicle.budget).reach(vehicle.speed), vehicle.speed * case.duration)
         frame = case.scenario.frame
         if self.options.coordination == "random":
             way = at_random(frame, here, length, np.random.default_rng([robot, 7]))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +26,7 @@ from vedette.record.signs import DASHES, FAINT, VEHICLE, draw_vehicle, explain, 
 
 _WIDE = 3.5  # of a panel [inch]
 _HIGHEST = 5.5  # [inch]
+_NARROWEST = 2.6  # of what a panel takes up, its title and its colours [inch]
 _LEAST = 9.0  # width of the figure, for the signs in one line [inch]
 _RAMP = 0.42  # under a panel, for its colours [inch]
 _COLOURS = 200  # of the film
@@ -105,13 +107,13 @@ def _draw(
 def _layout(log: MonitorLog) -> Panels:
     aspect = log.scene.frame.cols / log.scene.frame.rows
     panel = (_WIDE, _WIDE / aspect) if _WIDE / aspect <= _HIGHEST else (_HIGHEST * aspect, _HIGHEST)
-    return (
-        Panels.in_a_row(
-            panel, 3, False, _LEAST, lambda width: _RAMP + 0.66 + LINE * (_team(log, width).lines + 1)
-        )
-        if aspect <= STACKED
-        else _stacked(log, aspect)
+    if aspect > STACKED:
+        return _stacked(log, aspect)
+    room = (max(panel[0], _NARROWEST), panel[1])
+    row = Panels.in_a_row(
+        room, 3, False, _LEAST, lambda width: _RAMP + 0.66 + LINE * (_team(log, width).lines + 1)
     )
+    return replace(row, panel=panel)
 
 
 def _stacked(log: MonitorLog, aspect: float) -> Panels:
@@ -130,7 +132,7 @@ def _team(log: MonitorLog, width: float) -> Key:
 def _ramp(figure: Figure, layout: Panels, corner: tuple[float, float], colours: str, norm: Normalize) -> None:
     """Show a panel's colours under it, the least and the most at their ends."""
     x, y = corner
-    axes = layout.add(figure, x + 0.6, y - 0.24, layout.panel[0] - 1.2, 0.1)
+    axes = layout.add(figure, x + 0.6, y - 0.24, max(layout.panel[0], _NARROWEST) - 1.2, 0.1)
     axes.imshow(np.linspace(0.0, 1.0, 200)[None], cmap=colours, aspect="auto", extent=(0, 1, 0, 1))
     axes.set(xticks=(), yticks=())
     axes.spines[:].set(color=palette.unit((200, 203, 207)), lw=0.5)
