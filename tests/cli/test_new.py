@@ -84,6 +84,8 @@ def test_a_domain_of_ones_own_runs_on_two_processes(vedette: Command, of: str) -
         (("class",), "NAME must be a word in small letters"),
         (("9geese",), "NAME must be a word in small letters"),
         (("json",), "there is a module json already, which would be found first; take another name"),
+        (("none",), "NAME none would make a class None, which is something else"),
+        (("theory",), "NAME theory would make a class Theory, which is something else"),
         (("geese", "--out", "there"), "there exists; choose another folder with --out"),
     ],
 )

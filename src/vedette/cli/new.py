@@ -13,7 +13,7 @@ import yaml
 
 from vedette.cli.options import FILE
 from vedette.errors import InputError
-from vedette.missions.own.skeleton import Skeleton
+from vedette.missions.own import skeleton
 from vedette.record.files import output_directory, write_text
 
 _TEST = '''"""The first tests of {name}: it keeps the laws, and a mission of it runs."""
@@ -48,8 +48,8 @@ def domain(name: str, out: Path | None) -> None:
 
     It runs as it is: `vedette NAME:Name NAME.yaml` in that folder. NAME is a word in small letters.
     """
-    _check_name(name)
     title = "".join(part.capitalize() for part in name.split("_"))
+    _check_name(name, title)
     folder = Path(name) if out is None else out
     if folder.exists():
         raise InputError(f"{folder} exists; choose another folder with --out")
@@ -58,17 +58,19 @@ def domain(name: str, out: Path | None) -> None:
     write_text(folder / f"{name}.py", text.replace("Skeleton", title).replace("skeleton", name))
     write_text(
         folder / f"{name}.yaml",
-        yaml.safe_dump(_plain(Skeleton.example), sort_keys=False, default_flow_style=None),
+        yaml.safe_dump(_plain(skeleton.Skeleton.example), sort_keys=False, default_flow_style=None),
     )
     write_text(folder / f"test_{name}.py", _TEST.format(name=name, title=title))
     click.echo(f"cd {folder} && vedette {name}:{title} {name}.yaml && python -m pytest")
 
 
-def _check_name(name: str) -> None:
+def _check_name(name: str, title: str) -> None:
     if not re.fullmatch(r"[a-z][a-z0-9_]{0,63}", name) or keyword.iskeyword(name):
         raise InputError(f"NAME must be a word in small letters, as my_domain; got {name!r}")
     if find_spec(name) is not None:
         raise InputError(f"there is a module {name} already, which would be found first; take another name")
+    if keyword.iskeyword(title) or title in vars(skeleton).keys() - {"Skeleton"}:
+        raise InputError(f"NAME {name} would make a class {title}, which is something else; take another name")
 
 
 def _plain(value: object) -> object:
