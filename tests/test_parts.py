@@ -103,8 +103,14 @@ def test_a_part_that_there_is_not_is_told_in_a_line(name: str, said: str) -> Non
 
 def test_a_module_that_breaks_when_it_is_imported_is_told_in_a_line(tmp_path: Path) -> None:
     look_in(tmp_path)
-    for code, said in (("1 / 0\n", "ZeroDivisionError"), ("def (:\n", "SyntaxError")):
-        with pytest.raises(InputError, match=rf"number: cannot import own_part_\d+: {said}: .*; install it"):
+    for code, said in (
+        ("1 / 0\n", "ZeroDivisionError"),
+        ("def (:\n", "SyntaxError"),
+        ("raise SystemExit(3)\n", "SystemExit"),
+    ):
+        with pytest.raises(
+            InputError, match=rf"number: cannot import own_part_\d+: {said}: .*line 1\); mend it"
+        ):
             NUMBER.find(f"{module(tmp_path, code)}:ONE")
 
 

@@ -7,7 +7,7 @@ import importlib
 import os
 import sys
 import traceback
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache, wraps
@@ -109,10 +109,12 @@ def load(reference: str) -> Any:
     module_name, _, name = reference.partition(":")
     try:
         module = importlib.import_module(module_name)
-    except Exception as error:
-        raise InputError(
-            f"cannot import {module_name}: {said(error)}; install it, or put it beside the file"
-        ) from error
+    except (Exception, SystemExit) as error:
+        missing = isinstance(error, ModuleNotFoundError)
+        remedy = "install it, or put it beside the file" if missing else "mend it"
+        stem = module_name.split(".")[-1]
+        at = _place([frame for frame in _frames(error) if Path(frame.filename).stem == stem])
+        raise InputError(f"cannot import {module_name}: {said(error)}{at}; {remedy}") from error
     if module.__file__ is not None:
         _LOADED.add(Path(module.__file__).parent if module.__package__ else Path(module.__file__))
     if not hasattr(module, name):
@@ -121,7 +123,7 @@ def load(reference: str) -> Any:
     return getattr(module, name)
 
 
-def said(error: Exception) -> str:
+def said(error: BaseException) -> str:
     """Return an error in one line."""
     return f"{type(error).__name__}: {' '.join(str(error).split())}"
 
@@ -133,8 +135,9 @@ def telling(what: str) -> Iterator[None]:
         yield
     except InputError as error:
         raise PartError(str(error)) from error
-    except Exception as error:
-        raise PartError(f"{what}: {said(error)}{_at(error)}") from error
+    except (Exception, SystemExit) as error:
+        at = _place([frame for frame in _frames(error) if _is_own(Path(frame.filename))])
+        raise PartError(f"{what}: {said(error)}{at}") from error
 
 
 def number(returned: Any) -> None:
@@ -173,9 +176,12 @@ def _telling(method: Callable[..., Any], check: Check, what: str) -> Callable[..
     return called
 
 
-def _at(error: Exception) -> str:
+def _frames(error: BaseException) -> traceback.StackSummary:
+    return traceback.extract_tb(error.__traceback__)
+
+
+def _place(frames: Sequence[traceback.FrameSummary]) -> str:
     """Say in which line of an own module an error arose; nothing if in none."""
-    frames = [frame for frame in traceback.extract_tb(error.__traceback__) if _is_own(Path(frame.filename))]
     return f" ({Path(frames[-1].filename).name}, line {frames[-1].lineno})" if frames else ""
 
 

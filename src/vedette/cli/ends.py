@@ -7,6 +7,7 @@ from contextlib import contextmanager
 
 import click
 
+from vedette.errors import PartError
 from vedette.record.folder import OutputFolder
 
 
@@ -22,7 +23,10 @@ def aborted(told: str | Callable[[], str]) -> Iterator[None]:
 
 @contextmanager
 def telling_what_is_missing(folder: OutputFolder, leaves: Sequence[str]) -> Iterator[None]:
-    """Let an abort say which of its files, by name, a mission does not leave."""
+    """Let an abort say which of its files, by name, a mission does not leave.
+
+    An own part that goes wrong leaves none of them: they would be of half a mission.
+    """
 
     def written() -> list[int | None]:
         places = [folder.path / name for name in leaves]
@@ -34,5 +38,11 @@ def telling_what_is_missing(folder: OutputFolder, leaves: Sequence[str]) -> Iter
         missing = [name for name, old, new in zip(leaves, before, written(), strict=True) if old == new]
         return f"not written to {folder.path}: {', '.join(missing)}" if missing else "every file is written"
 
-    with aborted(told):
-        yield
+    try:
+        with aborted(told):
+            yield
+    except PartError:
+        for name, old, new in zip(leaves, before, written(), strict=True):
+            if old != new:
+                (folder.path / name).unlink()
+        raise

@@ -70,7 +70,7 @@ def _check_name(name: str, title: str) -> None:
     if find_spec(name) is not None:
         raise InputError(f"there is a module {name} already, which would be found first; take another name")
     if keyword.iskeyword(title) or title in vars(skeleton).keys() - {"Skeleton"}:
-        raise InputError(f"NAME {name} would make a class {title}, which is something else; take another name")
+        raise InputError(f"NAME {name} would make a class {title}, which is something else; take another")
 
 
 def _plain(value: object) -> object:

@@ -140,8 +140,10 @@ def test_arrays_travel_to_the_bit_and_others_are_refused() -> None:
 
 OWN = """
 import numpy as np
+from vedette.missions.own.codec import FloatsCodec
 from vedette.missions.own.skeleton import Skeleton
 from vedette.missions.own.theory import Theory
+from vedette.problem import Coverage
 
 class Half(Theory):
     def truth(self, rng): pass
@@ -176,6 +178,31 @@ class Moody(Skeleton):
         Moody.count += 1
         return told[:1], np.full(1, Moody.count)
 
+class Shapes(Skeleton):
+    def belief(self, total): return np.ones(99)
+
+class Codecless(Skeleton):
+    codec = None
+
+class Narrow(Skeleton):
+    codec = FloatsCodec((4,), 0.0, 1.0)
+
+class Aimless(Skeleton):
+    objective = Coverage
+
+class Vast(Skeleton):
+    size = 10**12
+
+class Untyped(Skeleton):
+    scenario_type = dict
+
+class Raw(Coverage):
+    def wrong_impact(self, belief, own): return None
+
+class Blind(Skeleton):
+    objective = Raw()
+    def impacts(self, belief, i, poses): return [None] * len(poses)
+
 class Mute(Skeleton):
     def sense(self, truth, i, pose, rng): return None
 """
@@ -197,6 +224,13 @@ def own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
         ("Names", "figures: has other names than at first"),
         ("Nan", "figures: ValueError: gives nan; a finite number is asked for"),
         ("Choosy", "ValueError: sites: too few (own_part_"),
+        ("Shapes", "impacts[0]: miss probabilities must have shape (99,); got (5,)"),
+        ("Codecless", "TypeError: codec is None; something with encode and decode is asked for"),
+        ("Narrow", "codec: ValueError: 40 bytes are no array (4,)"),
+        ("Aimless", "TypeError: objective is <class 'vedette.problem.coverage.Coverage'>; an Objective"),
+        ("Vast", "ValueError: size is 1000000000000; a whole number from 1 to 4194304 is asked for"),
+        ("Untyped", "has <class 'dict'> as scenario_type, not a class of OwnScenario; see docs"),
+        ("Blind", "objective: TypeError: unsupported operand type(s)"),
         (
             "Half",
             "lacks belief, codec, evidence, figures, impacts, objective, sense, size, example; see docs",
@@ -210,6 +244,7 @@ def test_what_a_theory_does_wrong_is_told_in_a_line(
     assert ran.status == 2
     assert ran.err.splitlines()[-1].startswith(f"vedette: domain {own}:{name}: {said}")
     assert "Traceback" not in ran.err
+    assert not Path("out").exists(), "nothing is left of half a mission"
 
 
 def test_too_few_impacts_are_told_in_a_line(

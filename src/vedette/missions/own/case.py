@@ -9,10 +9,13 @@ from typing import Any
 
 import numpy as np
 
+from vedette.errors import brief
 from vedette.fusion.steps.elements import MOST_ENTRY
 from vedette.missions.own.scenario import OwnScenario, OwnVehicleSpec, read_scenario
 from vedette.missions.own.theory import Theory
+from vedette.number import is_whole
 from vedette.parts import number, telling, told
+from vedette.problem import Objective
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,6 +25,7 @@ class OwnCase:
     name: str
     scenario: OwnScenario
     theory: Theory[Any, Any]
+    where: str  # the domain, as messages have it
     files: tuple[Path, ...] = ()
 
     @classmethod
@@ -37,10 +41,8 @@ class OwnCase:
         where = f"domain {domain}"
         with telling(where):
             made = theory(read)
-            size = made.size
-            if not isinstance(size, int) or size < 1:
-                raise ValueError(f"size is {size!r}; a whole number above 0 is asked for")
-        return cls(theory.__name__.lower() if scenario is None else name, read, _told(made, where))
+            _check(made)
+        return cls(theory.__name__.lower() if scenario is None else name, read, _told(made, where), where)
 
     @property
     def names(self) -> list[str]:
@@ -70,6 +72,20 @@ class OwnCase:
     def truth(self, seed: int) -> Any:
         """Return what is there; whoever simulates a part of the mission has the same."""
         return self.theory.truth(np.random.default_rng([seed, 3]))
+
+
+MOST_SIZE = 1 << 22  # numbers that evidence adds up
+
+
+def _check(theory: Theory[Any, Any]) -> None:
+    """Raise TypeError or ValueError for a size, an objective or a codec that is none."""
+    size, objective, codec = theory.size, theory.objective, theory.codec
+    if not (is_whole(size) and 1 <= size <= MOST_SIZE):
+        raise ValueError(f"size is {size!r}; a whole number from 1 to {MOST_SIZE} is asked for")
+    if not isinstance(objective, Objective):
+        raise TypeError(f"objective is {brief(objective)}; an Objective is asked for")
+    if isinstance(codec, type) or not all(callable(getattr(codec, of, None)) for of in ("encode", "decode")):
+        raise TypeError(f"codec is {brief(codec)}; something with encode and decode is asked for")
 
 
 def _told(theory: Theory[Any, Any], where: str) -> Theory[Any, Any]:

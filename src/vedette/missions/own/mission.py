@@ -85,7 +85,7 @@ class OwnMission(FlyingMission):
     def __post_init__(self) -> None:
         theory = self.case.theory
         self.objective = OnOwnBelief(theory.objective)
-        self.vehicle = SteeredPlatform(theory, self.objective, self.case.scenario, self.robot)
+        self.vehicle = SteeredPlatform(self.case, self.objective, self.robot)
         self.platform = self.vehicle if self.tells_plans else SharedBelief(self.vehicle, self.objective)
         self._elements = SparseIntegers(theory.size)
         nothing = np.zeros(theory.size, np.int64)

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.errors import PartError
-from vedette.missions.own.scenario import OwnScenario
-from vedette.missions.own.theory import Theory
+from vedette.missions.own.case import OwnCase
+from vedette.parts import telling
 from vedette.problem import Objective
 from vedette.vehicle import drive, turn_sequences
 
@@ -46,30 +46,42 @@ class SteeredPlatform:
     ``vedette.agent.mission.RoundPlatform``.
     """
 
-    theory: Theory[Any, Any]
+    case: OwnCase
     objective: Objective[OwnBelief, Any]
-    scenario: OwnScenario
     robot: int
     courses: list[Turns] = field(default_factory=list)  # that are compared, the present one first
     own: list[Any] = field(default_factory=list)  # what each would add
 
     def prepare(self, known: OwnBelief, pose: NDArray[np.float64], present: Turns) -> Turns:
         """Work out what each course would add from a pose; return the present one, restated."""
-        vehicle, horizon, step = self.scenario.vehicles[self.robot], self.scenario.horizon, known.step
+        scenario, step = self.case.scenario, known.step
+        vehicle, horizon = scenario.vehicles[self.robot], scenario.horizon
         now = present.after(step, horizon)
         others = (Turns(step, tuple(rates)) for rates in self._sequences(vehicle.turn_rate).tolist())
         self.courses = list(dict.fromkeys([now, *others]))
         rates = np.array([course.rates for course in self.courses])
-        poses = drive(pose, rates, vehicle.speed, self.scenario.step)
-        self.own = list(self.theory.impacts(known.belief, self.robot, poses))
-        if len(self.own) != len(self.courses):
-            name = type(self.theory).__name__
-            raise PartError(f"{name}: impacts: gives {len(self.own)} for {len(self.courses)} courses")
+        poses = drive(pose, rates, vehicle.speed, scenario.step)
+        self.own = list(self.case.theory.impacts(known.belief, self.robot, poses))
+        self._try(known)
         return now
 
+    def _try(self, known: OwnBelief) -> None:
+        """Raise PartError where the theory's parts do not go together, before a message is sent."""
+        where, theory = self.case.where, self.case.theory
+        if len(self.own) != len(self.courses):
+            raise PartError(f"{where}: impacts: gives {len(self.own)} for {len(self.courses)} courses")
+        with telling(f"{where}: objective"):
+            if (wrong := theory.objective.wrong_belief(known.belief)) is not None:
+                raise PartError(f"{where}: belief: {wrong}")
+            if (bad := theory.objective.wrong_impact(known.belief, self.own)) is not None:
+                raise PartError(f"{where}: impacts[{bad[0]}]: {bad[1]}")
+            self.objective.values(known, self.objective.nothing(known), self.own)
+        with telling(f"{where}: codec"):
+            theory.codec.decode(theory.codec.encode(self.own[0]))
+
     def _sequences(self, turn_rate: float) -> NDArray[np.float64]:
-        horizon = self.scenario.horizon
-        blocks = min(horizon, self.scenario.decisions)
+        horizon = self.case.scenario.horizon
+        blocks = min(horizon, self.case.scenario.decisions)
         lengths = [horizon // blocks + (i >= blocks - horizon % blocks) for i in range(blocks)]
         rates = np.repeat(turn_sequences(turn_rate, blocks), lengths, axis=1)
         return rates[

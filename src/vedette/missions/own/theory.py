@@ -9,6 +9,7 @@ from typing import Any, ClassVar, Generic
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.errors import brief
 from vedette.missions.own.scenario import OwnScenario
 from vedette.parts import PartKind
 from vedette.problem import Codec, Objective
@@ -81,6 +82,8 @@ class Theory(ABC, Generic[BeliefT, ImpactT]):
 def _wrong(part: Any) -> str | None:
     if not (isinstance(part, type) and issubclass(part, Theory)):
         return f"is {type(part).__name__}, not a class of Theory"
+    if not (isinstance(part.scenario_type, type) and issubclass(part.scenario_type, OwnScenario)):
+        return f"has {brief(part.scenario_type)} as scenario_type, not a class of OwnScenario"
     lacking = sorted(part.__abstractmethods__) + ([] if hasattr(part, "example") else ["example"])
     return f"lacks {', '.join(lacking)}" if lacking else None
 
