@@ -50,6 +50,7 @@ What does not stay flat:
   Most branches are small, so the median link stays short, but the large ones make the mean, which grows.
 - A star's links have one platform at their end each, so clipping keeps them short. Its hub remains a hub.
 - Search at constant density: valuing an impact walks over the whole pdf, so CPU grows with the area.
+- Monitoring at constant density: a value factorises the whole field, so CPU grows with the area.
 """
 
 
