@@ -45,16 +45,26 @@ class Second(MappingPlatform):
             raise ValueError("not me")
         return super().reply(belief, others, current)
 
+class Lost(MappingPlatform):
+    def prepare(self, belief):
+        self.stops = []
+
+class Bare(MappingPlatform):
+    def __init__(self, spec):
+        self.mine = []
+
 def dear(spec):
     raise OSError("no licence\\nleft")
 
-RAISES, NOTHING, FEW, SECOND = (
-    Planner("", layers.rate(), kind) for kind in (Raises, Nothing, Few, Second)
+RAISES, NOTHING, FEW, SECOND, LOST, BARE = (
+    Planner("", layers.rate(), kind) for kind in (Raises, Nothing, Few, Second, Lost, Bare)
 )
 DEAR = Planner("", layers.rate(), dear)
 OTHER = Planner("", layers.rate(), lambda spec: spec)
 FLAT = Planner("", None, Raises)
 ODD = Planner("", layers.rate(), Raises, scheme="tokn")
+PRICED = Planner("", layers.rate(), Raises, return_price="much")
+FEWEST = Planner("", layers.rate(), Raises, most_robots=0)
 """
 
 
@@ -165,9 +175,13 @@ def test_the_example_of_a_planner_finishes_a_mission_by_its_module_and_by_an_ent
         ("NOTHING", "reply: TypeError: gives NoneType; a Tour is asked for"),
         ("FEW", "reply: TypeError: Few.reply() takes 2 positional arguments but 4 were given"),
         ("SECOND", "reply: ValueError: not me (own_part_{}.py, line 22)"),  # who replies to a message
-        ("DEAR", "platform: OSError: no licence left (own_part_{}.py, line 26)"),
+        ("DEAR", "platform: OSError: no licence left (own_part_{}.py, line 34)"),
         ("OTHER", "platform: TypeError: gives PlatformSpec; a MappingPlatform is asked for"),
         ("FLAT", " needs layers, a TimeLayers, and a platform that can be called"),
+        ("PRICED", "has 'much' as return_price, not a number >= 0"),
+        ("FEWEST", "has 0 as most_robots, not a whole number > 0 or None"),
+        ("LOST", "prepare: TypeError: leaves list in self.stops; Stops are asked for"),
+        ("BARE", "platform: TypeError: its __init__ does not call that of MappingPlatform"),
     ],
 )
 def test_what_a_planner_does_wrong_is_told_in_a_line(

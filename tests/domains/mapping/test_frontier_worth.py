@@ -21,6 +21,7 @@ def clusters(middles: list[int]) -> tuple[np.ndarray, np.ndarray]:
 def test_without_a_price_every_frontier_stands_for_the_hidden_area() -> None:
     cells, starts = clusters([3, 700, 1500])
     np.testing.assert_array_equal(frontier_areas(FRAME, cells, starts, 2.0, 0.0), [2.0, 2.0, 2.0])
+    assert frontier_areas(FRAME, cells, starts, 2, 0).dtype == np.float64, "of whole numbers as well"
 
 
 @pytest.mark.parametrize("seed", range(5))

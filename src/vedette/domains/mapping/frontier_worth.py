@@ -31,7 +31,7 @@ def frontier_areas(
     """
     count = len(starts) - 1
     if return_price == 0.0 or count == 0:
-        return np.full(count, hidden)
+        return np.full(count, hidden, np.float64)
     if count <= NEIGHBOURS:
         return np.full(count, hidden + return_price * FARTHEST)
     places = middles(frame, cells, starts)

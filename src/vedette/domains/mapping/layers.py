@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.errors import InputError, brief
 from vedette.kernels.coverage import LAYERS
+from vedette.number import is_number
 
 STEP = 5.0  # between the first EVEN edges [s]
 EVEN = 20
@@ -44,7 +46,12 @@ def rate(start: float = 0.0) -> TimeLayers:
     """Worth ``1 / (start + t)``: the paper's rate of uncertainty reduction, eq. (42).  docs/mapping.md (V23)
 
     A ``start`` [s] keeps a trifle close by from outweighing a room a little farther on.
+
+    Raises:
+        InputError: it is no number >= 0.
     """
+    if not (is_number(start) and start >= 0.0):
+        raise InputError(f"layers.rate: start must be a number >= 0 s; got {brief(start)}")
     return _layers(1.0 / (start + _edges()))
 
 

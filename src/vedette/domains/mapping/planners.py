@@ -17,8 +17,10 @@ from vedette.domains.mapping.baselines.team import check_size
 from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.layers import TimeLayers
 from vedette.domains.mapping.platform import MappingPlatform, Tour
+from vedette.domains.mapping.stops import Stops
 from vedette.domains.mapping.yardsticks import BurgardPlatform, NearestPlatform
-from vedette.number import is_number
+from vedette.errors import brief
+from vedette.number import is_number, is_whole
 from vedette.parts import PartKind, telling, told
 from vedette.team import PlatformSpec
 
@@ -136,6 +138,12 @@ def _wrong(part: Any) -> str | None:
         return f"is {type(part).__name__}, not a Planner"
     if not isinstance(part.layers, TimeLayers) or not callable(part.platform):
         return "needs layers, a TimeLayers, and a platform that can be called with a PlatformSpec"
+    for name in ("hidden", "return_price", "turn"):
+        value = getattr(part, name)
+        if not (is_number(value) and value >= 0.0) and not (name == "turn" and value == math.inf):
+            return f"has {brief(value)} as {name}, not a number >= 0"
+    if part.most_robots is not None and not (is_whole(part.most_robots) and part.most_robots > 0):
+        return f"has {brief(part.most_robots)} as most_robots, not a whole number > 0 or None"
     return None
 
 
@@ -164,7 +172,14 @@ def _told(own: Planner, name: str) -> Callable[[PlatformSpec], MappingPlatform]:
         with telling(f"{where}: platform"):
             platform = own.platform(spec)
             _check_is(MappingPlatform)(platform)
-        return told(platform, CONTRACT, where)
+            if not hasattr(platform, "given_up"):
+                raise TypeError("its __init__ does not call that of MappingPlatform")
+
+        def prepared(_: Any) -> None:
+            if not isinstance(platform.stops, Stops | None):
+                raise TypeError(f"leaves {type(platform.stops).__name__} in self.stops; Stops are asked for")
+
+        return told(platform, {**CONTRACT, "prepare": prepared}, where)
 
     return made
 
@@ -183,7 +198,6 @@ def _check_slack(returned: Any) -> None:
 
 
 CONTRACT = {
-    "prepare": lambda _: None,
     "carry_over": _check_is(Tour),
     "reply": _check_is(Tour),
     "impact": _check_is(Impact),
