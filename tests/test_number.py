@@ -1,4 +1,4 @@
-"""What counts as a number."""
+"""What counts as a number, and how numbers are told."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from tests.support.places import ROOT
-from vedette.number import is_number, is_whole, many
+from vedette.number import is_number, is_whole, many, short
 
 
 @pytest.mark.parametrize("value", [0, -3, 2.5, 1e308, np.float32(0.1), np.int8(4), Fraction(1, 3)])
@@ -43,3 +43,11 @@ def test_no_message_counts_in_the_plural_what_may_be_one() -> None:
         if _BARE.search(line) and not any(said in line for said in more_than_one)
     ]
     assert lines == []
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(0.0, "0"), (0.012345, "0.0123"), (148.2, "148"), (999.6, "1000"), (-1436.7, "-1437"), (2e12, "2e+12")],
+)
+def test_numbers_are_told_in_three_digits_and_whole_where_that_is_more(value: float, text: str) -> None:
+    assert short(value) == text

@@ -22,6 +22,11 @@ def is_whole(value: object) -> TypeGuard[int]:
     return isinstance(value, Integral) and not isinstance(value, bool)
 
 
+def short(value: float) -> str:
+    """Return three digits of a number, and all that it has before the point: ``0.0123``, ``1073``."""
+    return f"{value:.0f}" if 999.5 <= abs(value) < 1e7 else f"{value:.3g}"
+
+
 def many(count: int, what: str) -> str:
     """Return ``1 robot``, ``2 robots``; ``what`` takes an s where there are more."""
     return f"{count} {what}" if count == 1 else f"{count} {what}s"

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from rich.console import Console, RenderableType
 from rich.style import Style
 
+from vedette.number import short
 from vedette.record.board import Board, fitted
 from vedette.record.display import Display
 from vedette.record.monitor.log import MonitorScene, MonitorSnapshot
@@ -46,7 +47,7 @@ class _Latest:
 def line(scene: MonitorScene, latest: _Latest, snapshot: MonitorSnapshot) -> str:
     """Return a snapshot in one line."""
     known = latest.of(snapshot)
-    error = "" if known.rmse is None else f"  error {known.rmse:7.3g} (rms)"
+    error = "" if known.rmse is None else f"  error {short(known.rmse):>7} (rms)"
     team = states(scene.vehicles, snapshot.vehicles)
     return f"{snapshot.t:7.1f} s{error}  last looked at {snapshot.mean_age:4.0f} s ago  {team}"
 
@@ -58,7 +59,7 @@ def screen(
     known = latest.of(snapshot)
     figures = [figure("time", f"{snapshot.t:.1f} s")]
     if known.rmse is not None and known.entropy is not None:
-        figures += [figure("error", f"{known.rmse:.3g}"), figure("entropy", f"{known.entropy:.0f} nat")]
+        figures += [figure("error", short(known.rmse)), figure("entropy", f"{known.entropy:.0f} nat")]
     figures.append(
         figure("last looked at", f"{snapshot.mean_age:.0f} s ago, {snapshot.worst_age:.0f} s at worst")
     )

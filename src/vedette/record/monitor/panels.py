@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from vedette.domains.monitoring.planning import deviations_of
-from vedette.number import many
+from vedette.number import many, short
 from vedette.record import palette
 from vedette.record.canvas import picture, save
 from vedette.record.film import flight_gif
@@ -45,7 +45,7 @@ def field_png(report: MonitorReport, path: Path | str) -> None:
     sure = Normalize(0.0, float(deviation.max()))
     fields = (
         ("last looked at [s ago]" if log.scene.ages else "the field", report.truth, "viridis", same),
-        (f"taken to be, error {summary.rmse:.3g}", mean, "viridis", mean_scale),
+        (f"taken to be, error {short(summary.rmse)}", mean, "viridis", mean_scale),
         ("standard deviation", deviation, "magma", sure),
     )
     layout = _layout(log)
@@ -72,8 +72,9 @@ def monitor_gif(report: MonitorReport, path: Path | str, frames: int = 150) -> N
 
     def draw(axes: Axes, stage: MonitorSnapshot) -> None:
         assert stage.mean is not None
+        assert stage.rmse is not None
         _draw(axes, log, stage, stage.mean, "viridis", norm)
-        axes.set_title(f"{stage.t:.0f} s    error {stage.rmse:.3g}", fontsize=10, loc="left", pad=5)
+        axes.set_title(f"{stage.t:.0f} s    error {short(stage.rmse)}", fontsize=10, loc="left", pad=5)
 
     flight_gif(stages, draw, frame.cols / frame.rows, _COLOURS, path)
 
@@ -136,10 +137,8 @@ def _ramp(figure: Figure, layout: Panels, corner: tuple[float, float], colours: 
     axes.imshow(np.linspace(0.0, 1.0, 200)[None], cmap=colours, aspect="auto", extent=(0, 1, 0, 1))
     axes.set(xticks=(), yticks=())
     axes.spines[:].set(color=palette.unit((200, 203, 207)), lw=0.5)
-    for at, value, align in ((-0.03, norm.vmin, "right"), (1.03, norm.vmax, "left")):
-        axes.text(
-            at, 0.5, f"{value:.3g}", ha=align, va="center_baseline", fontsize=8, transform=axes.transAxes
-        )
+    for at, value, align in ((-0.03, norm.vmin or 0.0, "right"), (1.03, norm.vmax or 0.0, "left")):
+        axes.text(at, 0.5, short(value), ha=align, va="center_baseline", fontsize=8, transform=axes.transAxes)
 
 
 def _legend(figure: Figure, layout: Panels, log: MonitorLog) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from vedette.number import many
+from vedette.number import many, short
 from vedette.record.log import Floats
 from vedette.record.monitor.log import MonitorLog
 from vedette.record.summary import MissionSummary, Traffic
@@ -89,14 +89,14 @@ def closing(summary: MonitorSummary, folder: Path) -> list[str]:
     """Say in a few lines how it went and where the pictures are."""
     lines = [
         f"{summary.outcome.said}: {many(summary.vehicles, 'vehicle')} measured {summary.cells} cells for "
-        f"{summary.time_s:.0f} s; error {summary.rmse:.3g} (rms) in the end, {summary.rmse_mean:.3g} over "
-        f"the way, NEES {summary.nees:.2f} a cell",
+        f"{summary.time_s:.0f} s; error {short(summary.rmse)} (rms) in the end, "
+        f"{short(summary.rmse_mean)} over the way, NEES {summary.nees:.2f} a cell",
         f"a place was last looked at {summary.mean_age_s:.0f} s ago in the mean, {summary.worst_age_s:.0f} s "
         "at worst",
     ]
     if summary.comparison:
-        each = (f"{name} {quality.rmse:.3g}" for name, quality in summary.comparison.items())
+        each = (f"{name} {short(quality.rmse)}" for name, quality in summary.comparison.items())
         lines.append(f"error in the end: {', '.join(each)}")
-        each = (f"{name} {quality.rmse_mean:.3g}" for name, quality in summary.comparison.items())
+        each = (f"{name} {short(quality.rmse_mean)}" for name, quality in summary.comparison.items())
         lines.append(f"error over the way: {', '.join(each)}")
     return [*lines, f"pictures: {folder / 'field.png'}, {folder / 'curves.png'}; all else beside them"]
