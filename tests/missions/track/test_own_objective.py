@@ -39,6 +39,9 @@ class Nothing: pass
 class Raises(TrackingObjective):
     def values(self, belief, others, own): return [1 / 0]
 
+class Long(TrackingObjective):
+    def values(self, belief, others, own): return [1.0] * (len(own) + 1)
+
 class Endless(TrackingObjective):
     def values(self, belief, others, own): return [float("nan")] * len(own)
 
@@ -87,6 +90,7 @@ def test_an_own_objective_leads_a_team_elsewhere(tmp_path: Path) -> None:
     [
         ("Nothing", "TypeError: gives Nothing; a TrackingObjective is asked for"),
         ("Raises", "values: ZeroDivisionError: division by zero (own_part_"),
+        ("Long", "values: ValueError: gives ("),
         ("Endless", "values: ValueError: gives nan; a finite number is asked for"),
     ],
 )

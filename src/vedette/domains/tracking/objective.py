@@ -12,6 +12,7 @@ from vedette.domains.tracking import impact as impacts
 from vedette.domains.tracking.belief import Tracks
 from vedette.domains.tracking.impact import Impact, Impacts
 from vedette.kernels.tracking import Measure, chain_gradient, chain_values
+from vedette.number import many
 from vedette.parts import PartKind, number, numbers, telling, told
 from vedette.problem import Objective, Reach
 
@@ -197,4 +198,17 @@ def objective(name: str) -> TrackingObjective:
         own = make()
         if not isinstance(own, TrackingObjective):
             raise TypeError(f"gives {type(own).__name__}; a TrackingObjective is asked for")
+    setattr(own, "values", _one_each(own.values))  # noqa: B010, of this one
     return told(own, {"value": number, "values": numbers}, where)
+
+
+def _one_each(values: Callable[..., Any]) -> Callable[..., Any]:
+    """Return the function, which raises ValueError where it gives another number of values than impacts."""
+
+    def checked(belief: Any, others: Any, own: Any) -> Any:
+        returned = values(belief, others, own)
+        if np.shape(returned) != (len(own),):
+            raise ValueError(f"gives {np.shape(returned)} for {many(len(own), 'impact')}")
+        return returned
+
+    return checked
