@@ -67,10 +67,10 @@ def domain(name: str, out: Path | None) -> None:
 def _check_name(name: str, title: str) -> None:
     if not re.fullmatch(r"[a-z][a-z0-9_]{0,63}", name) or keyword.iskeyword(name):
         raise InputError(f"NAME must be a word in small letters, as my_domain; got {name!r}")
-    if find_spec(name) is not None:
-        raise InputError(f"there is a module {name} already, which would be found first; take another name")
     if keyword.iskeyword(title) or title in vars(skeleton).keys() - {"Skeleton"}:
         raise InputError(f"NAME {name} would make a class {title}, which is something else; take another")
+    if find_spec(name) is not None:
+        raise InputError(f"there is a module {name} already, which would be found first; take another name")
 
 
 def _plain(value: object) -> object:
