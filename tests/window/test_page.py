@@ -220,6 +220,7 @@ def test_places_and_areas_are_drawn_by_clicks(page: Any) -> None:
             page.evaluate("hint('')")
             return given[-1]
 
+        see(page, hub, "#robots", "mule")
         page.keyboard.press("2")
         page.click("#commands >> text=Look there")
         click(3.0, 4.0)
