@@ -61,13 +61,13 @@ def test_a_signal_ends_a_study_which_keeps_what_is_done_and_goes_on(
     (tmp_path / "tiny.yaml").write_text(STUDY)
     process = start(["study", "tiny.yaml", "--jobs", "2", "--out", "out"], tmp_path)
     results = tmp_path / "out" / "runs"
-    wait_until(lambda: process.poll() is not None or len(list(results.glob("*.json"))) > 0, 60.0)
+    wait_until(lambda: process.poll() is not None or len(list(results.glob("[!.]*.json"))) > 0, 60.0)
     process.send_signal(number)
     out, err = process.communicate(timeout=60)
     assert process.returncode == 130, err
     assert b"Traceback" not in err
     assert b"interrupted; what is done is kept" in out
-    done = {path.name: path.read_bytes() for path in results.glob("*.json")}
+    done = {path.name: path.read_bytes() for path in results.glob("[!.]*.json")}
     assert 0 < len(done) < MANY
     assert f"{MANY - len(done)} runs to go".encode() in out
     assert (tmp_path / "out" / "report.html").exists()
