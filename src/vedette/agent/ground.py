@@ -118,9 +118,9 @@ class GroundBehaviour:
     def _has_to_turn_back(self, agent: Agent, pose: Pose, now: float) -> bool:
         """Tell whether it is time to go home, lest the robot does not come there."""
         works = not self.spent and self.state not in (State.DONE, State.WAITING) and pose.at_work
-        if not works or not isinstance(self.mission, Enduring) or not agent.is_due("turn", CHECK_PERIOD, now):
+        if not works or not agent.is_due("turn", CHECK_PERIOD, now):
             return False
-        return self.mission.turns_back(pose)
+        return isinstance(self.mission, Enduring) and self.mission.turns_back(pose)
 
     # -- orders -------------------------------------------------------------------------------------
 
@@ -146,14 +146,13 @@ class GroundBehaviour:
 
     def _leave(self, agent: Agent, pose: Pose, now: float) -> list[Effect] | None:
         """Leave a no-go area that the robot finds itself in; None: it is in none, or is held where it is."""
-        held = self.state in (State.PAUSED, State.DONE) or not pose.at_work
-        if held or not isinstance(self.mission, Heeding):
+        if self.state in (State.PAUSED, State.DONE) or not pose.at_work:
             return None
         if self.state is State.LEAVING and not self.driver.standing:
             return []
         if not agent.orders.any_no_go or not agent.is_due("leave", CHECK_PERIOD, now):
             return None
-        route = self.mission.way_out(pose)
+        route = self.mission.way_out(pose) if isinstance(self.mission, Heeding) else None
         if route is None:
             return None
         self.mission.stand_by()
