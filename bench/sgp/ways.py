@@ -58,15 +58,16 @@ def ask(python: str, case: MonitorCase, seed: int) -> Ways:
 
 def task(case: MonitorCase, seed: int) -> dict[str, Any]:
     """Return what a planner is told of a mission: what our robots know beforehand, too."""
-    [budget] = {vehicle.speed * case.duration for vehicle in case.vehicles}
-    [variance] = {case.sensor(i).variance for i in range(len(case.vehicles))}
+    scenario = case.scenario
+    [budget] = {vehicle.speed * scenario.duration for vehicle in scenario.vehicles}
+    [variance] = {case.sensor(i).variance for i in range(len(scenario.vehicles))}
     return {
         "seed": seed,
-        "area": case.scenario.area,
+        "area": scenario.area,
         "deviation": case.model.deviation,
         "length": case.model.length,
         "noise": variance**0.5,
-        "starts": [vehicle.start for vehicle in case.vehicles],
+        "starts": [vehicle.start for vehicle in scenario.vehicles],
         "budget": budget,
     }
 

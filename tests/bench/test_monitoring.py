@@ -38,7 +38,7 @@ def report(domain: Domain[Any, Any, Any, Any, MonitorReport]) -> MonitorReport:
 
 
 def test_ways_that_are_given_are_gone_like_any_patrol() -> None:
-    strips = [strip(CASE.scenario.frame, CASE.vehicles[i].pose[:2], i, 2, 30.0) for i in range(2)]
+    strips = [strip(CASE.scenario.frame, CASE.scenario.vehicles[i].pose[:2], i, 2, 30.0) for i in range(2)]
     own, given = report(domain_of("monitor")), report(ways.Given(ways.Ways(tuple(strips), 1.0)))
     assert (given.summary.rmse, given.summary.rmse_mean) == (own.summary.rmse, own.summary.rmse_mean)
     across = ways.Ways((Way(((3.0, 3.0), (3.0, 15.0))), Way(((4.0, 3.0), (19.0, 3.0)))), 1.0)

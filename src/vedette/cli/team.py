@@ -262,10 +262,10 @@ def _domain_command(declared: DomainEntry) -> click.Command:
         case = domain.case(scenario_path)
         size = len(case.names)
         tell_unsaid(options.coordination, size, options.scheme, fusion=options.fusion, lease=lease)
-        tell_duration(max_time, case.duration)
+        tell_duration(max_time, case.scenario.duration)
         plan = FlightsPlan("domain", options, scenario_path, size, seed, speed, lease)
         vehicles = domain.team(case, options, plan.times)
-        limit = case.duration + 1.0 if max_time is None else max_time
+        limit = case.scenario.duration + 1.0 if max_time is None else max_time
         processes = _Processes(plan, limit, schedule_of(faults, size, clocks=False))
         setting = Setting(seed=seed, faults=faults)
         kind_of(domain).run(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import ceil, radians
 from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
 
@@ -16,8 +17,11 @@ from vedette.agent.mission import FlightMission
 from vedette.agent.terms import Terms, flat
 from vedette.errors import InputError
 from vedette.fusion.seals import Notary
+from vedette.fusion.steps import Sparse, SparseIntegers, StepEvidence, StepSums, replicated_steps
 from vedette.missions.flying import RoundTimes
 from vedette.missions.pairs import SCHEME
+from vedette.number import many
+from vedette.scenario import Metre
 
 COORDINATIONS = ("none", "shared", "negotiated")
 FUSIONS = ("replicated", "sums")
@@ -41,6 +45,22 @@ class TeamOptions(Struct, forbid_unknown_fields=True, frozen=True):
         return {"coordination": self.coordination, "scheme": self.negotiates_by, "fusion": self.fusion}
 
 
+class TurningVehicle(Struct, forbid_unknown_fields=True, frozen=True):
+    """A vehicle at constant speed with a bounded turn rate, as its scenario describes it."""
+
+    start: tuple[Metre, Metre, float]  # x, y, heading [m, m, deg]
+
+    @property
+    def radius(self) -> float:
+        """Of the body [m]: vehicles keep altitudes of their own, so that nobody makes room."""
+        return 0.5
+
+    @property
+    def pose(self) -> tuple[float, float, float]:
+        """Start, heading in radians."""
+        return self.start[0], self.start[1], radians(self.start[2])
+
+
 class FlightVehicle(Protocol):
     """A vehicle as its scenario describes it; ``vedette.agent.body.Hull``."""
 
@@ -61,6 +81,30 @@ class FlightVehicle(Protocol):
         """Of its body [m]."""
 
 
+class FlightScenario(Protocol):
+    """What all of a team have to agree on, as files say it."""
+
+    @property
+    def vehicles(self) -> Sequence[FlightVehicle]:
+        """In the order of their names."""
+
+    @property
+    def step(self) -> float:
+        """Of looking and planning [s]."""
+
+    @property
+    def horizon(self) -> int:
+        """How far plans reach [steps]."""
+
+    @property
+    def replan(self) -> int:
+        """A round each so many steps."""
+
+    @property
+    def duration(self) -> float:
+        """Of the mission [s]."""
+
+
 class FlightCase(Protocol):
     """What a scenario comes to, once it is known to make sense."""
 
@@ -73,24 +117,12 @@ class FlightCase(Protocol):
         """Of the vehicles."""
 
     @property
-    def scenario(self) -> Any:
-        """All that the team has to agree on."""
+    def scenario(self) -> FlightScenario:
+        """As it was read."""
 
-    @property
-    def vehicles(self) -> Sequence[FlightVehicle]:
-        """In the order of their names."""
 
-    @property
-    def step(self) -> float:
-        """Of looking and planning [s]."""
-
-    @property
-    def replan(self) -> int:
-        """A round each so many steps."""
-
-    @property
-    def duration(self) -> float:
-        """Of the mission [s]."""
+class DomainCase(FlightCase, Protocol):
+    """The same of a domain that is declared as one object."""
 
     @property
     def files(self) -> Sequence[Path]:
@@ -98,6 +130,8 @@ class FlightCase(Protocol):
 
 
 CaseT = TypeVar("CaseT", bound=FlightCase)
+DomainCaseT = TypeVar("DomainCaseT", bound=DomainCase)
+_WINDOW = 30.0  # steps stay open for late evidence, with sums [s]
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,11 +143,16 @@ class FlightTeam(ABC, Generic[CaseT]):
     times: RoundTimes
 
     def __post_init__(self) -> None:
-        """Raise InputError for a step that no simulator can make."""
-        ticks = self.case.step / TICK
+        """Raise InputError for a step that no simulator can make, or rounds longer than plans reach ahead."""
+        step, horizon = self.case.scenario.step, self.case.scenario.horizon
+        ticks = step / TICK
         if abs(ticks - round(ticks)) > 1e-6:
+            raise InputError(f"step: must be a multiple of the simulator's tick of {TICK:g} s; got {step:g}")
+        taken = ceil(self.lead / step) + 1
+        if taken >= horizon:
             raise InputError(
-                f"step: must be a multiple of the simulator's tick of {TICK:g} s; got {self.case.step:g}"
+                f"horizon: a round of {many(self.size, 'vehicle')} takes {self.lead:.1f} s where links delay "
+                f"by {self.times.link_delay:g} s; plan more than {many(taken, 'step')} of {step:g} s"
             )
 
     @property
@@ -147,9 +186,17 @@ class FlightTeam(ABC, Generic[CaseT]):
             **dict(flat("scenario", self.case.scenario)),
         }
 
+    def evidence(self, robot: int, boot: int, notary: Notary | None, size: int) -> StepEvidence[Sparse]:
+        """Return how a vehicle's evidence, ``size`` integers that add up, is told and added up."""
+        elements = SparseIntegers(size)
+        if self.options.fusion == "sums":
+            return StepSums(robot, boot, elements, window=ceil(_WINDOW / self.case.scenario.step))
+        return replicated_steps(robot, boot, elements, notary)
+
     def assemble(self, robot: int, boot: int, notary: Notary | None = None) -> Agent:
         """Return a fresh agent for a vehicle, by its number from 0, and as ``mission`` says."""
-        vehicle = self.case.vehicles[robot]
+        scenario = self.case.scenario
+        vehicle = scenario.vehicles[robot]
         behaviour = FlightBehaviour(self.mission(robot, boot, notary), vehicle.speed, vehicle.turn_rate)
-        pace = Pace.each(self.case.replan * self.case.step)
+        pace = Pace.each(scenario.replan * scenario.step)
         return Agent(robot, boot, vehicle, behaviour, self.options.negotiates_by, pace, forks=True)

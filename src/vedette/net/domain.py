@@ -63,17 +63,17 @@ class DomainTeller:
 
     def path(self, now: float) -> NDArray[np.float64]:
         """Return where the vehicle will go, as far as it is planned."""
-        agent, pose, dt = self.agent, self.agent.pose, self.case.step
+        agent, pose, dt = self.agent, self.agent.pose, self.case.scenario.step
         if pose is None:
             return np.empty((0, 2))
         flight = cast(FlightBehaviour, agent.behaviour).flight
-        speed = self.case.vehicles[agent.robot].speed
+        speed = self.case.scenario.vehicles[agent.robot].speed
         return flight.ahead((pose.x, pose.y, pose.heading), speed, step_of(now, dt) * dt, dt)
 
     def content(self, now: float) -> bytes:
         """Return what it tells at the present step."""
         mission = cast(FlightMission[Any, Any, Any], self.agent.mission)
-        return msgspec.msgpack.encode(self.domain.tell(mission, step_of(now, self.case.step)))
+        return msgspec.msgpack.encode(self.domain.tell(mission, step_of(now, self.case.scenario.step)))
 
 
 class DomainWatcher(Generic[ReportT_co]):
@@ -90,8 +90,8 @@ class DomainWatcher(Generic[ReportT_co]):
         self._domain, self._case = domain, team.case
         self._observer = domain.observer(team, setting, sinks)
         self._decoder = msgspec.msgpack.Decoder(domain.content)
-        self.period = 0.5 * team.case.step
-        self._views = [_at_the_start(each) for each in team.case.vehicles]
+        self.period = 0.5 * team.case.scenario.step
+        self._views = [_at_the_start(each) for each in team.case.scenario.vehicles]
 
     def take(self, condition: Condition, content: bytes) -> None:
         """Take what a vehicle tells; ValueError if it makes no sense."""
@@ -112,7 +112,7 @@ class DomainWatcher(Generic[ReportT_co]):
 
     def over(self, now: float, heard: Sequence[Condition], silent: bool) -> Outcome | None:
         """Tell whether the scenario's time is over."""
-        return Outcome.COMPLETE if now >= self._case.duration - 1e-9 else None
+        return Outcome.COMPLETE if now >= self._case.scenario.duration - 1e-9 else None
 
     def report(self, outcome: Outcome, timing: Timing, now: float) -> ReportT_co:
         """Return what the mission leaves."""

@@ -61,7 +61,7 @@ def simulated_vehicle(
 ) -> OwnVehicle:
     """Return the vehicle that a file describes; all of one seed meet the same truth."""
     robot, vehicles = config.robot - 1, domain.vehicles(case, config.body.seed, lambda now: None)
-    return _put(OwnVehicle(case.vehicles[robot], robot, vehicles), config)
+    return _put(OwnVehicle(case.scenario.vehicles[robot], robot, vehicles), config)
 
 
 def _put(vehicle: OwnVehicle, config: AgentConfig) -> OwnVehicle:

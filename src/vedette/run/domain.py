@@ -48,7 +48,7 @@ class DomainMission(StepwiseMission[Any, Any, Any, ReportT], Generic[ReportT]):
         """
         self.domain = domain
         self.case = domain.case(Path(scenario) if isinstance(scenario, str) else scenario)
-        size, duration = len(self.case.names), self.case.duration
+        size, duration = len(self.case.names), self.case.scenario.duration
         limit = duration + 1.0 if max_time is None else max_time
         self._setup = DomainSetup(
             **vars(setup_of(size, scheme=scheme, seed=seed, max_time=limit, **conditions)),

@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Generic, TypeVar
 from msgspec import Struct
 
 from vedette.agent.mission import FlightMission
-from vedette.missions.flights import CaseT, FlightTeam, TeamOptions
+from vedette.missions.flights import DomainCaseT, FlightTeam, TeamOptions
 from vedette.missions.flying import RoundTimes
 from vedette.outcome import Outcome
 from vedette.record.display import Display
@@ -30,7 +30,7 @@ SnapshotT = TypeVar("SnapshotT", bound=FlightSnapshot)
 ReportT = TypeVar("ReportT")
 
 
-class Domain(ABC, Generic[CaseT, ContentT, SceneT, SnapshotT, ReportT]):
+class Domain(ABC, Generic[DomainCaseT, ContentT, SceneT, SnapshotT, ReportT]):
     """All of a domain; ``vedette.sim.domains`` says where it is found.
 
     It has no state: everything belongs to a case, a team or a mission.
@@ -47,7 +47,7 @@ class Domain(ABC, Generic[CaseT, ContentT, SceneT, SnapshotT, ReportT]):
     # -- a mission ----------------------------------------------------------------------------------
 
     @abstractmethod
-    def case(self, scenario: Path | Mapping[str, Any] | None) -> CaseT:
+    def case(self, scenario: Path | Mapping[str, Any] | None) -> DomainCaseT:
         """Return what a scenario comes to: of a file, of its fields, or the one that is built in.
 
         Raises:
@@ -55,14 +55,14 @@ class Domain(ABC, Generic[CaseT, ContentT, SceneT, SnapshotT, ReportT]):
         """
 
     @abstractmethod
-    def team(self, case: CaseT, options: TeamOptions, times: RoundTimes) -> FlightTeam[CaseT]:
+    def team(self, case: DomainCaseT, options: TeamOptions, times: RoundTimes) -> FlightTeam[DomainCaseT]:
         """Return what all vehicles know beforehand, and how their agents are made.
 
         Raises:
             InputError: these options cannot be.
         """
 
-    def spawn(self, team: FlightTeam[CaseT]) -> Spawn:
+    def spawn(self, team: FlightTeam[DomainCaseT]) -> Spawn:
         """Return who makes agents in the simulator, where an oracle may look into all of them at once.
 
         Raises:
@@ -71,7 +71,7 @@ class Domain(ABC, Generic[CaseT, ContentT, SceneT, SnapshotT, ReportT]):
         return team.assemble
 
     @abstractmethod
-    def vehicles(self, case: CaseT, seed: int, over: Callable[[float], Outcome | None]) -> Vehicles:
+    def vehicles(self, case: DomainCaseT, seed: int, over: Callable[[float], Outcome | None]) -> Vehicles:
         """Return the vehicles at their starts, with what their sensors see of the truth.
 
         ``seed`` decides the truth and all chance, the same for everybody who simulates a part of it.
@@ -81,18 +81,18 @@ class Domain(ABC, Generic[CaseT, ContentT, SceneT, SnapshotT, ReportT]):
     def tell(self, mission: FlightMission[Any, Any, Any], step: int) -> ContentT:
         """Return what a vehicle tells of its mission as it stands at a step."""
 
-    def check(self, content: ContentT, case: CaseT) -> None:
+    def check(self, content: ContentT, case: DomainCaseT) -> None:
         """Raise ValueError for what no vehicle of the case can tell; it comes from the network."""
 
     # -- what it leaves -----------------------------------------------------------------------------
 
     @abstractmethod
-    def scene(self, case: CaseT) -> SceneT:
+    def scene(self, case: DomainCaseT) -> SceneT:
         """Return what stays the same all through a mission."""
 
     @abstractmethod
     def observer(
-        self, team: FlightTeam[CaseT], setting: Setting, sinks: Sequence[Sink[SnapshotT]]
+        self, team: FlightTeam[DomainCaseT], setting: Setting, sinks: Sequence[Sink[SnapshotT]]
     ) -> FlightObserver[ContentT, SnapshotT, ReportT]:
         """Return who measures a mission that has not begun, against the truth of its seed."""
 
@@ -112,7 +112,7 @@ class Domain(ABC, Generic[CaseT, ContentT, SceneT, SnapshotT, ReportT]):
     def closing(self, summary: Any, folder: Path) -> list[str]:
         """Say in a few lines how it went."""
 
-    def others(self, case: CaseT, coordination: str) -> Sequence[str]:
+    def others(self, case: DomainCaseT, coordination: str) -> Sequence[str]:
         """Return the other ways of coordination that a mission is compared with."""
         return [name for name in self.coordinations if name != coordination]
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from vedette.agent.mission import FlightMission
 from vedette.errors import check_word
-from vedette.missions.flights import FUSIONS, CaseT, TeamOptions
+from vedette.missions.flights import FUSIONS, DomainCaseT, TeamOptions
 from vedette.outcome import Outcome
 from vedette.record.flights import FlightView
 from vedette.record.log import Floats, Sink, VehicleSample
@@ -37,12 +37,14 @@ class DomainSetup(FlightSetup):
         return TeamOptions(self.coordination, self.scheme, self.fusion)
 
 
-class DomainSimulation(Simulation, Generic[CaseT]):
+class DomainSimulation(Simulation, Generic[DomainCaseT]):
     """A team of vehicles in a world of their domain; ``run`` lets it, to the end of its scenario."""
 
     setup: DomainSetup
 
-    def __init__(self, domain: Domain[CaseT, Any, Any, Any, Any], case: CaseT, setup: DomainSetup) -> None:
+    def __init__(
+        self, domain: Domain[DomainCaseT, Any, Any, Any, Any], case: DomainCaseT, setup: DomainSetup
+    ) -> None:
         """Put the vehicles at their starts.
 
         Raises:
@@ -60,7 +62,7 @@ class DomainSimulation(Simulation, Generic[CaseT]):
         return [cast(FlightMission[Any, Any, Any], agent.mission) for agent in self.network.agents]
 
     def _over_at_the_end(self, now: float) -> Outcome | None:
-        return Outcome.COMPLETE if now >= self.case.duration - 1e-9 else None
+        return Outcome.COMPLETE if now >= self.case.scenario.duration - 1e-9 else None
 
 
 class DomainRun(Watched[ReportT]):
@@ -82,7 +84,7 @@ class DomainRun(Watched[ReportT]):
 
     def _look(self) -> None:
         log, simulation = self._observer.log, self.simulation
-        if not self._poses and simulation.now >= log.step * simulation.case.step - 1e-6:
+        if not self._poses and simulation.now >= log.step * simulation.case.scenario.step - 1e-6:
             self._poses = [np.array(simulation.pose(i)) for i in range(len(simulation.case.names))]
         if log.due(simulation.now):
             self._observer.look(self._views())
@@ -105,7 +107,9 @@ class DomainRun(Watched[ReportT]):
         x, y, heading = pose.tolist()
         path = NOWHERE
         if alive:
-            path = flight(simulation, i).ahead(pose, case.vehicles[i].speed, step * case.step, case.step)
+            path = flight(simulation, i).ahead(
+                pose, case.scenario.vehicles[i].speed, step * case.scenario.step, case.scenario.step
+            )
         return FlightView(
             VehicleSample(x, y, heading, state(simulation, i), alive, path),
             simulation.domain.tell(simulation.missions[i], step) if tells else None,

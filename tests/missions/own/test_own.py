@@ -84,7 +84,7 @@ def test_a_vehicle_takes_the_course_of_most_worth_by_brute_force() -> None:
     sites, worth = np.array(case.scenario.sites), known.belief  # type: ignore[attr-defined]
     gains = []
     for course in vehicle.courses:
-        x, y, _ = drive(pose, np.array(course.rates), 10.0, case.step).T
+        x, y, _ = drive(pose, np.array(course.rates), 10.0, case.scenario.step).T
         looks = (np.hypot(sites[:, 0] - x[:, None], sites[:, 1] - y[:, None]) <= 40.0).sum(axis=0)
         gains.append(float(worth @ (1.0 - (1.0 - SEES) ** looks)))
     assert gains[vehicle.courses.index(reply)] == pytest.approx(max(gains))

@@ -28,7 +28,7 @@ DEFAULT = "monitor.yaml"
 
 @dataclass(frozen=True, eq=False)
 class MonitorCase:
-    """Monitoring that is known to make sense; a ``FlightCase`` of ``vedette.missions.flights``."""
+    """Monitoring that is known to make sense; a ``DomainCase`` of ``vedette.missions.flights``."""
 
     name: str
     scenario: MonitorScenario
@@ -42,41 +42,21 @@ class MonitorCase:
         """Of the vehicles."""
         return self.scenario.vehicle_names
 
-    @property
-    def vehicles(self) -> tuple[MonitorVehicle, ...]:
-        """In the order of their names."""
-        return self.scenario.vehicles
-
-    @property
-    def step(self) -> float:
-        """Of measuring and planning [s]."""
-        return self.scenario.step
-
-    @property
-    def replan(self) -> int:
-        """A round each so many steps."""
-        return self.scenario.replan
-
-    @property
-    def duration(self) -> float:
-        """Of the mission [s]."""
-        return self.scenario.duration
-
     @cached_property
     def spots(self) -> Spots:
         """What the team's sensors measure."""
-        sides = sorted({self.scenario.sensor_of(i).side for i in range(len(self.vehicles))})
+        sides = sorted({self.scenario.sensor_of(i).side for i in range(len(self.scenario.vehicles))})
         return Spots(self.scenario.frame, tuple(sides))
 
     def sensor(self, i: int) -> FieldSensor:
         """Return vehicle i's."""
         sensor = self.scenario.sensor_of(i)
-        return FieldSensor(sensor.noise**2, sensor.side, self.step)
+        return FieldSensor(sensor.noise**2, sensor.side, self.scenario.step)
 
     @cached_property
     def packing(self) -> FieldPacking:
         """How evidence adds up."""
-        least = min(self.sensor(i).variance for i in range(len(self.vehicles)))
+        least = min(self.sensor(i).variance for i in range(len(self.scenario.vehicles)))
         return FieldPacking(self.model, self.spots, least)
 
     def truth(self, seed: int) -> TrueField:
@@ -85,8 +65,8 @@ class MonitorCase:
         if self.numbers is not None:
             return still(self.numbers)
         if isinstance(self.scenario.field, Plume):
-            return plume(self.scenario.frame, self.scenario.field, self.step, rng)
-        return drawn(self.model, self.step, rng)
+            return plume(self.scenario.frame, self.scenario.field, self.scenario.step, rng)
+        return drawn(self.model, self.scenario.step, rng)
 
 
 def default_case() -> MonitorCase:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, partial
-from math import ceil
 
 import numpy as np
 
@@ -17,14 +16,10 @@ from vedette.domains.monitoring.platform import MonitoringPlatform
 from vedette.domains.monitoring.purse import Purse
 from vedette.domains.monitoring.ways import Place, Way
 from vedette.domains.monitoring.worth import Patrol
-from vedette.errors import InputError
 from vedette.fusion.seals import Notary
-from vedette.fusion.steps import Sparse, SparseIntegers, StepEvidence, StepSums, replicated_steps
 from vedette.missions.flights import FlightTeam
 from vedette.missions.monitor.monitoring import Monitoring, MonitorPlan
-from vedette.number import many
 
-_WINDOW = 30.0  # steps stay open for late evidence, with sums [s]
 _FINE = 4.0  # units of the weakest sensor's measurement
 
 
@@ -35,24 +30,16 @@ class MonitorTeam(FlightTeam[MonitorCase]):
     domain = "monitor"
 
     def __post_init__(self) -> None:
-        """Raise InputError where rounds take longer than plans reach ahead."""
+        """Raise InputError as any team, and for a field that is too large to plan on."""
         super().__post_init__()
-        scenario = self.case.scenario
-        taken = ceil(self.lead / scenario.step) + 1
-        if taken >= scenario.horizon:
-            raise InputError(
-                f"horizon: a round of {many(self.size, 'vehicle')} takes {self.lead:.1f} s where links delay "
-                f"by {self.times.link_delay:g} s; plan more than {many(taken, 'step')} of {scenario.step:g} s"
-            )
-
-        BandedField(self.plan.outlook.of(self.plan.prior))  # small enough to plan on
+        BandedField(self.plan.outlook.of(self.plan.prior))
 
     @cached_property
     def plan(self) -> MonitorPlan:
         """What they have agreed on."""
         case, scenario = self.case, self.case.scenario
         outlook = Outlook(case.model, case.spots)
-        variances = [outlook.sensor(case.sensor(i)).variance for i in range(len(case.vehicles))]
+        variances = [outlook.sensor(case.sensor(i)).variance for i in range(len(case.scenario.vehicles))]
         unit = 1.0 / (_FINE * max(variances))
         return MonitorPlan(
             case.packing,
@@ -65,7 +52,7 @@ class MonitorTeam(FlightTeam[MonitorCase]):
 
     def mission(self, robot: int, boot: int, notary: Notary | None) -> Monitoring:
         """Return a vehicle's share, by its number from 0."""
-        case, vehicle = self.case, self.case.vehicles[robot]
+        case, vehicle = self.case, self.case.scenario.vehicles[robot]
         platform = MonitoringPlatform(
             vehicle.speed,
             self.plan.outlook.sensor(case.sensor(robot)),
@@ -78,7 +65,7 @@ class MonitorTeam(FlightTeam[MonitorCase]):
             platform,
             case.sensor(robot),
             self.plan,
-            self._fusion(robot, boot, notary),
+            self.evidence(robot, boot, notary, case.packing.size),
             Purse(vehicle.budget),
             coordination != "shared",
             partial(self._route, robot) if coordination in ("lawnmower", "random") else None,
@@ -86,17 +73,11 @@ class MonitorTeam(FlightTeam[MonitorCase]):
 
     def _route(self, robot: int, here: Place) -> Way:
         """Return the patrol of one that follows a fixed one."""
-        case, vehicle = self.case, self.case.vehicles[robot]
-        length = min(Purse(vehicle.budget).reach(vehicle.speed), vehicle.speed * case.duration)
+        case, vehicle = self.case, self.case.scenario.vehicles[robot]
+        length = min(Purse(vehicle.budget).reach(vehicle.speed), vehicle.speed * case.scenario.duration)
         frame = case.scenario.frame
         if self.options.coordination == "random":
             way = at_random(frame, here, length, np.random.default_rng([robot, 7]))
         else:
-            way = strip(frame, here, robot, len(case.vehicles), length)
+            way = strip(frame, here, robot, len(case.scenario.vehicles), length)
         return way if vehicle.flies or not case.blocked.any() else around(way, frame, case.blocked)
-
-    def _fusion(self, robot: int, boot: int, notary: Notary | None) -> StepEvidence[Sparse]:
-        elements = SparseIntegers(self.case.packing.size)
-        if self.options.fusion == "sums":
-            return StepSums(robot, boot, elements, window=ceil(_WINDOW / self.case.step))
-        return replicated_steps(robot, boot, elements, notary)

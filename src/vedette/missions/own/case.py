@@ -11,7 +11,7 @@ import numpy as np
 
 from vedette.errors import brief
 from vedette.fusion.steps.elements import MOST_ENTRY
-from vedette.missions.own.scenario import OwnScenario, OwnVehicleSpec, read_scenario
+from vedette.missions.own.scenario import OwnScenario, read_scenario
 from vedette.missions.own.theory import Theory
 from vedette.number import is_whole
 from vedette.parts import number, telling, told
@@ -20,7 +20,7 @@ from vedette.problem import Objective
 
 @dataclass(frozen=True, eq=False)
 class OwnCase:
-    """A mission of an own domain; ``vedette.missions.flights.FlightCase``."""
+    """A mission of an own domain; ``vedette.missions.flights.DomainCase``."""
 
     name: str
     scenario: OwnScenario
@@ -48,26 +48,6 @@ class OwnCase:
     def names(self) -> list[str]:
         """Of the vehicles."""
         return self.scenario.vehicle_names
-
-    @property
-    def vehicles(self) -> tuple[OwnVehicleSpec, ...]:
-        """In the order of their names."""
-        return self.scenario.vehicles
-
-    @property
-    def step(self) -> float:
-        """Of looking and planning [s]."""
-        return self.scenario.step
-
-    @property
-    def replan(self) -> int:
-        """A round each so many steps."""
-        return self.scenario.replan
-
-    @property
-    def duration(self) -> float:
-        """Of the mission [s]."""
-        return self.scenario.duration
 
     def truth(self, seed: int) -> Any:
         """Return what is there; whoever simulates a part of the mission has the same."""

@@ -42,7 +42,7 @@ def _looked(case: OwnCase, rng: np.random.Generator) -> np.ndarray[Any, np.dtype
     total, told = np.zeros(theory.size, np.int64), []
     for look in range(LOOKS):
         pose = np.append(rng.uniform((x0, y0), (x1, y1)), rng.uniform(-np.pi, np.pi))
-        i = look % len(case.vehicles)
+        i = look % len(case.scenario.vehicles)
         reading = theory.sense(truth, i, pose, rng)
         if reading is not None:
             places, numbers = theory.evidence(i, pose, reading)
@@ -63,11 +63,11 @@ def _impacts(case: OwnCase, belief: Any, rng: np.random.Generator) -> list[Any]:
     """Return what every vehicle would add on some courses, from its start and from elsewhere."""
     own: list[Any] = []
     x0, y0, x1, y1 = case.scenario.area
-    for i, vehicle in enumerate(case.vehicles[:3]):
+    for i, vehicle in enumerate(case.scenario.vehicles[:3]):
         elsewhere = np.append(rng.uniform((x0, y0), (x1, y1)), 0.0)
         for pose in (np.array(vehicle.pose), elsewhere):
             rates = rng.uniform(-vehicle.turn_rate, vehicle.turn_rate, (2, case.scenario.horizon))
-            poses = drive(pose, rates, vehicle.speed, case.step)
+            poses = drive(pose, rates, vehicle.speed, case.scenario.step)
             before = poses.copy()
             own += list(case.theory.impacts(belief, i, poses))
             if not np.array_equal(poses, before):

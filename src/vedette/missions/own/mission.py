@@ -101,7 +101,7 @@ class OwnMission(FlyingMission):
     def observe(self, seen: Sensed, pose: Pose, mates: Sequence[Mate], now: float) -> None:
         """Keep what was sensed until it is published."""
         assert isinstance(seen.data, OwnReading)
-        self._waiting.append((step_of(seen.time, self.case.step), seen.data))
+        self._waiting.append((step_of(seen.time, self.case.scenario.step), seen.data))
 
     def publish(self, now: float) -> None:
         """Hand the evidence that waits to fusion."""
@@ -118,8 +118,8 @@ class OwnMission(FlyingMission):
 
     def freeze(self, t0: float) -> OwnBelief:
         """Snapshot what is known, for plans from the first step on that all can plan for."""
-        step = max(step_of(t0, self.case.step), self._filter.first)
-        start = max(step, start_step(t0, self.lead, self.case.step))
+        step = max(step_of(t0, self.case.scenario.step), self._filter.first)
+        start = max(step, start_step(t0, self.lead, self.case.scenario.step))
         return OwnBelief(self.case.theory.belief(self._filter.at(step).copy()), start)
 
     def prepare(
@@ -143,13 +143,13 @@ class OwnMission(FlyingMission):
 
     def start(self, belief: OwnBelief) -> float:
         """Return when courses planned on this belief begin [s]."""
-        return belief.step * self.case.step
+        return belief.step * self.case.scenario.step
 
     def plan(self) -> FlightPlan | None:
         """Return the course decided on; None before the first round."""
         if not self.strategy.rates:
             return None
-        dt = self.case.step
+        dt = self.case.scenario.step
         return FlightPlan(self.strategy.step * dt, dt, np.array(self.strategy.rates))
 
 

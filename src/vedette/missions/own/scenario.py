@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import radians
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -12,29 +11,19 @@ from msgspec import Meta, Struct
 from vedette.agent.body import TICK
 from vedette.errors import InputError
 from vedette.maps import GridFrame
+from vedette.missions.flights import TurningVehicle
 from vedette.parts import look_in
 from vedette.scenario import Metre, Name, as_scenario, load_scenario
 
 MOST_VEHICLES = 64
 
 
-class OwnVehicleSpec(Struct, forbid_unknown_fields=True, frozen=True):
+class OwnVehicleSpec(TurningVehicle, forbid_unknown_fields=True, frozen=True):
     """A vehicle at constant speed with a bounded turn rate."""
 
-    start: tuple[Metre, Metre, float]  # x, y, heading [m, m, deg]
     name: Name = ""
     speed: Annotated[float, Meta(gt=0.0, le=300.0)] = 10.0  # [m/s]
     turn_rate: Annotated[float, Meta(gt=0.0, le=10.0)] = 0.4  # most [rad/s]
-
-    @property
-    def radius(self) -> float:
-        """Of the body [m]: vehicles keep altitudes of their own, so that nobody makes room."""
-        return 0.5
-
-    @property
-    def pose(self) -> tuple[float, float, float]:
-        """Start, heading in radians."""
-        return self.start[0], self.start[1], radians(self.start[2])
 
 
 class OwnScenario(Struct, forbid_unknown_fields=True, frozen=True, kw_only=True):

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from math import ceil, radians
+from math import ceil
 from typing import Annotated, Any, Literal, TypeAlias
 
 from msgspec import Meta, Struct, field
 
 from vedette.domains.search.worth import Worth, worth_of
 from vedette.maps import GridFrame
+from vedette.missions.flights import TurningVehicle
 from vedette.scenario import Metre, Name
 
 Length = Annotated[float, Meta(gt=0.0, le=1e6)]  # [m]
@@ -82,25 +83,14 @@ class Target(Struct, forbid_unknown_fields=True, frozen=True):
     border: Literal["hold", "leave"] = "hold"  # what becomes of it there: held in the area, or gone for good
 
 
-class SearchVehicle(Struct, forbid_unknown_fields=True, frozen=True):
+class SearchVehicle(TurningVehicle, forbid_unknown_fields=True, frozen=True):
     """A vehicle at constant speed with a bounded turn rate."""
 
-    start: tuple[Metre, Metre, float]  # x, y, heading [m, m, deg]
     name: Name = ""
     speed: Annotated[float, Meta(gt=0.0, le=300.0)] = 25.0  # [m/s]
     turn_rate: Annotated[float, Meta(gt=0.0, le=10.0)] = 0.2  # most [rad/s]
     detector: dict[str, Any] | None = None  # without it the scenario's
     looks: Annotated[int, Meta(ge=1)] | None = None  # a step; without it, one each half range
-
-    @property
-    def radius(self) -> float:
-        """Of the body [m]: vehicles keep altitudes of their own, so that nobody makes room."""
-        return 0.5
-
-    @property
-    def pose(self) -> tuple[float, float, float]:
-        """Start, heading in radians."""
-        return self.start[0], self.start[1], radians(self.start[2])
 
 
 class Declare(Struct, forbid_unknown_fields=True, frozen=True):

@@ -22,6 +22,7 @@ from vedette.domains.tracking.sensing import Sensor
 from vedette.domains.tracking.sensors import sensor_of
 from vedette.domains.tracking.tail import edges
 from vedette.errors import InputError, InputWarning
+from vedette.missions.flights import TurningVehicle
 from vedette.number import many
 from vedette.parts import look_in
 from vedette.scenario import Metre, Name, as_scenario, load_scenario
@@ -34,24 +35,13 @@ LEAST_SD = 1e-3  # [m], [m/s]
 DEFAULT = "track.yaml"
 
 
-class TrackVehicle(Struct, forbid_unknown_fields=True, frozen=True):
+class TrackVehicle(TurningVehicle, forbid_unknown_fields=True, frozen=True):
     """A vehicle at constant speed with a bounded turn rate."""
 
-    start: tuple[Metre, Metre, float]  # x, y, heading [m, m, deg]
     sensor: dict[str, Any]  # see ``vedette.domains.tracking.sensors.sensor_of``
     name: Name = ""
     speed: Annotated[float, Meta(ge=0.0, le=300.0)] = 20.0  # [m/s]
     turn_rate: Annotated[float, Meta(ge=0.0, le=10.0)] = 0.3  # most [rad/s]
-
-    @property
-    def radius(self) -> float:
-        """Of the body [m]: vehicles keep altitudes of their own, so that nobody makes room."""
-        return 0.5
-
-    @property
-    def pose(self) -> tuple[float, float, float]:
-        """Start, heading in radians."""
-        return self.start[0], self.start[1], math.radians(self.start[2])
 
 
 class _Target(Struct, forbid_unknown_fields=True, frozen=True, kw_only=True, tag_field="model"):

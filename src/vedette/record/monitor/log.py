@@ -29,15 +29,15 @@ class MonitorScene(FlightScene):
     @classmethod
     def of(cls, case: MonitorCase) -> MonitorScene:
         """Return the scene of a case."""
-        sides = tuple(case.sensor(i).side for i in range(len(case.vehicles)))
+        sides = tuple(case.sensor(i).side for i in range(len(case.scenario.vehicles)))
         return cls(
             name=case.name,
             vehicles=tuple(case.names),
             ranges=tuple(0.5 * side * case.scenario.cell for side in sides),
-            dt=case.step,
+            dt=case.scenario.step,
             frame=case.scenario.frame,
             sides=sides,
-            duration=case.duration,
+            duration=case.scenario.duration,
             blocked=case.blocked,
             ages=case.scenario.field.__struct_config__.tag == "age",
         )

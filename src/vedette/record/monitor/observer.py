@@ -46,13 +46,13 @@ class MonitorObserver(FlightObserver[FieldContent, MonitorSnapshot, MonitorRepor
         super().__init__(self.log)
         self._team, self._case, self._setting = team, case, setting
         self._truth = case.truth(setting.seed)
-        self._prior = FieldBelief.prior(case.model, case.spots, case.step)
+        self._prior = FieldBelief.prior(case.model, case.spots, case.scenario.step)
         self._looked = np.zeros(case.scenario.frame.shape)  # when each cell was last [s]
 
     def snapshot(self) -> MonitorSnapshot:
         """Return the step that is logged next."""
         step, views = self.log.step, self.views
-        time = step * self._case.step
+        time = step * self._case.scenario.step
         self._look_at(time)
         ages = time - self._looked
         snapshot = MonitorSnapshot(
@@ -62,7 +62,7 @@ class MonitorObserver(FlightObserver[FieldContent, MonitorSnapshot, MonitorRepor
             worst_age=float(ages.max()),
             mean_age=float(ages.mean()),
         )
-        if step % self.log.scene.every and time < self._case.duration - 1e-6:
+        if step % self.log.scene.every and time < self._case.scenario.duration - 1e-6:
             return snapshot
         known = self._known()
         error = (known.mean - self._truth.at(known.step)).ravel()

@@ -56,7 +56,11 @@ class OwnScene(FlightScene):
         """Return the scene of a case."""
         names = tuple(case.names)
         return cls(
-            name=case.name, vehicles=names, ranges=(0.0,) * len(names), dt=case.step, area=case.scenario.area
+            name=case.name,
+            vehicles=names,
+            ranges=(0.0,) * len(names),
+            dt=case.scenario.step,
+            area=case.scenario.area,
         )
 
 
@@ -100,7 +104,7 @@ class OwnObserver(FlightObserver[OwnContent, OwnSnapshot, OwnReport]):
         figures = dict(theory.figures(theory.belief(self._total.copy()), self._truth))
         if self.log.snapshots and list(figures) != list(self.log.snapshots[0].figures):
             raise PartError(f"domain {self._team.domain}: figures: has other names than at first")
-        time = self.log.step * self._case.step
+        time = self.log.step * self._case.scenario.step
         return OwnSnapshot(time, tuple(view.sample for view in self.views), figures)
 
     def report(self, outcome: Outcome, timing: Timing, now: float) -> OwnReport:

@@ -21,7 +21,7 @@ MOST_JOINT = 5_000  # joint choices tried a round: a second or less
 
 def check_optimum(case: MonitorCase) -> None:
     """Raise InputError where the best joint choice cannot be had by trying everything."""
-    vehicles, bearings = len(case.vehicles), case.scenario.bearings
+    vehicles, bearings = len(case.scenario.vehicles), case.scenario.bearings
     joint = (bearings**2 + 2) ** vehicles
     if joint > MOST_JOINT:
         raise InputError(

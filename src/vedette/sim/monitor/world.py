@@ -21,7 +21,7 @@ def measurers(case: MonitorCase, seed: int, over: Callable[[float], Outcome | No
     same field, and the same noise.
     """
     truth, frame = case.truth(seed), case.scenario.frame
-    streams = random_streams(seed, len(case.vehicles))
+    streams = random_streams(seed, len(case.scenario.vehicles))
     rows = case.spots.weights
 
     def look(i: int, pose: NDArray[np.float64], now: float) -> FieldLook:
@@ -30,15 +30,15 @@ def measurers(case: MonitorCase, seed: int, over: Callable[[float], Outcome | No
         x, y = np.clip(pose[:2], (x0, y0), (x1 - margin, y1 - margin)).tolist()
         cell, sensor = frame.flat(x, y), case.sensor(i)
         spot = case.spots.of(sensor.side, np.array([cell]))
-        field = truth.at(round(now / case.step)).ravel()
+        field = truth.at(round(now / case.scenario.step)).ravel()
         noise = np.sqrt(sensor.variance) * streams[i].normal()
         return FieldLook(cell, float((rows[spot] @ field)[0] + noise))
 
     return Vehicles(
-        [vehicle.pose for vehicle in case.vehicles],
-        [vehicle.speed for vehicle in case.vehicles],
+        [vehicle.pose for vehicle in case.scenario.vehicles],
+        [vehicle.speed for vehicle in case.scenario.vehicles],
         None,
-        case.step,
+        case.scenario.step,
         look,
         over,
     )

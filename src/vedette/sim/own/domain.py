@@ -56,18 +56,18 @@ class OwnDomain(Domain[OwnCase, OwnContent, OwnScene, OwnSnapshot, OwnReport]):
 
     def vehicles(self, case: OwnCase, seed: int, over: Callable[[float], Outcome | None]) -> Vehicles:
         """Return the vehicles at their starts; each sensor has chance of its own."""
-        truth, streams = case.truth(seed), random_streams(seed, len(case.vehicles))
+        truth, streams = case.truth(seed), random_streams(seed, len(case.scenario.vehicles))
 
         def look(i: int, pose: NDArray[np.float64], now: float) -> OwnReading | None:
             reading = case.theory.sense(truth, i, pose.copy(), streams[i])
             return None if reading is None else OwnReading(pose.copy(), reading)
 
-        vehicles = case.vehicles
+        vehicles = case.scenario.vehicles
         return Vehicles(
             [each.pose for each in vehicles],
             [each.speed for each in vehicles],
             [each.turn_rate for each in vehicles],
-            case.step,
+            case.scenario.step,
             look,
             over,
         )
