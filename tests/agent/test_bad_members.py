@@ -5,12 +5,12 @@ from __future__ import annotations
 import pytest
 
 from tests.support.bad_member import MODES, plan_of, play
-from tests.support.mutants import CASES
+from tests.support.mutants import CASES, mutants_of
 
 SEEDS = 4
 ALL, BATCH = 124, 10
 MUTANTS = 40
-TWO_HUNG = 100223  # a seed
+TWO_HUNG, WORTH_TOLD = 100223, 100308  # seeds
 
 
 @pytest.mark.parametrize("mode", MODES)
@@ -25,6 +25,12 @@ def test_a_team_parts_and_goes_on_where_two_that_hang_are_a_thirds_only_links() 
     assert len(bad) == 2
     assert all(a in bad or b in bad for a, b in plan.edges if {a, b} & alone)
     play("hung", TWO_HUNG)
+
+
+def test_a_worth_that_is_told_while_nobody_goes_is_believed_for_a_few_rounds_only() -> None:
+    (case,) = mutants_of([WORTH_TOLD])
+    assert (case.message, case.value) == ("Stop", 2.0**53)
+    play("mutant", WORTH_TOLD)
 
 
 @pytest.mark.parametrize("mode", ["mates", "epoch", "echo", "wrong map"])

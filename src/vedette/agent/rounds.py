@@ -22,6 +22,7 @@ from vedette.agent.messages import Begin, Call, Flushed, Freeze, Negotiate
 from vedette.agent.mission import Mission
 from vedette.agent.opinion import Opinion
 from vedette.agent.pace import Pace
+from vedette.agent.participant import RoundParticipant
 from vedette.agent.patience import TeamPatience
 from vedette.agent.round import Round, say, send_news
 from vedette.agent.scrutiny import Scrutiny
@@ -260,8 +261,7 @@ class Rounds:
             )
         self._end(now)
         self.team_impact = round_.team_seen
-        seen = None if self.team_impact is None else round_.participant.value(self.team_impact)
-        value = self._opinion.of(outcome.value, seen)
+        value = self._opinion.of(outcome.value, self._seen(round_, round_.participant))
         self.decided(Decision(now, value, round_.approximate or not took_part, round_.blocked))
         if lonely:
             return effects
@@ -269,6 +269,12 @@ class Rounds:
         if not took_part:
             return [*effects, *self._fail()]
         return [*effects, *(self._shun() if self._upwards.ends(self.tree, round_.approximate) else [])]
+
+    def _seen(self, round_: Round, own: RoundParticipant) -> float | None:
+        """Return what this robot sees the team's choice to be worth: nothing, where nobody goes."""
+        if self.team_impact is not None:
+            return own.value(self.team_impact)
+        return 0.0 if self.scrutiny.nobody_goes(round_.belief, own.impact) else None
 
     def _end(self, now: float) -> None:
         if self.round is not None:

@@ -60,11 +60,14 @@ class Scrutiny:
             Claimed(stamp, belief, impact, claims, round_.told, halvings), neighbours, now
         )
 
+    def nobody_goes(self, belief: Any, impact: Any) -> bool:
+        """Tell whether this robot has nothing to do, by its own impact, and no mate is on its way."""
+        return self.mission.objective.value(belief, impact) <= 0.0 and not self.anybody_moves()
+
     def _stands_about(self, belief: Any, impact: Any, claims: dict[int, Any]) -> bool:
         """Tell whether nobody goes, round after round, though this robot would if one link said nothing."""
         own, objective = self.mission.strategy, self.mission.objective
-        goes = objective.value(belief, impact) > 0.0 or self.anybody_moves()
-        self._idle = 0 if goes else self._idle + 1
+        self._idle = self._idle + 1 if self.nobody_goes(belief, impact) else 0
         if self._idle < IDLE_ROUNDS:
             return False
         for silent in claims:
