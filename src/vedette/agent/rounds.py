@@ -270,7 +270,7 @@ class Rounds:
             return [*effects, *self._fail()]
         return [*effects, *(self._shun() if self._upwards.ends(self.tree, round_.approximate) else [])]
 
-    def _seen(self, round_: Round, own: RoundParticipant) -> float | None:
+    def _seen(self, round_: Round, own: RoundParticipant[Any, Any, Any]) -> float | None:
         """Return what this robot sees the team's choice to be worth: nothing, where nobody goes."""
         if self.team_impact is not None:
             return own.value(self.team_impact)
