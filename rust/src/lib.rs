@@ -12,6 +12,7 @@ pub mod lidar;
 pub mod misses;
 pub mod motion;
 pub mod planes;
+pub mod render;
 pub mod search;
 pub mod shadow;
 pub mod tracking;
@@ -28,6 +29,7 @@ fn _kernels(m: &Bound<'_, PyModule>) -> PyResult<()> {
     lidar::register(m)?;
     misses::register(m)?;
     motion::register(m)?;
+    render::register(m)?;
     search::register(m)?;
     tracking::register(m)?;
     visibility::register(m)?;

@@ -261,6 +261,14 @@ def align_counts(
     transforms: NDArray[np.float64],
 ) -> NDArray[np.int64]: ...
 
+# render
+def render_tiles(
+    source: tuple[NDArray[np.int64], NDArray[np.uint8]],
+    wanted: NDArray[np.int64],
+    ground: tuple[int, int, int, int, int],
+    motion: tuple[int, int, int, int],
+) -> NDArray[np.uint8]: ...
+
 # field
 def field_factor(
     band: NDArray[np.float64],
