@@ -39,6 +39,7 @@ GOLDEN: dict[str, Any] = {
     "frontiers": 1,
     "beyond": 0,
     "no_go_m2": 0.0,
+    "cut_off_m2": 0.0,
     "turned_back": [],
     "map_errors": 0,
     "map_error_share": 0.0,

@@ -12,13 +12,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec import yaml
 
-from tests.support.small_missions import small_office
+from tests.support.small_missions import TWO_ROOMS, drawn, small_office
 from vedette.agent.orders import Given, NoGo, Order, OrderBook, Pause, Priority, Recall, Remove, Resume
 from vedette.errors import InputError
 from vedette.maps.area import Area
 from vedette.outcome import Outcome
 from vedette.run import Explore
 from vedette.sim.orders import OrderAt, load_orders
+from vedette.team import PlatformSpec
 
 RADIUS = 0.2  # of the robots [m]
 WEST = ((0.0, 0.0), (3.0, 0.0), (3.0, 10.0), (0.0, 10.0))
@@ -117,6 +118,50 @@ def test_an_area_that_is_removed_is_explored_after_all() -> None:
     result = mission.run()
     assert result.outcome is Outcome.COMPLETE
     assert result.no_go_m2 == 0.0
+
+
+LEFT_ROOM, RIGHT_ROOM = (2.0, 2.0), (6.0, 2.0)  # [m]
+DOOR = ((3.9, 1.0), (4.6, 1.0), (4.6, 3.0), (3.9, 3.0))  # between the two, wall and all
+
+
+def in_two_rooms(*orders: tuple[float, Order], starts: Sequence[tuple[float, float]]) -> Explore:
+    """Robots in two rooms with a door between them, of whom each begins in one."""
+    team = [PlatformSpec(f"robot-{i + 1}", start=start) for i, start in enumerate(starts)]
+    given = [OrderAt(at, order) for at, order in orders]
+    return Explore(drawn(TWO_ROOMS), team, orders=given, max_time=200.0)
+
+
+def test_what_a_no_go_area_cuts_off_leaves_the_denominator_and_the_summary_says_so() -> None:
+    result = in_two_rooms((0.0, NoGo(area="door", corners=DOOR)), starts=[LEFT_ROOM]).run()
+    assert result.outcome is Outcome.COMPLETE
+    assert result.cut_off_m2 == pytest.approx(6 * 5 * 0.25, rel=0.1)  # the right room, but for the area
+    assert result.no_go_m2 == pytest.approx(0.7 * 2.0 - 2 * 0.5 * 0.5, rel=0.35)
+    assert result.coverage is not None
+    assert result.coverage > 0.97
+
+
+def test_what_somebody_behind_a_no_go_area_still_gets_to_counts() -> None:
+    order = 0.0, NoGo(area="door", corners=DOOR)
+    result = in_two_rooms(order, starts=[LEFT_ROOM, RIGHT_ROOM]).run()
+    assert result.outcome is Outcome.COMPLETE
+    assert result.cut_off_m2 < 0.1
+    assert result.coverage is not None
+    assert result.coverage > 0.97
+
+
+def test_what_was_cut_off_returns_when_the_area_is_removed() -> None:
+    orders = (0.0, NoGo(area="door", corners=DOOR)), (3.0, Remove(area="door"))
+    mission = in_two_rooms(*orders, starts=[LEFT_ROOM])
+    places(mission, 2.5)
+    assert mission.snapshot is not None
+    assert mission.snapshot.coverage is not None
+    before = mission.snapshot.coverage
+    places(mission, 4.1)
+    assert mission.snapshot.coverage < before - 0.1
+    result = mission.run()
+    assert (result.no_go_m2, result.cut_off_m2) == (0.0, 0.0)
+    assert result.coverage is not None
+    assert result.coverage > 0.97
 
 
 def test_the_same_orders_make_the_same_mission() -> None:

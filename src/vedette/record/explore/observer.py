@@ -29,7 +29,7 @@ from vedette.record.explore.summary import ExploreSummary, LeftOut
 from vedette.record.explore.views import RobotView, by_map, frontiers_left, union_map
 from vedette.record.figures import TeamFigures
 from vedette.record.links import Link, parts
-from vedette.record.log import Sink
+from vedette.record.log import Sink, VehicleSample
 from vedette.record.summary import Setting, Timing
 from vedette.team import PlatformSpec
 
@@ -92,10 +92,14 @@ class ExploreObserver:
         self._measure(now, views, links, log=self._looks % 2 == 0)
         self._looks += 1
 
-    def forbid(self, no_go: tuple[Area, ...]) -> None:
-        """Leave what is in these areas out of what can be covered, from now on, and nothing else."""
+    def forbid(self, no_go: tuple[Area, ...], robots: Sequence[VehicleSample]) -> None:
+        """Leave what is in these areas out of what can be covered, from now on, and what is cut off by them.
+
+        ``robots``: all, as they are now.
+        """
         if no_go != self._reference.no_go:
-            self._reference = replace(self._reference, no_go=no_go)
+            places = {i: (robot.x, robot.y) for i, robot in enumerate(robots) if robot.alive}
+            self._reference = replace(self._reference, no_go=no_go, places=places)
 
     def finish(self, now: float, views: Sequence[RobotView], links: Sequence[Link] | None) -> None:
         """Measure and log how the mission ended; as ``look``."""
@@ -191,6 +195,7 @@ class ExploreObserver:
             frontiers=frontiers_left(views),
             beyond=sum(view.beyond for view in views),
             no_go_m2=self._reference.forbidden_m2,
+            cut_off_m2=self._reference.cut_off_m2,
             turned_back=tuple(view.sample.name for view in views if view.turned_back),
             map_errors=wrong,
             map_error_share=wrong / known if known else 0.0,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -10,12 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.domains.mapping.stops import SURE_CLEARANCE
+from vedette.kernels.distance import distance_field
 from vedette.kernels.visibility import visible_cells
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
 from vedette.maps.area import Area
 from vedette.maps.bounds import EVERYWHERE, Extent
 from vedette.maps.leave import Leave
-from vedette.maps.world import World, reachable_poses
+from vedette.maps.world import World, reachable_poses, standable
 from vedette.team import PlatformSpec
 
 
@@ -27,17 +28,57 @@ class Reference:
     specs: Sequence[PlatformSpec]
     starts: NDArray[np.float64]  # (n, 3) x, y, heading [m, m, rad], team frame
     no_go: tuple[Area, ...] = ()  # where nobody may go, and nothing counts
+    places: Mapping[int, tuple[float, float]] = field(default_factory=dict)  # of who lived then, by index [m]
 
     @cached_property
     def coverable(self) -> NDArray[np.bool_]:
-        """``bool[rows, cols]``: free cells seen without noise from poses a disc can reach from its start."""
-        return self.visible & Leave(no_go=self.no_go).holds(self.world.frame)
+        """``bool[rows, cols]``: free cells seen without noise from poses a disc can reach from its start.
+
+        Where something is forbidden, a disc has to reach them from its place by then, and round that; it is
+        wall to what is planned, so nothing beyond it is seen through it.
+        """
+        if not self.no_go:
+            return self.visible
+        leave = Leave(no_go=self.no_go)
+        closed = leave.close(self.world.classes(), self.world.frame) != FREE
+        left = World(self.world.frame, closed, self.world.name)
+        poses = dict[tuple[float, float], NDArray[np.bool_]]()  # by body
+        for robot, (x, y) in self.places.items():
+            spec = self.specs[robot]
+            body = spec.radius, spec.range
+            there = poses.setdefault(body, np.zeros_like(closed))
+            there |= self._left_to(left, spec.radius + SURE_CLEARANCE, x, y, there)
+        allowed = leave.holds(self.world.frame)
+        seen = np.zeros_like(closed)
+        for (_, reach), there in poses.items():
+            seen |= visible_cells(self.world.solid | ~allowed, there, reach / self.world.frame.resolution)
+        return seen & self.visible & allowed
+
+    def _left_to(
+        self, left: World, radius: float, x: float, y: float, before: NDArray[np.bool_]
+    ) -> NDArray[np.bool_]:
+        """Return the poses left to a disc, or those of one before it that gets to the same.
+
+        One that stands where nobody may be leaves by the shortest way.
+        """
+        frame, out = self.world.frame, standable(left, radius)
+        away = distance_field(standable(self.world, radius), frame.flat(x, y), frame.resolution)
+        nearest = int(np.argmin(np.where(out, away, np.inf)))
+        if not out.flat[nearest] or not np.isfinite(away.flat[nearest]):
+            return np.zeros_like(out)
+        if before.flat[nearest]:
+            return before
+        return np.isfinite(distance_field(out, nearest, frame.resolution)) & out
 
     @property
     def forbidden_m2(self) -> float:
         """How much of what could be covered nobody may see [m^2]."""
-        cells = np.count_nonzero(self.visible) - self.cells
-        return float(cells) * self.world.frame.resolution**2
+        return self._square_metres(self.visible & ~Leave(no_go=self.no_go).holds(self.world.frame))
+
+    @property
+    def cut_off_m2(self) -> float:
+        """How much more of it nobody gets to any more, because of what is forbidden [m^2]."""
+        return self._square_metres(self.visible & ~self.coverable) - self.forbidden_m2
 
     @cached_property
     def visible(self) -> NDArray[np.bool_]:
@@ -55,6 +96,9 @@ class Reference:
     def cells(self) -> int:
         """Number of coverable cells."""
         return int(np.count_nonzero(self.coverable))
+
+    def _square_metres(self, cells: NDArray[np.bool_]) -> float:
+        return float(np.count_nonzero(cells)) * self.world.frame.resolution**2
 
 
 def coverage(reference: Reference, classes: NDArray[np.uint8], known: Extent = EVERYWHERE) -> float:

@@ -43,6 +43,7 @@ class ExploreSummary(MissionSummary):
     frontiers: int | None
     beyond: int
     no_go_m2: float
+    cut_off_m2: float
     turned_back: tuple[str, ...]
     map_errors: int
     map_error_share: float

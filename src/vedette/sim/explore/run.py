@@ -61,15 +61,15 @@ class ExploreRun(Watched[ExploreReport]):
     def _look(self) -> None:
         now = self.simulation.now
         if now >= self._next_look - 1e-9:
-            self._observer.forbid(self.simulation.no_go)
             seen = views(self.simulation, ways=not self._curves_only)
+            self._observer.forbid(self.simulation.no_go, [view.sample for view in seen])
             self._observer.look(now, seen, self.simulation.network.links())
             self._next_look += self._observer.period
 
     def _report(self, outcome: Outcome) -> ExploreReport:
-        now = self.simulation.now
-        self._observer.forbid(self.simulation.no_go)
-        self._observer.finish(now, views(self.simulation), self.simulation.network.links())
+        now, seen = self.simulation.now, views(self.simulation)
+        self._observer.forbid(self.simulation.no_go, [view.sample for view in seen])
+        self._observer.finish(now, seen, self.simulation.network.links())
         return self._observer.report(outcome, self.simulation.clock.timing(now))
 
 
