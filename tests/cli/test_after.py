@@ -4,17 +4,35 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 
 from tests.support.commands import Command
 from tests.support.small_missions import small_office
+from vedette.agent.orders import Priority
 from vedette.maps import UNKNOWN, read_map
+from vedette.record.explore.details import RobotDetails, encode
+from vedette.record.explore.log import RobotSample
 from vedette.record.explore.read import read_scene, read_snapshots
 from vedette.run import Explore
+from vedette.sim.orders import OrderAt
 
 SHORT = 40.0  # a mission of so long leaves something to do [s]
+CORNER = Priority(area="corner", corners=((0.0, 0.0), (3.0, 0.0), (3.0, 3.0)))
+TROUBLED: dict[str, Any] = {
+    "max_time": SHORT,
+    "link_loss": 0.1,
+    "kills": [(2, 6.0)],
+    "orders": (OrderAt(9.0, CORNER),),
+}
+
+
+def _told(robot: RobotSample) -> RobotDetails:
+    """What is told of a robot, numbers as they are read."""
+    return msgspec.json.decode(encode(RobotDetails.of(robot)), type=RobotDetails)
 
 
 @pytest.fixture
@@ -28,15 +46,13 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A short mission's folder, of two robots whose links may fail."""
     folder = tmp_path_factory.mktemp("after")
     small_office().save(folder)
-    mission = Explore(
-        folder / "map.yaml", 2, max_time=SHORT, link_loss=0.1, kills=[(2, 6.0)], record=folder / "run"
-    )
+    mission = Explore(folder / "map.yaml", 2, **TROUBLED, record=folder / "run")
     mission.run().save(folder / "run")
     return folder / "run"
 
 
 def test_a_record_gives_back_the_snapshots_that_were_recorded(run: Path) -> None:
-    mission = Explore(run.parent / "map.yaml", 2, max_time=SHORT, link_loss=0.1, kills=[(2, 6.0)])
+    mission = Explore(run.parent / "map.yaml", 2, **TROUBLED)
     log = mission.run().log
     told = list(log.snapshots())
     scene = read_scene(run / "run.mcap")
@@ -55,6 +71,8 @@ def test_a_record_gives_back_the_snapshots_that_were_recorded(run: Path) -> None
         assert [robot.state for robot in mine.robots] == [robot.state for robot in theirs.robots]
         assert [robot.alive for robot in mine.robots] == [robot.alive for robot in theirs.robots]
         assert [robot.driven for robot in mine.robots] == [robot.driven for robot in theirs.robots]
+        assert [RobotDetails.of(robot) for robot in mine.robots] == list(map(_told, theirs.robots))
+        assert mine.left_out == theirs.left_out
         assert mine.links is not None
         assert theirs.links is not None
         assert [(link.a, link.b, link.on_tree) for link in mine.links] == [

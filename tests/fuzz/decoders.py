@@ -244,6 +244,7 @@ def conditions() -> list[Any]:
             0, 99, "robot-1", 20.0, 1.5, "driving", 1.0, 2.0, 0.5, (1.0, 2.0, 1.5, 2.0),
             *place, (link,), 1 << 60, 0.5, *figures,
             report.SpreadReport(7, 30.0, 50.0, 80.0), None, None, 0.5,
+            signs=True, out=(2,), alerts=("disk full: 3 MB left for kept",),
         )
     ]  # fmt: skip
 

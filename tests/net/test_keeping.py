@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import errno
+import os
+import shutil
 import signal
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -24,6 +28,8 @@ from vedette.net.explore.content import Spot, content
 from vedette.net.keeping import PERIOD, Keeper, folder_of_a_start
 from vedette.net.report import Report
 from vedette.record.folder import OutputFolder
+from vedette.record.robot import RobotRecorder
+from vedette.record.space import LITTLE
 
 FRAME = GridFrame(0.1, 30, 40, -1.0, 2.0)
 
@@ -104,9 +110,32 @@ def test_a_folder_that_takes_nothing_is_told_of_once_and_the_robot_goes_on(tmp_p
     keeper.take(report("driving", 10), 2 * PERIOD)
     assert len(said) == 1
     assert "cannot write" in said[0]
+    (alert,) = keeper.alerts
+    assert alert in said[0]
     (tmp_path / ".part-map.pgm").rmdir()
     keeper.take(report("driving", 10), 3 * PERIOD)
     assert known(tmp_path) == 11
+    assert keeper.alerts == ()
+
+
+def test_a_disk_that_is_nearly_full_is_an_alert_and_a_full_one_ends_no_mission(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    said: list[str] = []
+    keeper = Keeper(OutputFolder(tmp_path), "office", "explore", said.append)
+    free = [LITTLE]
+    monkeypatch.setattr(shutil, "disk_usage", lambda path: SimpleNamespace(free=free[0]))
+    assert keeper.alerts == ()
+    free[0] -= 1
+    assert keeper.alerts == (f"disk full: 67 MB left for {tmp_path}",)
+
+    def full(*told: object, **more: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(RobotRecorder, "add", full)
+    keeper.take(report("driving", 10), 0.0)
+    assert said == ["[Errno 28] No space left on device; the mission goes on"]
+    assert keeper.alerts[0] == "[Errno 28] No space left on device"
 
 
 def test_what_an_earlier_start_left_stays_as_it_is(tmp_path: Path) -> None:

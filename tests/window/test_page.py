@@ -13,13 +13,15 @@ from tests.support.windows import SCENE, needs_chromium, shown, snapshot
 from vedette.agent.orders import End, LookThere, NoGo, Order, Pause, Priority, Recall, Resume, Stay
 from vedette.record import palette
 from vedette.record.explore.log import Ahead
+from vedette.record.explore.summary import LeftOut
 from vedette.window.export import Show, export_page
 from vedette.window.hub import Hub
-from vedette.window.picture import Beside, ordered, picture
+from vedette.window.picture import Beside, picture
 from vedette.window.server import WindowServer
 
 playwright = pytest.importorskip("playwright.sync_api")
 pytestmark = needs_chromium
+FRONTIER = [86, 180, 233]
 UNKNOWN, FREE, WALL = ([*colour] for colour in palette.CLASSES.tolist())
 
 
@@ -80,6 +82,7 @@ def test_a_live_mission_is_followed_and_a_lost_robot_stays_on_the_screen(page: A
         assert "covered" in page.inner_text("#figures")
         assert page.inner_text("#robots").split()[:3] == ["1", "scout", "driving"]
         assert pixel(page, 2, 30) == FREE
+        assert pixel(page, 7, 30) == FRONTIER  # beside what is unknown
         assert pixel(page, 90, 30) == [
             216,
             219,
@@ -116,6 +119,30 @@ def test_why_a_robot_goes_where_it_goes_is_told_when_it_is_selected(page: Any) -
         assert "1. at 2.0, 3.0 m in 4 s: 1.5 m² unknown there" in lines
         assert "2. at 5.0, 3.0 m in 9 s" in lines
         assert "mule sees to 0.5 m² at 1 places of the rest" in lines
+
+
+def test_battery_traffic_trust_and_what_was_given_up_are_told(page: Any) -> None:
+    hub = shown(range(3))
+    told = snapshot(3.0)
+    scout = replace(told.robots[0], way_left=41.6, rounds=12, sent=3_400_000, trust="believed")
+    mule = replace(told.robots[1], rounds=11, sent=9_000, trust="not believed by scout")
+    left = (LeftOut(1.0, 2.5, 9, "unseeable", "scout"), LeftOut(4.0, 2.5, 9, "out_of_reach", "mule"))
+    with WindowServer(hub) as window:
+        page.goto(window.address)
+        see(page, hub, "#state", "live")
+        assert not page.is_visible("#leaves")
+        full = Beside(alerts=["scout: disk full: 3 MB left for kept"])
+        hub.show(picture(SCENE, replace(told, t=9.0, robots=(scout, mule), left_out=left), full))
+        until(page, "$('clock').textContent === '9.0 s'")
+        assert "battery for 42 m, 12 rounds, 3.4 MB sent, believed" in page.inner_text("#robots")
+        assert page.inner_text(".more.bad") == "11 rounds, 9.0 kB sent, not believed by scout"
+        assert page.inner_text("#alerts") == "scout: disk full: 3 MB left for kept"
+        assert "rounds 12" in page.inner_text("#figures")
+        assert "sent 3.4 MB" in page.inner_text("#figures")
+        assert page.inner_text("#left").splitlines() == [
+            "1.0, 2.5 m: looked at in vain, says scout",
+            "4.0, 2.5 m: no way there, says mule",
+        ]
 
 
 def test_a_record_is_scrubbed_and_played(page: Any) -> None:
@@ -238,8 +265,9 @@ def test_places_and_areas_are_drawn_by_clicks(page: Any) -> None:
             area = confirm("for all robots?")
             assert isinstance(area, kind)
             assert [*area.corners[2]] == pytest.approx([4.0, 5.0], abs=0.05)
-        orders, areas = ordered([("scout", given[-2:])])
-        hub.show(picture(SCENE, snapshot(80.0), Beside(orders=orders, areas=areas)))
+        told = snapshot(80.0)
+        scout = replace(told.robots[0], orders=tuple(given[-2:]))
+        hub.show(picture(SCENE, replace(told, robots=(scout, told.robots[1]))))
         until(page, "$('orders').childElementCount === 2")
         assert "held by scout" in page.inner_text("#orders")
 

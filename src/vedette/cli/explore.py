@@ -8,19 +8,20 @@ from typing import Any
 
 import click
 
-from vedette.agent.orders import Order, OrderBook
+from vedette.agent.orders import Order
 from vedette.cli.exploring import EXPLORING, exploring_options, team_named, world_named
 from vedette.cli.options import FILE, Output, fault_options, output_options
 from vedette.cli.running import simulate, simulate_watched
 from vedette.cli.windows import watch_options
 from vedette.errors import InputError
 from vedette.record.explore.log import ExploreSnapshot
+from vedette.record.space import short_of_space
 from vedette.run import Explore
 from vedette.run.inputs import files_of
 from vedette.run.saved import seed_of
 from vedette.window.explore import Shower
 from vedette.window.hub import Hub
-from vedette.window.picture import Beside, Picture, ordered, picture
+from vedette.window.picture import Beside, Picture, picture
 
 
 @click.command()
@@ -64,22 +65,17 @@ def explore(
     if not watch:
         simulate(EXPLORING, mission, mission.scene, output)
     hub = Hub(mission.scene.name, partial(_order, mission))
-    shower = Shower[ExploreSnapshot](hub, partial(_drawn, mission), pace)
+    shower = Shower[ExploreSnapshot](hub, partial(_drawn, mission, output.out or Path()), pace)
     simulate_watched(EXPLORING, mission, mission.scene, output, hub, shower)
 
 
-def _drawn(mission: Explore, snapshot: ExploreSnapshot) -> Picture:
-    """Return a snapshot with the orders that robots hold."""
-    held = zip(mission.scene.vehicles, map(_in_force, mission.books), strict=True)
-    orders, areas = ordered(held)
-    return picture(mission.scene, snapshot, Beside(orders=orders, areas=areas))
+def _drawn(mission: Explore, folder: Path, snapshot: ExploreSnapshot) -> Picture:
+    """Return a snapshot, and whether its record finds room in its folder."""
+    short = short_of_space(folder)
+    return picture(mission.scene, snapshot, Beside(alerts=[short] if short else []))
 
 
 def _order(mission: Explore, order: Order) -> str:
     """Give an order, and say what has come of it."""
     mission.order(order)
     return "given"
-
-
-def _in_force(book: OrderBook) -> list[Order]:
-    return [given.order for given in book.all]

@@ -11,13 +11,14 @@ from vedette.errors import InputError, InputWarning
 from vedette.net.explore import content as maps
 from vedette.net.gather import path_of
 from vedette.net.names import robot_name
-from vedette.net.report import Report
+from vedette.net.report import MOST_WORDS, Report
 from vedette.net.results import lasted, told, write_results
 from vedette.outcome import Outcome
 from vedette.record.files import new_directory
 from vedette.record.folder import OutputFolder
 from vedette.record.log import LEFT, VehicleSample
 from vedette.record.robot import RobotRecorder
+from vedette.record.space import short_of_space
 
 PERIOD = 30.0  # of real time, at most, in which what has come to be known is put on disk [s]
 RECORD = "run.mcap"
@@ -35,7 +36,13 @@ class Keeper:
         self._record: RobotRecorder | None = None
         self._due: float | None = None  # when to write next [s]
         self._ended: Outcome | None = None  # of the mission, for this robot
-        self._failed = False
+        self._failed = ""  # why nothing can be written
+
+    @property
+    def alerts(self) -> tuple[str, ...]:
+        """What an operator has to know of the folder."""
+        short = short_of_space(self._folder.path)
+        return tuple(line[:MOST_WORDS] for line in (self._failed, short) if line)
 
     def take(self, report: Report, now: float) -> None:
         """Add a report to the record, and write it all if it is time; ``now`` by the process's clock [s]."""
@@ -50,11 +57,11 @@ class Keeper:
             self._add(report, with_map=due or last)
             if due or last or self._ended is not ended:
                 self._write(report, last)
-            self._failed = False
-        except InputError as error:
+            self._failed = ""
+        except (InputError, OSError) as error:
             if not self._failed:
                 self._say(f"{error}; the mission goes on")
-            self._failed = True
+            self._failed = str(error)
 
     def _add(self, report: Report, with_map: bool) -> None:
         condition = report.condition

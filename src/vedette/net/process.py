@@ -197,7 +197,8 @@ class AgentProcess:
             if self._said.get(robot) != what:
                 self._said[robot] = what
                 self.say(f"{robot_name(robot)}: {what}")
-        report = self.witness.report(now, at, state)
+        alerts = () if self.keeper is None else self.keeper.alerts
+        report = self.witness.report(now, at, state, alerts)
         self.transport.publish(Topic.REPORT, encode(report))
         if self.keeper is not None:
             self.keeper.take(report, now)

@@ -104,6 +104,9 @@ class Condition(msgspec.Struct, frozen=True, array_like=True, tag=2):
     beyond: Count = 0  # beams, or cells of its own map, that told of ground where there is no room for any
     mission: Word = ""  # that orders have to be for; empty: it takes none
     orders: Annotated[tuple[OrderReport, ...], Meta(max_length=MOST_ORDERS)] = ()  # in force, oldest first
+    signs: bool = False  # what its evidence says, so that others need not believe it
+    out: Annotated[tuple[Count, ...], Meta(max_length=1024)] = ()  # robots that it does not believe
+    alerts: Annotated[tuple[Sentence, ...], Meta(max_length=16)] = ()  # of its own computer: a full disk
 
 
 class Report(msgspec.Struct, frozen=True, array_like=True, tag=3):

@@ -67,6 +67,7 @@ def numbered(said: Condition) -> Condition:
         neighbours=tuple(robot + 1 for robot in said.neighbours),
         links=tuple(replace(link, robot=link.robot + 1) for link in said.links),
         complaints=tuple(replace(each, robot=each.robot + 1) for each in said.complaints),
+        out=tuple(robot + 1 for robot in said.out),
     )
 
 
@@ -93,7 +94,8 @@ def status_table(told: Mapping[int, Condition | None]) -> RenderableType:
         for said in answered
         for each in said.complaints
     )
-    return Group(agents, Text(""), links, *complaints, Text(_verdict(told)))
+    alerts = (Text(f"{robot_name(said.robot)}: {line}") for said in answered for line in said.alerts)
+    return Group(agents, Text(""), links, *complaints, *alerts, Text(_verdict(told)))
 
 
 def _row(said: Condition, digest: int) -> list[str]:

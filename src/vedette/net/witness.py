@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from vedette.agent import NetworkedAgent
 from vedette.agent.body import Body
+from vedette.fusion.standing import Signed
 from vedette.net import report as wire
 from vedette.net.report import (
     FARTHEST,
@@ -84,11 +85,13 @@ class Witness:
         if rounds.decisions != self._decisions:
             self._decisions, self._decided = rounds.decisions, now
 
-    def report(self, now: float, mission_time: float, state: str | None) -> wire.Report:
-        """Return a report; ``state`` takes the place of the agent's own."""
+    def report(
+        self, now: float, mission_time: float, state: str | None, alerts: tuple[str, ...] = ()
+    ) -> wire.Report:
+        """Return a report; ``state`` takes the place of the agent's own; ``alerts``: of this computer."""
         if self._began is None and self.node.agent.awake:
             self._began = mission_time
-        condition = self._condition(now, mission_time)
+        condition = structs.replace(self._condition(now, mission_time), alerts=alerts)
         if state is not None:
             condition = structs.replace(condition, state=state)
         self.status = wire.encode(condition)
@@ -161,7 +164,14 @@ class Witness:
             beyond=0 if known is None else known.beyond,
             mission=self.mission,
             orders=tuple(OrderReport(each.counter, each.operator, each.order) for each in agent.orders.all),
+            signs=agent.signed is not None,
+            out=_out(agent.signed),
         )
+
+
+def _out(signed: Signed | None) -> tuple[int, ...]:
+    """Return whom a robot does not believe, by where it keeps what others have signed."""
+    return () if signed is None else tuple(sorted(signed.out | signed.standing.gone.keys()))
 
 
 def _link(link: LinkStatus) -> LinkReport:

@@ -61,6 +61,11 @@ class Traffic:
     beacons: int = 0
     overlay: int = 0  # hellos, acknowledgements, and what was sent again
 
+    @property
+    def total(self) -> int:
+        """Of all kinds."""
+        return self.negotiation + self.fusion + self.beacons + self.overlay
+
 
 @dataclass(frozen=True)
 class Spread:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import msgspec
@@ -21,6 +21,7 @@ SHADES = 8  # of what is about to be seen, in the place of UNKNOWN: cells of the
 MOST_LEFT = 100  # frontiers that robots leave, of which each is shown
 TILE = 32  # cells a side, in which changes of the map travel
 MOST_PATH = 40  # points of a path that are drawn
+WHY = {"unseeable": "looked at in vain", "unreached": "not got to", "out_of_reach": "no way there"}
 
 
 @dataclass(frozen=True)
@@ -84,10 +85,15 @@ def picture(scene: ExploreScene, snapshot: ExploreSnapshot, beside: Beside = NOT
     figures = list(progress(snapshot))
     if snapshot.coverage is not None:
         figures.insert(0, ("covered", f"{100 * snapshot.coverage:.1f} %"))
+    if snapshot.frontiers is not None and snapshot.coverage is not None:
+        figures.append(("frontiers", str(snapshot.frontiers)))
+    figures.append(("rounds", str(max(robot.rounds for robot in snapshot.robots))))
+    figures.append(("sent", size(sum(robot.sent for robot in snapshot.robots))))
     left = [
-        (round(spot.x, 2), round(spot.y, 2), f"{spot.why.replace('_', ' ')}, says {spot.by}")
+        (round(spot.x, 2), round(spot.y, 2), f"{WHY[spot.why]}, says {spot.by}")
         for spot in snapshot.left_out[-MOST_LEFT:]
     ]
+    orders, areas = ordered((robot.name, robot.orders) for robot in snapshot.robots)
     share = snapshot.known_fraction if snapshot.coverage is None else snapshot.coverage
     return drawn(
         snapshot.t,
@@ -98,8 +104,13 @@ def picture(scene: ExploreScene, snapshot: ExploreSnapshot, beside: Beside = NOT
         share=share,
         links=snapshot.links or (),
         left=left,
-        beside=beside,
+        beside=replace(beside, orders=orders, areas=areas),
     )
+
+
+def size(count: int) -> str:
+    """Return so many bytes, for people."""
+    return f"{count / 1e6:.1f} MB" if count >= 1e6 else f"{count / 1e3:.1f} kB"
 
 
 def drawn(
@@ -175,6 +186,10 @@ def _robot(number: int, name: str, robot: RobotSample, silent: float | None) -> 
         "silent": None if silent is None else round(silent, 1),
         "path": path,
         "driven": round(robot.driven, 1),
+        "way_left": None if robot.way_left is None else round(robot.way_left),
+        "rounds": robot.rounds,
+        "sent": size(robot.sent) if robot.sent else "",
+        "trust": robot.trust,
         "tour": [[round(number, 2) for number in stop] for stop in robot.tour],
         "colour": palette.robot_colour(number - 1),
     }

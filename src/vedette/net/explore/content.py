@@ -22,7 +22,7 @@ from vedette.net.gather import figures_of, path_of
 from vedette.net.report import FARTHEST, MOST_BYTES, Condition, Count, Real, inflated
 from vedette.net.witness import Known
 from vedette.outcome import Outcome
-from vedette.record.explore.log import RobotSample
+from vedette.record.explore.log import Ahead, RobotSample
 from vedette.record.explore.views import GroundFigures, RobotView, held, left_out
 
 MOST_CELLS = 1 << 26
@@ -65,6 +65,7 @@ class MapContent(msgspec.Struct, frozen=True, array_like=True, tag=5):
     lattice: tuple[Cells, Cells]  # rows and columns of all of it
     left_out: Annotated[tuple[Spot, ...], Meta(max_length=1024)] = ()
     tour: Annotated[tuple[StopAhead, ...], Meta(max_length=64)] = ()
+    way_left: Real | None = None  # that its energy is good for [m]; None: nobody says
 
 
 _CONTENTS: msgspec.msgpack.Decoder[MapContent] = msgspec.msgpack.Decoder(MapContent)
@@ -105,7 +106,9 @@ class ExploreTeller:
         spots = tuple(Spot(each.x, each.y, each.unknown, each.why) for each in mission.left_out)
         grids = held(mission.fusion.classes, mission.own.log_odds, mission.known)
         tour = tuple(StopAhead(*stop) for stop in mission.ahead(now))
-        return content(mission.frame, mission.known, *grids, impact, spots[-1024:], tour)
+        budget = mission.platform.budget
+        left = budget.left if budget.limited else None
+        return content(mission.frame, mission.known, *grids, impact, spots[-1024:], tour, left)
 
 
 def content(
@@ -116,6 +119,7 @@ def content(
     impact: bytes | None,
     left: tuple[Spot, ...] = (),
     tour: tuple[StopAhead, ...] = (),
+    way_left: float | None = None,
 ) -> bytes:
     """Return a map as bytes; ``classes`` and ``seen`` are ``(R, C)``, the known rows and columns."""
     (rows, cols), part = known, lattice.window(*known)
@@ -123,7 +127,8 @@ def content(
     bits = zlib.compress(np.packbits(seen).tobytes(), 1)
     corner, place = (rows.start, cols.start), (part.resolution, part.origin_x, part.origin_y)
     size = part.rows, part.cols
-    return _encode(MapContent(*corner, *size, packed, bits, impact, *place, lattice.shape, left, tour))
+    grids = packed, bits, impact
+    return _encode(MapContent(*corner, *size, *grids, *place, lattice.shape, left, tour, way_left))
 
 
 def read_content(payload: bytes) -> MapContent:
@@ -149,10 +154,8 @@ def view_of(
         raise ValueError(
             f"report of a map up to cell {end}, beyond the {frame.rows} x {frame.cols} there are"
         )
-    path, at = path_of(condition), (condition.x, condition.y, condition.heading)
-    goal = (float(path[-1, 0]), float(path[-1, 1])) if len(path) else None
     return RobotView(
-        sample=RobotSample(*at, condition.state, True, path, name, goal),
+        sample=sample_of(condition, told, name),
         frame=frame.window(slice(told.row, end[0]), slice(told.col, end[1])),
         classes=classes_of(told),
         seen=seen_of(told),
@@ -167,6 +170,21 @@ def view_of(
         frontiers=condition.frontiers,
         beyond=condition.beyond,
         turned_back=condition.ending == Outcome.SPENT.value,
+    )
+
+
+def sample_of(condition: Condition, told: MapContent, name: str) -> RobotSample:
+    """Return a robot of this name as it tells of itself."""
+    path = path_of(condition)
+    return RobotSample(
+        *(condition.x, condition.y, condition.heading, condition.state, True, path, name),
+        goal=(float(path[-1, 0]), float(path[-1, 1])) if len(path) else None,
+        driven=condition.travelled,
+        tour=tuple(Ahead(*stop) for stop in told.tour),
+        way_left=told.way_left,
+        rounds=condition.rounds,
+        sent=sum(condition.bytes.values()),
+        orders=tuple(each.order for each in condition.orders),
     )
 
 

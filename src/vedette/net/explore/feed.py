@@ -76,8 +76,11 @@ class TeamFeed:
             orders=orders,
             areas=areas,
             alerts=[
-                f"{robot_name(each.robot)} of {robot_name(complaint.robot)}: {complaint.what}"
-                for each in told
-                for complaint in each.complaints
+                *(f"{robot_name(each.robot)}: {line}" for each in told for line in each.alerts),
+                *(
+                    f"{robot_name(each.robot)} of {robot_name(complaint.robot)}: {complaint.what}"
+                    for each in told
+                    for complaint in each.complaints
+                ),
             ],
         )

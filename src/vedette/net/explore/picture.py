@@ -13,12 +13,12 @@ from vedette.domains.mapping.impact import MapImpactCodec, cells_missed, moved
 from vedette.domains.mapping.leftovers import Leftover
 from vedette.maps import UNKNOWN, GridFrame
 from vedette.maps.laid import part_laid
-from vedette.net.explore.content import MOST_CELLS, MapContent, classes_of, frame_of, read_content
-from vedette.net.gather import path_of, status_of
+from vedette.net.explore.content import MOST_CELLS, MapContent, classes_of, frame_of, read_content, sample_of
+from vedette.net.gather import status_of
 from vedette.net.names import robot_name
-from vedette.net.report import Report
+from vedette.net.report import Condition, Report
 from vedette.net.results import lasted
-from vedette.record.explore.log import Ahead, ExploreScene, ExploreSnapshot, RobotSample
+from vedette.record.explore.log import ExploreScene, ExploreSnapshot, RobotSample
 from vedette.record.explore.views import left_out
 from vedette.record.links import Link, links_of
 
@@ -28,7 +28,7 @@ NOWHERE = GridFrame(1.0, 1, 1)
 def picture_of(
     team: str, reports: Mapping[int, Report], states: Mapping[int, str]
 ) -> tuple[ExploreScene, ExploreSnapshot]:
-    """Return what robots report, together: the map that they hold, where they are and where they go.
+    """Return what robots report, together: the map that they hold, where they are, what they believe.
 
     Args:
         team: its name.
@@ -47,7 +47,7 @@ def picture_of(
     snapshot = ExploreSnapshot(
         t=max((lasted(each) for each in told), default=0.0),
         robots=tuple(
-            _sample(report, states.get(robot), content)
+            replace(_sample(report, states.get(robot), content), trust=_trust(robot, told))
             for (robot, report), content in zip(reports.items(), contents, strict=True)
         ),
         coverage=None,
@@ -117,9 +117,15 @@ def _around(frames: Sequence[GridFrame]) -> GridFrame:
     return GridFrame(resolution, rows, cols, x, y)
 
 
+def _trust(robot: int, told: Sequence[Condition]) -> str:
+    """Say who believes a robot; nothing where nobody signs."""
+    against = [robot_name(each.robot) for each in told if robot in each.out]
+    if against:
+        return f"not believed by {', '.join(against)}"
+    return "believed" if any(each.signs for each in told) else ""
+
+
 def _sample(report: Report, state: str | None, content: MapContent) -> RobotSample:
-    told, path = report.condition, path_of(report.condition)
-    goal = (float(path[-1, 0]), float(path[-1, 1])) if len(path) else None
-    at = told.x, told.y, told.heading
-    name, tour = robot_name(told.robot), tuple(Ahead(*stop) for stop in content.tour)
-    return RobotSample(*at, state or told.state, state is None, path, name, goal, told.travelled, tour)
+    told = report.condition
+    sample = sample_of(told, content, robot_name(told.robot))
+    return replace(sample, state=state or told.state, alive=state is None)

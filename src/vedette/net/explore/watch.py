@@ -8,12 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from vedette.agent.orders import NoGo
 from vedette.agent.state import State
 from vedette.domains.mapping.belief import planning_factor
 from vedette.domains.mapping.impact import MapImpactCodec
 from vedette.maps import GridFrame
-from vedette.maps.area import Area
 from vedette.net.explore.content import view_of
 from vedette.net.explore.plan import ExplorePlan
 from vedette.net.report import Condition
@@ -45,7 +43,6 @@ class ExploreWatcher:
             for spec, start in zip(plan.specs, plan.starts.tolist(), strict=True)
         ]
         self._ways: dict[int, float] = {}  # of each robot by now [m]
-        self._no_go: dict[int, list[Area]] = {}  # as far as each robot has heard
         self._agreement = Agreement()
         self._moved = (0.0, 0.0)  # way of all robots [m], and when it last grew [s]
 
@@ -59,8 +56,6 @@ class ExploreWatcher:
         name = self._views[condition.robot].sample.name  # as the team's file has it
         self._views[condition.robot] = view_of(condition, content, self._frame, self._codec, name)
         self._ways[condition.robot] = condition.travelled
-        orders = [each.order for each in condition.orders]
-        self._no_go[condition.robot] = [Area(each.corners) for each in orders if isinstance(each, NoGo)]
 
     def look(self, now: float, fates: Fates, links: Links) -> None:
         """Measure the team's map."""
@@ -90,15 +85,10 @@ class ExploreWatcher:
         return self._observer.report(outcome, timing)
 
     def _seen(self, fates: Fates) -> list[RobotView]:
-        """Return the robots as they are; what they have heard that nobody may go to counts no more."""
-        seen = [
+        return [
             replace(view, sample=as_it_is(view.sample, fate))
             for view, fate in zip(self._views, fates, strict=True)
         ]
-        living = [i for i, view in enumerate(seen) if view.sample.alive]
-        no_go = dict.fromkeys(area for i in living for area in self._no_go.get(i, ()))
-        self._observer.forbid(tuple(no_go), [view.sample for view in seen])
-        return seen
 
 
 def _unheard(name: str, start: Sequence[float], frame: GridFrame) -> RobotView:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.agent.orders import Order
 from vedette.domains.mapping.belief import planning_factor
 from vedette.maps import GridFrame
 from vedette.maps.world import World
@@ -52,6 +53,11 @@ class RobotSample(VehicleSample):
     goal: tuple[float, float] | None  # where it is going [m], team frame
     driven: float = 0.0  # the way that it has come [m]
     tour: tuple[Ahead, ...] = ()  # where it means to look
+    way_left: float | None = None  # that its energy is good for [m]; None: nobody says
+    rounds: int = 0  # that it has ended with a decision
+    sent: int = 0  # [byte], of all kinds
+    orders: tuple[Order, ...] = ()  # of the operator, that it holds
+    trust: str = ""  # who believes it; empty: nobody signs what it says
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from vedette.record.explore import details
 from vedette.record.explore.log import ExploreScene, ExploreSnapshot, RobotSample
 from vedette.record.explore.markers import LinkMessages
 from vedette.record.mcap import McapFile, Medium, Place, stamp_of
@@ -29,6 +30,7 @@ class ExploreMcapWriter(McapFile[LinkMessages]):
         self._unwritten: ExploreSnapshot | None = None  # the last one, if its grids are not in the file
         self._names = dict(zip(scene.vehicles, ros_names(scene.vehicles), strict=True))
         self._plans: dict[str, tuple[bytes, tuple[float, float] | None]] = {}
+        self._told: dict[str, bytes] = {}  # by topic
         named = {f"robot {name}": ros for name, ros in self._names.items()}
         super().__init__(place, LinkMessages(), {"world": scene.name} | named)
 
@@ -44,6 +46,8 @@ class ExploreMcapWriter(McapFile[LinkMessages]):
             self._write_state(stamp, name, robot)
             self._write_plan(stamp, name, robot)
             self._write(f"/{name}/driven", stamp, self._ros.number(robot.driven))
+            self._write_new(f"/{name}/details", stamp, details.encode(details.RobotDetails.of(robot)))
+        self._write_new("/left_out", stamp, details.encode(snapshot.left_out))
         self._write_metrics(stamp, snapshot, OF_OPEN if snapshot.coverage is None else OF_KNOWN)
         if snapshot.links is not None:
             self._write("/links", stamp, self._ros.links(stamp, snapshot))
@@ -68,6 +72,12 @@ class ExploreMcapWriter(McapFile[LinkMessages]):
             self._write(f"/{name}/path", stamp, self._ros.path(stamp, robot.path))
             if robot.goal is not None:
                 self._write(f"/{name}/goal", stamp, self._ros.pose(stamp, *robot.goal, 0.0))
+
+    def _write_new(self, topic: str, stamp: int, told: bytes) -> None:
+        """Write what is told in JSON, if it has changed."""
+        if self._told.get(topic) != told:
+            self._told[topic] = told
+            self._write(topic, stamp, self._ros.text(told.decode()))
 
     def _write_grids(self, snapshot: ExploreSnapshot) -> None:
         stamp = stamp_of(snapshot)

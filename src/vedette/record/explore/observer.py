@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.agent.orders import NoGo
 from vedette.domains.mapping.belief import LN2, planning_factor
 from vedette.domains.mapping.impact import cells_missed, moved
 from vedette.domains.mapping.stops import unknown_near
@@ -23,13 +24,13 @@ from vedette.maps.lattice import Lattice
 from vedette.maps.world import World
 from vedette.missions.explore.options import ExploreOptions
 from vedette.outcome import Outcome
-from vedette.record.explore.log import ExploreLog, ExploreScene, ExploreSnapshot
+from vedette.record.explore.log import ExploreLog, ExploreScene, ExploreSnapshot, RobotSample
 from vedette.record.explore.score import CoverageProgress, Reference, coverage, map_errors, overlap
 from vedette.record.explore.summary import ExploreSummary, LeftOut
 from vedette.record.explore.views import RobotView, by_map, frontiers_left, union_map
 from vedette.record.figures import TeamFigures
 from vedette.record.links import Link, parts
-from vedette.record.log import Sink, VehicleSample
+from vedette.record.log import Sink
 from vedette.record.summary import Setting, Timing
 from vedette.team import PlatformSpec
 
@@ -92,15 +93,6 @@ class ExploreObserver:
         self._measure(now, views, links, log=self._looks % 2 == 0)
         self._looks += 1
 
-    def forbid(self, no_go: tuple[Area, ...], robots: Sequence[VehicleSample]) -> None:
-        """Leave what is in these areas out of what can be covered, from now on, and what is cut off by them.
-
-        ``robots``: all, as they are now.
-        """
-        if no_go != self._reference.no_go:
-            places = {i: (robot.x, robot.y) for i, robot in enumerate(robots) if robot.alive}
-            self._reference = replace(self._reference, no_go=no_go, places=places)
-
     def finish(self, now: float, views: Sequence[RobotView], links: Sequence[Link] | None) -> None:
         """Measure and log how the mission ended; as ``look``."""
         self._measure(now, views, links, log=True)
@@ -108,6 +100,7 @@ class ExploreObserver:
     def _measure(
         self, now: float, views: Sequence[RobotView], links: Sequence[Link] | None, log: bool
     ) -> None:
+        self._heed([view.sample for view in views])
         classes = union_map(views, self._world.frame)
         known = under((view.frame for view in views), self._world.frame)
         share = None if self._open else coverage(self._reference, classes, known)
@@ -122,6 +115,14 @@ class ExploreObserver:
             self.log.add(self._snapshot(now, classes, known, share, links))
             self._logged = now
 
+    def _heed(self, robots: Sequence[RobotSample]) -> None:
+        """Count on nothing any more that some living robot has heard that nobody may go to, or is cut off."""
+        orders = (order for robot in robots if robot.alive for order in robot.orders)
+        no_go = tuple(dict.fromkeys(Area(order.corners) for order in orders if isinstance(order, NoGo)))
+        if no_go != self._reference.no_go:
+            places = {i: (robot.x, robot.y) for i, robot in enumerate(robots) if robot.alive}
+            self._reference = replace(self._reference, no_go=no_go, places=places)
+
     def _snapshot(
         self,
         now: float,
@@ -133,7 +134,7 @@ class ExploreObserver:
         unknown = classes.size - int(np.count_nonzero(classes[known] != UNKNOWN))
         return ExploreSnapshot(
             t=now,
-            robots=tuple(replace(view.sample, driven=view.figures.travelled_m) for view in self._views),
+            robots=tuple(_counted(view) for view in self._views),
             coverage=share,
             known_fraction=None if self._open else 1.0 - unknown / classes.size,
             entropy=None if self._open else unknown * LN2,
@@ -220,6 +221,14 @@ class ExploreObserver:
         told += [spot for spot in living[0].left_out if _place(spot) in nobody] if living else []
         spots = [replace(spot, unknown_cells=unknown_near(classes, frame, spot.x, spot.y)) for spot in told]
         return tuple(spot for spot in spots if spot.unknown_cells)
+
+
+def _counted(view: RobotView) -> RobotSample:
+    """Return a robot with what it has counted."""
+    counts = view.figures
+    return replace(
+        view.sample, driven=counts.travelled_m, rounds=counts.rounds.rounds, sent=counts.bytes.total
+    )
 
 
 def _place(spot: LeftOut) -> tuple[float, float]:

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import atan2
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
 from vedette.errors import InputError
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
+from vedette.record.explore.details import RobotDetails, Spots, read
 from vedette.record.explore.log import ExploreScene, ExploreSnapshot, RobotSample
 from vedette.record.explore.markers import links_in
 from vedette.record.log import DEAD, LEFT
@@ -30,6 +32,7 @@ class _Robot:
     state: str = "waiting"
     path: NDArray[np.float64] = field(default_factory=lambda: NO_PATH)
     driven: float = 0.0
+    details: RobotDetails = field(default_factory=RobotDetails)
 
     def hear(self, topic: str, messages: Mapping[str, Any]) -> None:
         """Take what is told of it under a topic."""
@@ -41,12 +44,15 @@ class _Robot:
             self.path = np.array([_pose(each.pose)[:2] for each in path.poses]).reshape(-1, 2)
         if (driven := messages.get(f"/{topic}/driven")) is not None:
             self.driven = driven.data
+        if (told := messages.get(f"/{topic}/details")) is not None:
+            self.details = read(told.data, RobotDetails)
 
     def sample(self) -> RobotSample:
         """Return it as it is now."""
         alive = self.state not in (DEAD, LEFT)
         goal = (float(self.path[-1, 0]), float(self.path[-1, 1])) if len(self.path) else None
-        return RobotSample(*self.at, self.state, alive, self.path, self.name, goal, self.driven)
+        told = msgspec.structs.asdict(self.details)
+        return RobotSample(*self.at, self.state, alive, self.path, self.name, goal, self.driven, **told)
 
 
 def read_scene(path: Path) -> ExploreScene:
@@ -83,16 +89,23 @@ def read_snapshots(path: Path, scene: ExploreScene) -> Iterator[ExploreSnapshot]
     robots = {facts[f"robot {name}"]: _Robot(name) for name in scene.vehicles}
     classes: NDArray[np.uint8] = np.zeros(scene.frame.shape, np.uint8)
     impact: NDArray[np.float32] | None = None
+    left_out: Spots = ()
     for moment in moments(path):
         messages = moment.messages
-        for topic, robot in robots.items():
-            robot.hear(topic, messages)
+        try:
+            for topic, robot in robots.items():
+                robot.hear(topic, messages)
+            if "/left_out" in messages:
+                left_out = read(messages["/left_out"].data, Spots)
+        except ValueError as error:
+            raise InputError(f"{path}: at {moment.stamp / 1e9:g} s: {error}") from None
         if "/map" in messages:
             classes = _classes(messages["/map"])
         if "/team_impact" in messages:
             impact = _grid(messages["/team_impact"]).astype(np.float32) / np.float32(100.0)
         if "/tf" in messages:
-            yield _snapshot(moment, [robot.sample() for robot in robots.values()], classes, impact)
+            team = [robot.sample() for robot in robots.values()]
+            yield replace(_snapshot(moment, team, classes, impact), left_out=left_out)
 
 
 def _snapshot(

@@ -52,7 +52,7 @@ class Reference:
         seen = np.zeros_like(closed)
         for (_, reach), there in poses.items():
             seen |= visible_cells(self.world.solid | ~allowed, there, reach / self.world.frame.resolution)
-        return seen & self.visible & allowed
+        return np.asarray(seen & self.visible & allowed)
 
     def _left_to(
         self, left: World, radius: float, x: float, y: float, before: NDArray[np.bool_]

@@ -62,14 +62,12 @@ class ExploreRun(Watched[ExploreReport]):
         now = self.simulation.now
         if now >= self._next_look - 1e-9:
             seen = views(self.simulation, ways=not self._curves_only)
-            self._observer.forbid(self.simulation.no_go, [view.sample for view in seen])
             self._observer.look(now, seen, self.simulation.network.links())
             self._next_look += self._observer.period
 
     def _report(self, outcome: Outcome) -> ExploreReport:
-        now, seen = self.simulation.now, views(self.simulation)
-        self._observer.forbid(self.simulation.no_go, [view.sample for view in seen])
-        self._observer.finish(now, seen, self.simulation.network.links())
+        now = self.simulation.now
+        self._observer.finish(now, views(self.simulation), self.simulation.network.links())
         return self._observer.report(outcome, self.simulation.clock.timing(now))
 
 
@@ -127,5 +125,10 @@ def _sample(simulation: ExploreSimulation, i: int, ways: bool) -> RobotSample:
     goal = (float(path[-1, 0]), float(path[-1, 1])) if len(path) else None
     name = simulation.specs[i].name
     stops = simulation.missions[i].ahead(simulation.now) if alive and ways else ()
-    tour = tuple(Ahead(*stop) for stop in stops)
-    return RobotSample(x, y, heading, state(simulation, i), alive, path, name, goal, tour=tour)
+    budget = simulation.missions[i].platform.budget
+    return RobotSample(
+        *(x, y, heading, state(simulation, i), alive, path, name, goal),
+        tour=tuple(Ahead(*stop) for stop in stops),
+        way_left=budget.left if budget.limited else None,
+        orders=tuple(given.order for given in simulation.network.agents[i].orders.all),
+    )

@@ -18,12 +18,10 @@ from vedette.agent.orders import Given, Order, encode
 from vedette.agent.state import State
 from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.planners import DEFAULT
-from vedette.maps.area import Area
 from vedette.maps.world import World
 from vedette.missions.explore.assemble import assemble
 from vedette.missions.explore.exploring import Exploring
 from vedette.missions.explore.options import ExploreOptions
-from vedette.missions.explore.ordered import no_go_areas
 from vedette.missions.explore.own_map import OwnMap
 from vedette.outcome import NO_PROGRESS, Outcome
 from vedette.sim.orders import OrderAt
@@ -99,12 +97,6 @@ class ExploreSimulation(Simulation):
         if outcome is Outcome.NO_PROGRESS and self.now <= self._paused + NO_PROGRESS:
             return None
         return outcome
-
-    @property
-    def no_go(self) -> tuple[Area, ...]:
-        """Where nobody may go by now, as far as any living robot has heard."""
-        told = (no_go_areas(self.agents[i].orders) for i in self.living)
-        return tuple(dict.fromkeys(area for areas in told for area in areas))
 
     def order(self, order: Order) -> None:
         """Give an order at the next tick; any thread may."""
