@@ -127,8 +127,9 @@ def content(
     bits = zlib.compress(np.packbits(seen).tobytes(), 1)
     corner, place = (rows.start, cols.start), (part.resolution, part.origin_x, part.origin_y)
     size = part.rows, part.cols
-    grids = packed, bits, impact
-    return _encode(MapContent(*corner, *size, *grids, *place, lattice.shape, left, tour, way_left))
+    return _encode(
+        MapContent(*corner, *size, packed, bits, impact, *place, lattice.shape, left, tour, way_left)
+    )
 
 
 def read_content(payload: bytes) -> MapContent:

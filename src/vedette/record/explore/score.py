@@ -49,10 +49,10 @@ class Reference:
             there = poses.setdefault(body, np.zeros_like(closed))
             there |= self._left_to(left, spec.radius + SURE_CLEARANCE, x, y, there)
         allowed = leave.holds(self.world.frame)
-        seen = np.zeros_like(closed)
+        seen: NDArray[np.bool_] = np.zeros_like(closed)
         for (_, reach), there in poses.items():
             seen |= visible_cells(self.world.solid | ~allowed, there, reach / self.world.frame.resolution)
-        return np.asarray(seen & self.visible & allowed)
+        return seen & self.visible & allowed
 
     def _left_to(
         self, left: World, radius: float, x: float, y: float, before: NDArray[np.bool_]
