@@ -11,6 +11,7 @@ from vedette.domains.mapping import layers
 from vedette.domains.mapping.belief import MapBelief, freeze
 from vedette.domains.mapping.layers import TimeLayers
 from vedette.domains.mapping.platform import MappingPlatform
+from vedette.domains.mapping.prior import PriorMap
 from vedette.domains.mapping.sightings import empty_counts
 from vedette.kernels import lidar
 from vedette.kernels.tiles import TiledGrid, Tiling
@@ -57,6 +58,7 @@ def frozen(
     hidden: float = 2.0,
     worth: TimeLayers | None = None,
     frame: GridFrame = FRAME,
+    prior: PriorMap | None = None,
 ) -> MapBelief:
     """Return the belief of a round; by default on the left half of the corridor."""
     return freeze(
@@ -67,7 +69,13 @@ def frozen(
         hidden=hidden,
         layers=worth or layers.rate(start=5.0),
         counts=empty_counts(),
+        prior=prior,
     )
+
+
+def plan_of(solid: NDArray[np.bool_]) -> PriorMap:
+    """Return a plan of a building as an old map."""
+    return PriorMap.of(np.where(solid, OCCUPIED, FREE).astype(np.uint8), FRAME)
 
 
 def placed(

@@ -112,6 +112,12 @@ def exploring_options(command: CommandT) -> CommandT:
             help="Corners of the ground that is the team's [m]: it leaves all else alone.  [default: all]",
         ),
         click.option("--unbounded", is_flag=True, help="The robots are not told how far their ground goes."),
+        click.option(
+            "--prior",
+            type=FILE,
+            metavar="MAP",
+            help="An old map of the building, which may be out of date: what it shows is expected.",
+        ),
         click.option("--return-home", is_flag=True, help="The robots drive back to their starts in the end."),
     )
 

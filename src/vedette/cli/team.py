@@ -23,6 +23,7 @@ from vedette.cli.staging import Stage
 from vedette.cli.tracking import TRACKING, tracking_options
 from vedette.errors import InputError
 from vedette.interrupt import ending_on_ctrl_c
+from vedette.missions.explore.old_map import read_prior
 from vedette.missions.explore.options import ExploreOptions
 from vedette.missions.pairs import scheme_of, tell_duration, tell_objective, tell_unheeded, tell_unsaid
 from vedette.missions.search.assemble import SearchTeam
@@ -122,6 +123,7 @@ def explore(
     return_home: bool,
     area: tuple[tuple[float, float], ...] | None,
     unbounded: bool,
+    prior: Path | None,
     speed: float,
     lease: float,
     faults: str | None,
@@ -141,8 +143,12 @@ def explore(
         raise InputError("--unbounded: robots that run ROS 2 are never told how far it goes; leave it out")
     if ros2 and any(spec.sensor for spec in specs):
         raise InputError("sensor: simulated ROS 2 robots have lidars; leave it, or --ros2, out")
-    options = ExploreOptions(planner, agreed, fusion, return_home, area, unbounded)
-    area_of = options.lattice_on(world.frame).area
+    old = None if prior is None else str(prior.resolve())
+    options = ExploreOptions(planner, agreed, fusion, return_home, area, unbounded, old)
+    lattice = options.lattice_on(world.frame)
+    if prior is not None:
+        read_prior(prior, lattice)  # what is wrong with it is told before anybody starts
+    area_of = lattice.area
     places = choose_starts(world, specs, np.random.default_rng([seed, 1]), area_of)
     kind = Ros2Plan if ros2 else ExplorePlan
     plan = kind(world, specs, places, options, seed, speed, lease)
@@ -151,7 +157,7 @@ def explore(
     EXPLORING.run(
         ExploreScene.of(world, [spec.name for spec in specs]),
         output,
-        files_of(map_path, team, faults),
+        files_of(map_path, team, faults, prior),
         lambda sinks, folder: run.watched_by(ExploreWatcher(plan, setting, sinks), folder),
     )
 

@@ -16,6 +16,7 @@ from vedette.domains.mapping.planners import DEFAULT
 from vedette.domains.mapping.platform import Tour
 from vedette.maps import GridFrame
 from vedette.maps.area import Area
+from vedette.missions.explore.old_map import read_prior
 from vedette.missions.pairs import tell_unheeded
 from vedette.record.explore.log import ExploreLog, ExploreScene, ExploreSnapshot
 from vedette.record.explore.mcap import ExploreMcapWriter
@@ -87,6 +88,7 @@ class Explore(_Mission):
         area: Sequence[Sequence[float]] | None = None,
         unbounded: bool = False,
         saved: str | Path | None = None,
+        prior: str | Path | None = None,
         orders: str | Path | Sequence[OrderAt] = (),
         record: str | Path | None = None,
         **conditions: Unpack[Conditions],
@@ -104,6 +106,7 @@ class Explore(_Mission):
             area: corners x, y [m] of the ground that is the team's; None: all of the world.
             unbounded: whether the robots are not told how far their ground goes.
             saved: folder of an earlier run, whose map the team starts from: its first robot has it.
+            prior: an old map of the building, a map's file, which may be out of date or wrong.
             orders: of the operator, each with its time; or a file of them.
             record: a folder for the run record, ``run.mcap``.
             conditions: see `vedette.run.inputs.Conditions`.
@@ -126,6 +129,9 @@ class Explore(_Mission):
         self.world = world_of(world, setup.seed)
         if saved is not None:
             setup = replace(setup, saved=read_saved_map(Path(saved), self.world.frame.resolution))
+        if prior is not None:
+            lattice = setup.options.lattice_on(self.world.frame)
+            setup = replace(setup, prior=read_prior(Path(prior), lattice))
         if orders:
             given = load_orders(orders) if isinstance(orders, str | Path) else tuple(orders)
             check_orders(
@@ -133,7 +139,8 @@ class Explore(_Mission):
             )
             setup = replace(setup, orders=given)
         simulation = prepare(self.world, specs, setup)
-        self._begin(simulation, ExploreRun, record, files_of(world, team, conditions.get("faults"), orders))
+        files = files_of(world, team, conditions.get("faults"), orders, prior)
+        self._begin(simulation, ExploreRun, record, files)
 
     def _begin(
         self,

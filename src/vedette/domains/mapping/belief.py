@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from vedette.domains.mapping.frontier_worth import frontier_areas, spread_behind
 from vedette.domains.mapping.layers import TimeLayers, rate
 from vedette.domains.mapping.outlook import mean_promise
+from vedette.domains.mapping.prior import Foresight, PriorMap, block_sum, foresee
 from vedette.domains.mapping.priorities import Priorities, priority_factors, pull
 from vedette.kernels.coverage import CellWeights
 from vedette.kernels.frontier import find_frontiers
@@ -40,6 +41,12 @@ class MapBelief:
     layers: TimeLayers
     counts: NDArray[np.int64]  # (4, BINS) the team's sightings
     gathering: bool  # so little is left that robots gather up what was left behind, by tours
+    foresight: Foresight | None = None  # of an old map; None: there is none, or it says nothing here
+
+    @property
+    def to_see(self) -> NDArray[np.uint16] | NDArray[np.float32]:
+        """Return ``(r, c)`` how many unknown cells there are to be seen in each planning cell, on average."""
+        return self.unknown if self.foresight is None else self.foresight.expected(self.unknown)
 
     def planning_cells(self, local: NDArray[np.uint32]) -> NDArray[np.uint32]:
         """Map the window's flat planning cells to those of the whole map."""
@@ -82,6 +89,7 @@ def freeze(
     known: Extent = EVERYWHERE,
     leave: Leave | None = None,
     priorities: Priorities = (),
+    prior: PriorMap | None = None,
 ) -> MapBelief:
     """Snapshot a team map for a round.
 
@@ -102,6 +110,7 @@ def freeze(
         known: rows and columns outside of which nothing is known.
         leave: where there is nothing to see and no way for want of it; None: everywhere is the team's.
         priorities: areas in which all is worth so many times as much.
+        prior: an old map of the building; None: there is none.
     """
     factor = planning_factor(frame.resolution)
     planning = frame.coarse(factor)
@@ -113,8 +122,10 @@ def freeze(
     if leave is not None:
         crop = leave.close(crop, window)
     cells, starts = find_frontiers(crop, *frontier_limits(extent, frame.resolution, shortest))
-    unknown = _block_sum(crop == UNKNOWN, factor)
-    local = unknown.astype(np.float32) * LN2
+    unknown = block_sum(crop == UNKNOWN, factor)
+    foresight = None if prior is None else foresee(crop, window, factor, prior)
+    to_see = unknown if foresight is None else foresight.expected(unknown)
+    local = to_see.astype(np.float32) * LN2
     frontiers = cells, starts
     gathering = turn == math.inf or (
         turn > 0.0 and mean_promise(crop, frame.resolution, frontiers, counts, unknown, factor) < turn
@@ -140,6 +151,7 @@ def freeze(
         layers if gathering else rate(),
         counts,
         gathering,
+        foresight,
     )
 
 
@@ -180,14 +192,3 @@ def _all_unknown(frame: GridFrame, factor: int) -> tuple[float, float, float, fl
         float(rows * side * worth),
         float(rows * cols * worth),
     )
-
-
-def _block_sum(mask: NDArray[np.bool_], factor: int) -> NDArray[np.uint16]:
-    rows, cols = mask.shape
-    if rows % factor or cols % factor:
-        mask = np.pad(mask, ((0, -rows % factor), (0, -cols % factor)))
-    total = np.zeros((mask.shape[0] // factor, mask.shape[1] // factor), np.uint16)
-    for row in range(factor):
-        for col in range(factor):
-            total += mask[row::factor, col::factor]
-    return total

@@ -56,7 +56,7 @@ def _tours(
     return Planner(
         summary,
         layers.rate(start=5.0),
-        lambda spec: kind(spec, max_stops=6, measured="unknown"),
+        lambda spec: kind(spec, max_stops=6, measured="unknown", foresees=True),
         hidden=HIDDEN_AREA,
         return_price=return_price,
         turn=turn,

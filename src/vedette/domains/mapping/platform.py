@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.budget import WayLeft
+from vedette.domains.mapping.foreseen import LONG_TOUR, by_way_of_frontier, supposed, with_foreseen
 from vedette.domains.mapping.impact import NOTHING, Impact
 from vedette.domains.mapping.layers import TimeLayers
 from vedette.domains.mapping.sightings import SightingModel, beam_model, measured_model
@@ -115,6 +116,7 @@ class MappingPlatform:
     max_stops: int = 6
     measured: str = "unknown"  # sighting model: "unknown" length or "distance" (the paper's), or "beam"
     stall: float = 0.0  # how often it gets stuck for good [1/m]
+    foresees: bool = False  # tours may lead on into what an old map says
     x: float = 0.0
     y: float = 0.0
     obstacles: list[Disc] = field(default_factory=list)
@@ -181,6 +183,7 @@ class MappingPlatform:
         self.cut_short = self.daring = self.short = False
         model = self.model(belief)
         if self._finds_anything(belief, model):
+            self._foresee(belief)
             return
         if self.hearsay:
             self.hearsay = []
@@ -188,6 +191,16 @@ class MappingPlatform:
                 return
         self.daring = self._dares(belief, model)
         self.patience *= 2 if self.cut_short and not self.daring else 1
+
+    def _foresee(self, belief: MapBelief) -> None:
+        """Let tours lead on to places that nobody has seen yet, where an old map is trusted."""
+        if not self.foresees or belief.foresight is None or self.ahead == 1 or self.budget.limited:
+            return
+        assert self.stops is not None
+        trusting = supposed(belief, belief.foresight)
+        ground = survey(trusting, self.spec, self.x, self.y, self.obstacles, CLEARANCES[0])
+        self.stops = with_foreseen(belief, belief.foresight, ground, self.spec, self.stops)
+        self.ahead = LONG_TOUR
 
     def _finds_anything(self, belief: MapBelief, model: SightingModel) -> bool:
         """Look for stops on ground that is less and less wide; tell if one can be visited."""
@@ -351,6 +364,7 @@ class MappingPlatform:
         assert self.stops is not None
         if not len(order):
             return STAY
+        order = by_way_of_frontier(self.stops, order)
         legs = np.concatenate(([self.stops.first_leg[order[0]]], self.stops.legs[order[:-1], order[1:]]))
         arrivals = np.cumsum(legs, dtype=np.float32).astype(np.float64)  # to the bit as the kernel's
         order = order[: int(np.isfinite(arrivals).sum())]
@@ -364,6 +378,12 @@ class MappingPlatform:
             self.stops.unknown[order],
             order,
         )
+
+    def is_ahead_of_map(self, strategy: Tour) -> bool:
+        """Tell whether a tour's next stop is one that nobody has seen yet: a later round finds the way."""
+        if not len(strategy) or self.stops is None or not self.stops.foreseen:
+            return False
+        return int(strategy.stops[0]) >= len(self.stops) - self.stops.foreseen
 
     def impact(self, belief: MapBelief, strategy: Tour) -> Impact:
         """What the tour would reveal, each stop's footprint in the layer of its arrival; paper, eq. (39)."""
@@ -392,7 +412,9 @@ class MappingPlatform:
         """
         if self.cut_short:
             return math.inf
-        return coverage.most_any_tour_adds(self._problem(belief, team), self.ahead)
+        assert self.stops is not None
+        most = self.ahead + (self.stops.foreseen > 0)  # the frontier that a tour leads by counts too
+        return coverage.most_any_tour_adds(self._problem(belief, team), most)
 
     def _problem(self, belief: MapBelief, others: Impact) -> coverage.TourProblem:
         """Return the choice of a tour against the others' impact."""

@@ -12,6 +12,7 @@ from vedette.domains.mapping.beams import apart, between
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.blur import blurred
 from vedette.domains.mapping.impact import MIN_SHARE, quantise
+from vedette.domains.mapping.prior import Foresight, Shares
 from vedette.domains.mapping.sightings import SightingModel
 from vedette.kernels import coverage, distance, frontier
 from vedette.kernels.coverage import Footprints, Viewpoints
@@ -54,6 +55,7 @@ class Stops:
     footprints: Footprints
     first_leg: NDArray[np.float32]  # (K,) travel time from here [s], inf where unreachable
     legs: NDArray[np.float32]  # (K, K) travel time between [s], inf where unreachable
+    foreseen: int = 0  # so many of them, the last, are places that nobody has seen yet
 
     def __len__(self) -> int:
         return len(self.targets)
@@ -135,13 +137,14 @@ def find_stops(
     Legs between stops are worked out for ``tours`` only; else they are infinite.
     """
     frame, targets, views = belief.frame, found.targets, found.views
-    sharp = _footprints(belief, spec, model, targets, views)
-    starts, cells, shares = blurred(sharp, belief.unknown, spec.pose_std / belief.planning.resolution)
-    area = np.add.reduceat(np.append(shares * belief.unknown.ravel()[cells], 0.0), starts[:-1]) * (
-        np.diff(starts) > 0
-    )
+    starts, cells, shares = _to_be_seen(belief, spec, model, targets, views)
+    seen = shares * belief.to_see.ravel()[cells]
+    area = _by_look(seen, starts)
     lengths = np.diff(belief.frontier_starts)[found.clusters] * frame.resolution
     least = _least(belief, lengths <= 2.0 * spec.radius + 1e-9, least_area)
+    if (foresight := belief.foresight) is not None:  # what an old map promises is there
+        sure = _by_look(seen * foresight.trust.ravel()[cells], starts) / np.maximum(area, 1e-6)
+        least = sure * least_area + (1.0 - sure) * least
     asked = np.maximum(np.minimum(least, enough_of_sight(spec)), dare if ground.dared else 0.0)
     enough = area * frame.resolution**2 >= asked
     starts, cells, shares = _select(starts, cells, shares, enough)
@@ -176,17 +179,64 @@ def enough_of_sight(spec: PlatformSpec) -> float:
     return float(LEAST_OF_SIGHT * 0.5 * np.radians(spec.view) * spec.range**2)
 
 
-def _footprints(
+def _by_look(values: NDArray[np.float32], starts: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Add up what belongs to each look."""
+    total: NDArray[np.float64] = np.add.reduceat(np.append(values, 0.0), starts[:-1])
+    return total * (np.diff(starts) > 0)
+
+
+def _to_be_seen(
     belief: MapBelief,
     spec: PlatformSpec,
     model: SightingModel,
     targets: NDArray[np.int64],
     views: NDArray[np.int64],
-) -> tuple[NDArray[np.int64], NDArray[np.uint32], NDArray[np.float32]]:
+) -> Shares:
+    """Return what looks from the views are expected to reveal, the mean over whether an old map is right."""
     cols = belief.frame.cols
     toward = np.arctan2(targets // cols - views // cols, targets % cols - views % cols)
+    sharp = _footprints(belief, belief.classes, spec, model, views, toward)
+    plain = blurred(sharp, belief.unknown, spec.pose_std / belief.planning.resolution)
+    if (foresight := belief.foresight) is None:
+        return plain
+    return foresight.mean(plain, _if_right(belief, foresight, spec, views, toward), belief.unknown)
+
+
+def shown_if_right(
+    belief: MapBelief,
+    foresight: Foresight,
+    spec: PlatformSpec,
+    views: NDArray[np.int64],
+    toward: NDArray[np.float64],
+) -> Shares:
+    """Return what looks are expected to reveal from where nobody gets unless an old map is right."""
+    nothing = np.zeros(len(views) + 1, np.int64), np.empty(0, np.uint32), np.empty(0, np.float32)
+    return foresight.mean(nothing, _if_right(belief, foresight, spec, views, toward), belief.unknown)
+
+
+def _if_right(
+    belief: MapBelief,
+    foresight: Foresight,
+    spec: PlatformSpec,
+    views: NDArray[np.int64],
+    toward: NDArray[np.float64],
+) -> Shares:
+    """Return what looks reveal if an old map is right: all that no wall of it hides, within range."""
+    sure = SightingModel(np.ones(1, np.float32), by_distance=True)
+    sharp = _footprints(belief, foresight.classes, spec, sure, views, toward)
+    return blurred(sharp, foresight.seeable, spec.pose_std / belief.planning.resolution)
+
+
+def _footprints(
+    belief: MapBelief,
+    classes: NDArray[np.uint8],
+    spec: PlatformSpec,
+    model: SightingModel,
+    views: NDArray[np.int64],
+    toward: NDArray[np.float64],
+) -> Shares:
     seen = coverage.footprints(
-        belief.classes,
+        classes,
         views,
         toward,
         spec.range / belief.frame.resolution,
@@ -213,7 +263,7 @@ def _select(
     cells: NDArray[np.uint32],
     shares: NDArray[np.float32],
     rows: NDArray[np.bool_],
-) -> tuple[NDArray[np.int64], NDArray[np.uint32], NDArray[np.float32]]:
+) -> Shares:
     sizes = np.diff(starts)
     entries = np.repeat(rows, sizes)
     return np.concatenate(([0], np.cumsum(sizes[rows]))), cells[entries], shares[entries]

@@ -11,6 +11,7 @@ from vedette.agent.relay import Relay, nearby
 from vedette.agent.terms import Terms, flat
 from vedette.domains.mapping.belief import planning_factor
 from vedette.domains.mapping.planners import planner
+from vedette.domains.mapping.prior import PriorMap
 from vedette.domains.mapping.sightings import BINS
 from vedette.errors import check_word
 from vedette.fusion import ChannelFilter, Fusion, ReplicatedEvidence
@@ -28,7 +29,7 @@ FUSIONS: Mapping[str, type[ReplicatedEvidence] | type[ChannelFilter]] = {
 }
 
 
-def terms_of(lattice: Lattice, options: ExploreOptions) -> Terms:
+def terms_of(lattice: Lattice, options: ExploreOptions, prior: PriorMap | None = None) -> Terms:
     """Return what all of a team have to agree on: not the search behind a planner, nor anybody's body."""
     how, resolution = planner(options.planner), lattice.frame.resolution
     objective = {
@@ -42,6 +43,7 @@ def terms_of(lattice: Lattice, options: ExploreOptions) -> Terms:
         "mission": "explore",
         **dict(flat("map", lattice.frame)),
         **({} if lattice.area is None else dict(flat("area", lattice.area))),
+        **({} if prior is None else {"prior": f"{prior.identity:016x}"}),
         "planning cell": f"{resolution * planning_factor(resolution):g}",
         **{f"objective.{name}": f"{value:g}" for name, value in objective.items()},
         "scheme": options.negotiates_by,
@@ -61,6 +63,7 @@ def assemble(
     waits_for: int = 1,
     explorer: type[Exploring] = Exploring,
     notary: Notary | None = None,
+    prior: PriorMap | None = None,
 ) -> Agent:
     """Return a fresh agent of a team.
 
@@ -75,6 +78,7 @@ def assemble(
         waits_for: so many robots, itself included, before it begins; for a while.
         explorer: its share of the mission.
         notary: signs its evidence, if that is replicated, and checks everybody's; None: nobody does.
+        prior: an old map of the building, the same for the whole team; None: there is none.
 
     Raises:
         InputError: the planner or the way of fusing is unknown, or cannot serve such a team.
@@ -82,11 +86,14 @@ def assemble(
     check_word("fusion", options.fusion, FUSIONS)
     fusion = _fusion(lattice, options, robot, boot, most, notary)
     how = planner(options.planner, robots)
-    mission = explorer(lattice, spec, how, fusion, most=most)
+    mission = explorer(lattice, spec, how, fusion, most=most, prior=prior)
     behaviour = GroundBehaviour(mission, Driver(robot, spec), options.return_home, waits_for)
     relay = Relay(nearby(most.range, most.speed) if how.negotiates else inf)  # others plan by mates' places
     forks = how.negotiates and how.scheme is None  # where the order of turns is no part of the planner
-    return Agent(robot, boot, spec, behaviour, options.negotiates_by, forks=forks, relay=relay)
+    agent = Agent(robot, boot, spec, behaviour, options.negotiates_by, forks=forks, relay=relay)
+    if prior is not None:
+        agent.rounds.mandate = lambda: agent.orders.digest ^ prior.identity
+    return agent
 
 
 def _fusion(

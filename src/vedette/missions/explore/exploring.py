@@ -27,6 +27,7 @@ from vedette.domains.mapping.leftovers import Leftover, given_up, leftovers
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.planners import Planner
 from vedette.domains.mapping.platform import STAY, MappingPlatform, Tour
+from vedette.domains.mapping.prior import PriorMap
 from vedette.domains.mapping.sightings import BINS
 from vedette.domains.mapping.stops import NEARBY, VIEW_REACH, Disc, around
 from vedette.domains.mapping.views import MOST_STOPS
@@ -68,6 +69,7 @@ class Exploring:
     fusion: Fusion
     strategy: Tour = STAY
     most: Most | None = None  # of any robot in the team; None: not known, so that no claim is too large
+    prior: PriorMap | None = None  # an old map of the building, the same for all
     objective: Objective[Any, Any] = field(default_factory=MappingObjective)
     codec: Codec[Any] = field(init=False)
     platform: MappingPlatform = field(init=False)
@@ -197,6 +199,7 @@ class Exploring:
             "known": known,
             "leave": self._leave or None,
             "priorities": self._priorities,
+            "prior": self.prior,
         }
         belief = Frozen.once(
             (classes, counts),
@@ -321,6 +324,8 @@ class Exploring:
         """Return the next viewpoint of the tour; without one, where there is something left to try."""
         if not len(self.strategy):
             return self._resort.goal
+        if self.platform.is_ahead_of_map(self.strategy):
+            return None
         x, y = self.strategy.views[0].tolist()
         return x, y
 

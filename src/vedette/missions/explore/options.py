@@ -20,6 +20,7 @@ class ExploreOptions(Struct, forbid_unknown_fields=True, frozen=True):
     return_home: bool = False  # robots drive back to their starts in the end
     area: tuple[tuple[float, float], ...] | None = None  # corners, x, y [m]: all outside is nobody's ground
     unbounded: bool = False  # robots with a map of their world are not told how far it goes
+    prior: str | None = None  # an old map of the building, a map's file
 
     @property
     def negotiates_by(self) -> str:

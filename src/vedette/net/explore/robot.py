@@ -16,6 +16,7 @@ from vedette.errors import InputError
 from vedette.maps.lattice import Lattice
 from vedette.maps.world import World
 from vedette.missions.explore.assemble import assemble, terms_of
+from vedette.missions.explore.old_map import read_prior
 from vedette.missions.explore.options import ExploreOptions
 from vedette.net.config import RESOLUTION, AgentConfig, BodySettings
 from vedette.net.explore.content import ExploreTeller
@@ -54,7 +55,8 @@ def explorer(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robo
         place = _own(config.body, config.body.own, robot_name(config.robot - 1), folder, options)
     else:
         place = _simulated(config, folder, options)
-    agreed = {**terms_of(place.lattice, options), **place.terms}
+    prior = None if options.prior is None else read_prior(folder / options.prior, place.lattice)
+    agreed = {**terms_of(place.lattice, options, prior), **place.terms}
     notary, terms = notary_of(config, folder, agreed, speed)
     gate = gate_of(config, f"{fingerprint_of(agreed):x}", notary)
     agent = assemble(
@@ -67,6 +69,7 @@ def explorer(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robo
         most=Most.of([place.hull]) if best is None else Most(best.range, best.speed),
         waits_for=config.robots,
         notary=notary,
+        prior=prior,
     )
     agent.check_order = gate.check
     show = None if place.showing is None else place.showing(agent)

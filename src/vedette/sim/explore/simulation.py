@@ -18,6 +18,7 @@ from vedette.agent.orders import Given, Order, encode
 from vedette.agent.state import State
 from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.planners import DEFAULT
+from vedette.domains.mapping.prior import PriorMap
 from vedette.maps.world import World
 from vedette.missions.explore.assemble import assemble
 from vedette.missions.explore.exploring import Exploring
@@ -41,6 +42,7 @@ class ExploreSetup(Setup):
     area: tuple[tuple[float, float], ...] | None = None  # corners [m], as in ``ExploreOptions``
     unbounded: bool = False
     saved: OwnMap | None = None  # an earlier mission's map, which the first robot knows from the start
+    prior: PriorMap | None = None  # an old map of the building, which all have
     orders: tuple[OrderAt, ...] = ()  # of the operator, in order of time
 
     @property
@@ -84,8 +86,9 @@ class ExploreSimulation(Simulation):
 
     def _explorer(self, robot: int, boot: int) -> Agent:
         specs = self.specs
-        options, most = self.setup.options, Most.of(specs)
-        agent = assemble(self.lattice, specs[robot], options, robot, boot, robots=len(specs), most=most)
+        setup, most = self.setup, Most.of(specs)
+        team = self.lattice, specs[robot], setup.options, robot, boot
+        agent = assemble(*team, robots=len(specs), most=most, prior=setup.prior)
         if robot == 0 and self.setup.saved is not None:
             cast(Exploring, agent.mission).own.take_over(self.setup.saved, ())
         return agent
