@@ -94,7 +94,7 @@ fn py_combine<'py>(
     layers: u32,
 ) -> PyResult<PySparse<'py>> {
     let (a, b) = ((keys_a.as_slice()?, misses_a.as_slice()?), (keys_b.as_slice()?, misses_b.as_slice()?));
-    let (keys, misses) = combine(a, b, layers.max(1));
+    let (keys, misses) = py.detach(|| combine(a, b, layers.max(1)));
     Ok((keys.into_pyarray(py), misses.into_pyarray(py)))
 }
 
@@ -128,14 +128,12 @@ fn py_marginals<'py>(
     let others = (others_keys.as_slice()?, others_misses.as_slice()?);
     let (keys, misses) = (keys.as_slice()?, misses.as_slice()?);
     let (worth, layer_weights, miss) = (worth_of(&worth)?, layer_weights.as_slice()?, miss_table());
-    let gains: Vec<f64> = starts
-        .as_slice()?
-        .windows(2)
-        .map(|bounds| {
-            let own = bounds[0] as usize..bounds[1] as usize;
-            marginal(&worth, layer_weights, others, (&keys[own.clone()], &misses[own]), &miss)
-        })
-        .collect();
+    let starts = starts.as_slice()?;
+    let gain = |bounds: &[i64]| {
+        let own = bounds[0] as usize..bounds[1] as usize;
+        marginal(&worth, layer_weights, others, (&keys[own.clone()], &misses[own]), &miss)
+    };
+    let gains: Vec<f64> = py.detach(|| starts.windows(2).map(gain).collect());
     Ok(gains.into_pyarray(py))
 }
 

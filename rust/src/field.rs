@@ -200,10 +200,11 @@ fn field_factor<'py>(
         return Err(PyValueError::new_err("a row each, and a band"));
     }
     let (mut factor, width) = (band.as_slice()?.to_vec(), shape.1 - 1);
-    if !add_information(&mut factor, width, rows, information) {
+    if !py.detach(|| add_information(&mut factor, width, rows, information)) {
         return Err(PyValueError::new_err("a row reaches beyond the band"));
     }
-    let log_det = factorise(&mut factor, width)
+    let log_det = py
+        .detach(|| factorise(&mut factor, width))
         .ok_or_else(|| PyValueError::new_err("the matrix is not positive definite"))?;
     Ok((factor.into_pyarray(py).reshape([shape.0, shape.1])?, log_det))
 }
@@ -221,8 +222,8 @@ fn field_covariance<'py>(
     if size == 0 {
         return Err(PyValueError::new_err("a band has a diagonal"));
     }
-    let m = rows.count();
-    covariance(factor.as_slice()?, size - 1, rows).into_pyarray(py).reshape([m, m])
+    let (m, factor) = (rows.count(), factor.as_slice()?);
+    py.detach(|| covariance(factor, size - 1, rows)).into_pyarray(py).reshape([m, m])
 }
 
 #[pyfunction]
@@ -234,7 +235,8 @@ fn field_variances<'py>(
     if size == 0 {
         return Err(PyValueError::new_err("a band has a diagonal"));
     }
-    Ok(variances(factor.as_slice()?, size - 1).into_pyarray(py))
+    let factor = factor.as_slice()?;
+    Ok(py.detach(|| variances(factor, size - 1)).into_pyarray(py))
 }
 
 #[pyfunction]
@@ -250,7 +252,8 @@ fn field_gains<'py>(
     if columns != m {
         return Err(PyValueError::new_err("a covariance is square"));
     }
-    Ok(gains(covariance.as_slice()?, m, ways).into_pyarray(py))
+    let covariance = covariance.as_slice()?;
+    Ok(py.detach(|| gains(covariance, m, ways)).into_pyarray(py))
 }
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {

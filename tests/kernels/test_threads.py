@@ -17,6 +17,10 @@ WALLS = np.zeros_like(OPEN)
 HALF = np.where(np.arange(1000) < 500, OPEN, 0).astype(np.uint8)
 POSES = WALLS.copy()
 POSES[500, ::10] = 1
+KEYS = np.arange(400_000, dtype=np.uint32)
+MISSES = np.full(len(KEYS), 5, np.uint8)
+BAND = np.tile([0.0] * 50 + [2.0], (4000, 1))  # a diagonal matrix, kept as a band
+NO_ROWS = np.zeros(1, np.int64), np.empty(0, np.int64), np.empty(0)
 
 
 @pytest.fixture
@@ -46,8 +50,19 @@ def beats() -> Iterator[Callable[[], int]]:
         lambda: kernels.traversable(HALF, 0.5, 0.1),
         lambda: kernels.find_frontiers(HALF, 1, 20),
         lambda: kernels.visible_cells(WALLS, POSES, 40.0),
+        lambda: kernels.combine(KEYS, MISSES, KEYS, MISSES, 32),
+        lambda: kernels.field_factor(BAND, *NO_ROWS, np.empty(0)),
+        lambda: kernels.field_variances(BAND),
     ],
-    ids=["distance_field", "traversable", "find_frontiers", "visible_cells"],
+    ids=[
+        "distance_field",
+        "traversable",
+        "find_frontiers",
+        "visible_cells",
+        "combine",
+        "field_factor",
+        "field_variances",
+    ],
 )
 def test_another_thread_has_its_turn_while_a_kernel_runs(
     kernel: Callable[[], object], beats: Callable[[], int]
