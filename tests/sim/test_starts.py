@@ -9,6 +9,7 @@ import pytest
 
 from vedette.errors import InputError
 from vedette.kernels.components import largest
+from vedette.kernels.distance import distance_field
 from vedette.maps import GridFrame
 from vedette.maps.world import World, reachable_poses, standable
 from vedette.sim.indoors import indoors
@@ -126,6 +127,27 @@ def test_a_team_of_many_sizes_fits_each_to_its_own_radius() -> None:
         assert clearance(world, x, y, 1.0) >= specs[i].radius - 1e-9
         for j in range(i):
             assert math.dist(starts[i, :2], starts[j, :2]) >= specs[i].radius + specs[j].radius + 0.1 - 1e-5
+
+
+def test_a_team_takes_the_places_nearest_by_path_however_far_the_path_leads() -> None:
+    """In halls side by side, with doors at alternating ends, what is near straight across is far by path."""
+    solid = np.zeros((330, 200), np.bool_)
+    for hall in range(1, 6):
+        solid[55 * hall] = True
+        solid[55 * hall, 2:14] = hall % 2 == 0
+        solid[55 * hall, -14:-2] = hall % 2 == 1
+    world = World(GridFrame(0.1, 330, 200), solid, "halls")
+    specs = [spec(0, (10.0, 2.75), radius=0.5), *(spec(i, radius=0.5) for i in range(1, 160))]
+    starts = choose_starts(world, specs, rng())
+    field = distance_field(standable(world, 0.5), world.frame.flat(10.0, 2.75), 0.1).ravel()
+    order = np.argsort(np.where(standable(world, 0.5).ravel(), field, np.inf), kind="stable")
+    places = world.frame.centres(order)
+    apart = np.hypot(*(places - starts[0, :2]).T)  # from the nearest that is taken
+    for start in starts[1:, :2]:
+        place = places[np.argmax(apart >= 1.3 - 1e-6)]
+        np.testing.assert_array_equal(start, place)
+        apart = np.minimum(apart, np.hypot(*(places - place).T))
+    assert np.ptp(starts[:, 1]) > 13.0
 
 
 @pytest.mark.parametrize(

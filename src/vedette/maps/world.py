@@ -41,7 +41,7 @@ class World:
 
     def classes(self) -> NDArray[np.uint8]:
         """Return the true map: FREE or OCCUPIED for each cell."""
-        return np.where(self.solid, OCCUPIED, FREE).astype(np.uint8)
+        return np.where(self.solid, np.uint8(OCCUPIED), np.uint8(FREE))
 
     def within(self, area: Area | None) -> World:
         """Return the world that is left of it to a team: solid wherever the ground is not the team's."""

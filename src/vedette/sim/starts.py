@@ -19,6 +19,7 @@ from vedette.team import PlatformSpec
 _GAP = 0.05  # [m] least gap between robots that a user placed
 _TOUCH = 1e-6  # [m] overlap that rounding may make
 _GAPS = (0.3, 0.1)  # [m] gap between robots that are placed here: at ease, then close
+_MARGIN = 64  # [cells] around the spot, in which places are looked for first
 _AT_EASE = 0.3  # [m] room around the spot where a team is placed, if the world has any such
 
 
@@ -234,16 +235,40 @@ def _place(
 
 
 class _Places:
-    """The places where one size of disc can stand, nearest to the anchor by path first."""
+    """The places where one size of disc can stand, nearest to the anchor by path first.
+
+    They are sorted in a window about the anchor, which grows once all in it are taken: of a large world few
+    are asked for.
+    """
 
     def __init__(self, world: World, radius: float, anchor: int) -> None:
         self._frame = world.frame
-        cells = standable(world, radius)
-        self._open = cells.copy()
-        field = distance_field(cells, anchor, world.frame.resolution).ravel()
-        near = np.flatnonzero(np.isfinite(field) & cells.ravel())
-        self._order = near[np.argsort(field[near], kind="stable")]
+        self._anchor = anchor
+        self._cells = standable(world, radius)
+        self._open = self._cells.copy()
+        self._margin = _MARGIN
+        self._order = self._nearest()
         self._next = 0
+
+    def _nearest(self) -> NDArray[np.int64]:
+        """Return the flat cells that are nearer than any beyond the window, the nearest first."""
+        row, col = divmod(self._anchor, self._frame.cols)
+        top, left = max(row - self._margin, 0), max(col - self._margin, 0)
+        cells = self._cells[top : row + self._margin + 1, left : col + self._margin + 1]
+        local = (row - top) * cells.shape[1] + col - left
+        field = distance_field(cells, local, self._frame.resolution)
+        edges = [
+            field[0, :] if top else None,
+            field[:, 0] if left else None,
+            field[-1, :] if top + cells.shape[0] < self._frame.rows else None,
+            field[:, -1] if left + cells.shape[1] < self._frame.cols else None,
+        ]
+        # No path that leaves the window is shorter than the way to the nearest of its inner edges.
+        certain = min((float(edge.min()) for edge in edges if edge is not None), default=math.inf)
+        near = np.flatnonzero(np.isfinite(field) & (field <= certain) & cells)
+        near = near[np.argsort(field.ravel()[near], kind="stable")]
+        rows, cols = np.divmod(near, cells.shape[1])
+        return (rows + top) * self._frame.cols + cols + left
 
     def keep_clear(self, point: NDArray[np.float64], distance: float) -> None:
         """Close the places nearer than ``distance`` [m] to a point."""
@@ -259,11 +284,15 @@ class _Places:
     def take(self) -> NDArray[np.float64] | None:
         """Return the nearest place still open, ``None`` if there is none."""
         still_open = self._open.ravel()
-        while self._next < len(self._order):
-            ahead = still_open[self._order[self._next : self._next + 4096]]
-            if ahead.any():
-                self._next += int(ahead.argmax())
-                x, y = self._frame.centres(self._order[self._next : self._next + 1])[0]
-                return np.array([x, y])
-            self._next += len(ahead)
-        return None
+        while True:
+            while self._next < len(self._order):
+                ahead = still_open[self._order[self._next : self._next + 4096]]
+                if ahead.any():
+                    self._next += int(ahead.argmax())
+                    x, y = self._frame.centres(self._order[self._next : self._next + 1])[0]
+                    return np.array([x, y])
+                self._next += len(ahead)
+            if self._margin >= max(self._frame.shape):
+                return None
+            self._margin *= 4
+            self._order = self._nearest()  # begins with those of the smaller window
