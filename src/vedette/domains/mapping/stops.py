@@ -12,6 +12,7 @@ from vedette.domains.mapping.beams import apart, between
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.blur import blurred
 from vedette.domains.mapping.impact import MIN_SHARE, quantise
+from vedette.domains.mapping.looks import LooksTaken
 from vedette.domains.mapping.prior import Foresight, Shares
 from vedette.domains.mapping.sightings import SightingModel
 from vedette.kernels import coverage, distance, frontier
@@ -235,18 +236,19 @@ def _footprints(
     views: NDArray[np.int64],
     toward: NDArray[np.float64],
 ) -> Shares:
-    seen = coverage.footprints(
-        classes,
-        views,
-        toward,
-        spec.range / belief.frame.resolution,
-        float(np.radians(spec.view)),
-        model.table,
-        model.by_distance,
-        _rays(spec, belief.frame.resolution),
-        belief.factor,
-        MIN_SHARE,
-    )
+    reach, view = spec.range / belief.frame.resolution, float(np.radians(spec.view))
+    rays = _rays(spec, belief.frame.resolution)
+
+    def work_out(new: list[int]) -> Shares:
+        return coverage.footprints(
+            classes, views[new], toward[new], reach, view,
+            model.table, model.by_distance, rays, belief.factor, MIN_SHARE,
+        )  # fmt: skip
+
+    if_right = classes is not belief.classes
+    lidar = if_right, reach, view, model.table.tobytes(), model.by_distance, rays
+    looks = list(zip(views.tolist(), toward.tolist(), strict=True))
+    seen = LooksTaken.at(belief).reveal(lidar, looks, work_out)
     sensor = CheckedSensor.of(spec)
     return seen if sensor is None else as_seen(sensor, belief, seen, views, toward)
 
