@@ -26,6 +26,7 @@ from vedette.agent.mates import Mates
 from vedette.agent.messages import Beacon, Beacons
 from vedette.agent.relay import Relay, nearby
 from vedette.fusion import ReplicatedEvidence
+from vedette.fusion.link import RESEND_AFTER
 from vedette.kernels.tiles import CELLS, SIDE, TiledGrid, Tiling
 from vedette.negotiation import Tree
 from vedette.record.files import write_text
@@ -142,22 +143,25 @@ def tree_between_near(places: NDArray[np.float64]) -> Tree:
 
 
 def evidence_of(n: int, rng: np.random.Generator) -> dict[str, float]:
-    """Return what one robot holds of all ``n`` robots' evidence, and what news of each of them take."""
+    """Return what one robot holds of all ``n`` robots' evidence, and what news of each of them take.
+
+    All tell robot 0, who tells robot 1.
+    """
     across = int(np.ceil((n * TILES) ** 0.5))
     shape = across * SIDE, across * SIDE
-    teller, hearer = (ReplicatedEvidence(n + k, 1, shape, 0) for k in range(2))
-    teller.set_neighbours(range(n + 2))
-    hearer.set_neighbours([n])
-    writers = [ReplicatedEvidence(robot, 1, shape, 0) for robot in range(n)]
-    grounds = [TiledGrid(Tiling(*shape), np.int8) for _ in writers]
-    for tiles, now in ((TILES, 0.0), (FRESH, 10.0)):  # all that they have seen by and by; then their news
-        for robot, (evidence, own) in enumerate(zip(writers, grounds, strict=True)):
-            seen = robot * TILES + np.arange(tiles)
-            own.write(seen, _walls(rng, tiles))
-            evidence.set_neighbours([n])
+    team = [ReplicatedEvidence(robot, 1, shape, 0) for robot in range(n)]
+    grounds = [TiledGrid(Tiling(*shape), np.int8) for _ in team]
+    teller, hearer = team[:2]
+    teller.set_neighbours(range(1, n))
+    for other in team[1:]:
+        other.set_neighbours([0])
+    for tiles, now in ((TILES, 0.0), (FRESH, 0.5 * RESEND_AFTER)):  # all they have seen by and by; then news
+        for robot, (evidence, own) in enumerate(zip(team, grounds, strict=True)):
+            own.write(robot * TILES + np.arange(tiles), _walls(rng, tiles))
             evidence.publish(own, None, None)
-            _exchange(evidence, robot, teller, n, now)
-        size, took = _exchange(teller, n, hearer, n + 1, now)
+            if robot > 1:
+                _tell_first(evidence, robot, teller, now)
+        size, took = _exchange(teller, hearer, now)
     return {"held": n * TILES * CELLS * HELD / 1e6, "news": size / 1e3, "merging": took}
 
 
@@ -170,20 +174,29 @@ def _walls(rng: np.random.Generator, tiles: int) -> NDArray[np.int8]:
     return cells.reshape(tiles, -1)
 
 
-def _exchange(
-    teller: ReplicatedEvidence, name: int, hearer: ReplicatedEvidence, other: int, now: float
-) -> tuple[int, float]:
-    """Let two tell each other all; return the bytes to the hearer, and its CPU time to take them in [s]."""
+def _tell_first(evidence: ReplicatedEvidence, robot: int, teller: ReplicatedEvidence, now: float) -> None:
+    """Let a robot tell robot 0 all that it has to; it hears nothing but the greeting that it waits for."""
+    if now == 0.0:
+        greeting = teller.outgoing(robot, now)
+        assert greeting is not None
+        evidence.receive(0, greeting, now)
+    told = evidence.outgoing(0, now)  # None: its tile has come out as it was
+    if told is not None:
+        teller.receive(robot, told, now)
+
+
+def _exchange(teller: ReplicatedEvidence, hearer: ReplicatedEvidence, now: float) -> tuple[int, float]:
+    """Let robots 0 and 1 tell each other all; return the bytes to 1, and its CPU time to take them in [s]."""
     size, took, quiet = 0, 0.0, 0
     while quiet < 2:
         quiet = 0
-        for sender, own, receiver, to in ((teller, name, hearer, other), (hearer, other, teller, name)):
+        for sender, name, receiver, to in ((teller, 0, hearer, 1), (hearer, 1, teller, 0)):
             payload = sender.outgoing(to, now)
             if payload is None:
                 quiet += 1
                 continue
             began = time.process_time()
-            receiver.receive(own, payload, now)
+            receiver.receive(name, payload, now)
             if receiver is hearer:
                 size, took = size + len(payload), took + time.process_time() - began
     return size, took
