@@ -50,6 +50,25 @@ def test_what_is_planned_anew_was_no_promise() -> None:
         assert not promises.note(cells, np.full(len(cells), now + 5.0), never, now)
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_each_cell_is_due_by_when_it_was_first_promised_for_as_long_as_it_is_repeated(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    promises, kept, lost = Promises(), dict[int, tuple[float, float]](), []
+    for now in np.arange(0.0, 60.0, 0.5).tolist():
+        cells = np.flatnonzero(rng.random(4 * LEAST) < rng.choice([0.9, 0.99]))
+        due = now + rng.uniform(1.0, 8.0, len(cells))
+        before, kept = kept, {}
+        for cell, time in zip(cells.tolist(), due.tolist(), strict=True):
+            first, soonest = before.get(cell, (now, time))
+            kept[cell] = first, min(soonest, time)
+        overdue = sum(now >= first + 2.0 * (time - first) for first, time in kept.values())
+        assert promises.note(cells, due, never, now) == (overdue >= LEAST)
+        if overdue >= LEAST:
+            lost.append(now)
+            kept = {}
+    assert 3 <= len(lost) < 60
+
+
 def test_weight_comes_back_in_quiet_times() -> None:
     promises = Promises()
     assert rounds(promises, 12.0) == [10.0]

@@ -65,11 +65,13 @@ class Promises:
 
     def _repeat(self, cells: NDArray[np.int64], due: NDArray[np.float64], now: float) -> None:
         """Keep what is promised again as it was first, and add what is new."""
-        first = np.full(len(cells), now)
-        _, old, new = np.intersect1d(self._cells, cells, assume_unique=True, return_indices=True)
-        first[new] = self._first[old]
-        due = due.copy()
-        due[new] = np.minimum(due[new], self._due[old])
+        first, due = np.full(len(cells), now), due.copy()
+        old = np.searchsorted(self._cells, cells)
+        again = old < len(self._cells)
+        again[again] = self._cells[old[again]] == cells[again]
+        old = old[again]
+        first[again] = self._first[old]
+        due[again] = np.minimum(due[again], self._due[old])
         self._cells, self._first, self._due = cells, first, due
 
     def _lose(self, now: float) -> None:

@@ -67,12 +67,19 @@ def promised(impact: Impact, edges: NDArray[np.float64]) -> tuple[NDArray[np.int
     """
     cells, layers = np.divmod(impact.keys.astype(np.int64), LAYERS)
     sums = np.cumsum(impact.misses, dtype=np.int64)
-    first = np.ones(len(cells), np.bool_)  # of each cell's entries
-    first[1:] = cells[1:] != cells[:-1]
+    first = _first_of_each(cells)
     before = np.repeat((sums - impact.misses)[first], np.diff(np.append(np.flatnonzero(first), len(cells))))
     likely = sums - before >= _EVEN_ODDS
-    distinct, at = np.unique(cells[likely], return_index=True)
-    return distinct, edges[layers[likely][at]]
+    cells, layers = cells[likely], layers[likely]
+    soonest = _first_of_each(cells)
+    return cells[soonest], edges[layers[soonest]]
+
+
+def _first_of_each(cells: NDArray[np.int64] | NDArray[np.uint32]) -> NDArray[np.bool_]:
+    """Tell which entries, in order of their cells, are the first of their cell."""
+    first = np.ones(len(cells), np.bool_)
+    first[1:] = cells[1:] != cells[:-1]
+    return first
 
 
 def discounted(impact: Impact, halvings: int) -> Impact:
@@ -100,8 +107,7 @@ def check_claim(
         edges: (LAYERS,) upper edge of each layer [s]; the last takes all later arrivals.
     """
     cell = impact.keys // np.uint32(LAYERS)
-    earliest = np.ones(len(cell), np.bool_)  # of each cell's layers
-    earliest[1:] = cell[1:] != cell[:-1]
+    earliest = _first_of_each(cell)
     claimed = np.cumsum(np.bincount(impact.keys[earliest] % np.uint32(LAYERS), minlength=LAYERS))
     discs = stops * most_cells_swept(most.range, 0.0, side)
     seen = np.minimum(most_cells_swept(most.range, most.speed * edges, side), discs)
