@@ -32,7 +32,7 @@ from tests.support.net_processes import (
     root,
     run,
 )
-from vedette.cli.team import SPEED
+from vedette.cli.teams import SPEED
 from vedette.maps.world import World
 from vedette.net.launch import TeamProcesses
 from vedette.sim.explore.run import explore, prepare

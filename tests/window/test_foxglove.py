@@ -16,6 +16,7 @@ from websockets.typing import Subprotocol
 from tests.support.windows import FRAME, SCENE, snapshot
 from vedette.agent.orders import LookThere, Order, Pause
 from vedette.errors import InputError
+from vedette.record.explore.mcap import ExploreMcapWriter
 from vedette.window.foxglove import CLICKED, ORDER, FoxgloveServer, order_in
 
 pytest.importorskip("foxglove")
@@ -42,7 +43,9 @@ def data_of(client: ClientConnection, subscription: int) -> bytes:
 
 def test_the_map_comes_as_a_ros_message_and_an_order_goes_back() -> None:
     given: list[Order] = []
-    server = FoxgloveServer("hall", lambda order: given.append(order) or "taken by scout", port=0)
+    server = FoxgloveServer(
+        "hall", lambda order: given.append(order) or "taken by scout", ExploreMcapWriter, port=0
+    )
     with server:
         server.show(SCENE, snapshot(1.0))
         address = f"ws://127.0.0.1:{server.port}"

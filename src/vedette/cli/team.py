@@ -2,27 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack
-from dataclasses import dataclass
 from math import floor
 from pathlib import Path
-from shutil import rmtree
-from tempfile import TemporaryDirectory
-from typing import Any, TypeVar
+from typing import Any
 
 import click
 import numpy as np
 
 from vedette.cli.domain import STATUS, domain_options, kind_of
 from vedette.cli.exploring import EXPLORING, exploring_options, team_named, world_named
-from vedette.cli.options import Output, Positive, output_options, with_options
-from vedette.cli.running import ReportT
+from vedette.cli.options import Output, output_options
 from vedette.cli.searching import SEARCHING, searching_options
-from vedette.cli.staging import Stage
+from vedette.cli.teams import TeamRun, process_options
 from vedette.cli.tracking import TRACKING, tracking_options
 from vedette.errors import InputError
-from vedette.interrupt import ending_on_ctrl_c
 from vedette.missions.explore.old_map import read_prior
 from vedette.missions.explore.options import ExploreOptions
 from vedette.missions.pairs import scheme_of, tell_duration, tell_objective, tell_unheeded, tell_unsaid
@@ -33,18 +26,17 @@ from vedette.missions.track.options import TrackOptions
 from vedette.missions.track.scenario import default_scenario
 from vedette.net.config import DomainOptions
 from vedette.net.domain import DomainWatcher
+from vedette.net.domain_picture import DomainOnlooker
+from vedette.net.explore.picture import ExploreOnlooker
 from vedette.net.explore.plan import ExplorePlan
-from vedette.net.explore.ros2_plan import Ros2Plan, environment, strangers
+from vedette.net.explore.ros2_plan import Ros2Plan
 from vedette.net.explore.watch import ExploreWatcher
 from vedette.net.flights import FlightsPlan
-from vedette.net.launch import TeamPlan, TeamProcesses
-from vedette.net.names import robot_name
+from vedette.net.search.picture import SearchOnlooker
 from vedette.net.search.watch import SearchWatcher
-from vedette.net.team import TeamWatch, Watcher
+from vedette.net.track.picture import TrackOnlooker
 from vedette.net.track.watch import TrackWatcher
-from vedette.net.transport import Operator
 from vedette.record.explore.log import ExploreScene
-from vedette.record.folder import OutputFolder
 from vedette.record.search.curves import ideal
 from vedette.record.search.log import SearchScene
 from vedette.record.summary import Setting
@@ -53,33 +45,9 @@ from vedette.run.inputs import files_of, schedule_of, world_of
 from vedette.run.searching import case_of, heat_maps
 from vedette.run.tracking import scenario_of
 from vedette.sim.domains import DOMAINS, DomainEntry, entry_of, own_domain
-from vedette.sim.faults import Schedule, faults_text
 from vedette.sim.search.hidden import Hidden
 from vedette.sim.starts import choose_starts
 from vedette.sim.track.targets import Targets
-
-SPEED = 3.0  # more costs mission time, as thoughts and messages take as long as ever: 5 % at 5, 16 % at 10
-KEPT_UP = 0.8  # of the speed asked for; less is worth a remark
-CommandT = TypeVar("CommandT", bound=Callable[..., Any])
-
-
-def process_options(command: CommandT) -> CommandT:
-    """``--speed``, ``--lease`` and ``--faults``."""
-    return with_options(
-        command,
-        click.option(
-            "--speed", type=Positive("times real time", most=50.0), default=SPEED, show_default=True,
-            help="Of the mission, in seconds a second; too much for this host makes robots think slowly.",
-        ),
-        click.option(
-            "--lease", type=Positive("s", least=0.2, most=60.0), default=3.0, show_default=True,
-            help="A neighbour silent for so long is given up [s of real time].",
-        ),
-        click.option(
-            "--faults", metavar="FILE|SEED",
-            help="What befalls processes and links: a schedule or its seed.",
-        ),
-    )  # fmt: skip
 
 
 class _Missions(click.Group):
@@ -127,6 +95,7 @@ def explore(
     speed: float,
     lease: float,
     faults: str | None,
+    watch: bool,
     ros2: bool,
     output: Output,
 ) -> None:
@@ -152,7 +121,8 @@ def explore(
     places = choose_starts(world, specs, np.random.default_rng([seed, 1]), area_of)
     kind = Ros2Plan if ros2 else ExplorePlan
     plan = kind(world, specs, places, options, seed, speed, lease)
-    run = _Processes(plan, max_time, schedule_of(faults, plan.size, clocks=False))
+    page = ExploreOnlooker(world.name, [spec.name for spec in specs]) if watch else None
+    run = TeamRun(plan, max_time, schedule_of(faults, plan.size, clocks=False), page)
     setting = Setting(seed=seed, faults=faults)
     EXPLORING.run(
         ExploreScene.of(world, [spec.name for spec in specs]),
@@ -178,6 +148,7 @@ def track(
     speed: float,
     lease: float,
     faults: str | None,
+    watch: bool,
     output: Output,
 ) -> None:
     """Let a team of agent processes follow the targets of SCENARIO: one process a vehicle.
@@ -195,7 +166,8 @@ def track(
     plan = FlightsPlan("track", options, scenario_path, len(scenario.vehicles), seed, speed, lease)
     vehicles = TrackTeam(scenario, options, plan.times)
     limit = scenario.duration + 1.0 if max_time is None else max_time
-    run = _Processes(plan, limit, schedule_of(faults, plan.size, clocks=False))
+    page = TrackOnlooker(scenario, name) if watch else None
+    run = TeamRun(plan, limit, schedule_of(faults, plan.size, clocks=False), page)
     setting, truth = Setting(seed=seed, faults=faults), Targets.of(vehicles, seed)
     TRACKING.run(
         TrackScene.of(scenario, name),
@@ -219,6 +191,7 @@ def search(
     speed: float,
     lease: float,
     faults: str | None,
+    watch: bool,
     output: Output,
 ) -> None:
     """Let a team of agent processes look for the hidden target of SCENARIO: one process a vehicle.
@@ -233,7 +206,8 @@ def search(
     plan = FlightsPlan("search", options, scenario_path, len(case.names), seed, speed, lease)
     vehicles = SearchTeam(case, options, plan.times)
     duration = case.scenario.duration if max_time is None else min(max_time, case.scenario.duration)
-    run = _Processes(plan, duration, schedule_of(faults, plan.size, clocks=False))
+    page = SearchOnlooker(case) if watch else None
+    run = TeamRun(plan, duration, schedule_of(faults, plan.size, clocks=False), page)
     setting, hidden = Setting(seed=seed, faults=faults), Hidden.of(case, seed)
     curves = ideal(case, floor(duration / case.scenario.step + 1e-6))
     SEARCHING.run(
@@ -256,6 +230,7 @@ def _domain_command(declared: DomainEntry) -> click.Command:
         speed: float,
         lease: float,
         faults: str | None,
+        watch: bool,
         output: Output,
         **how: Any,
     ) -> None:
@@ -272,7 +247,8 @@ def _domain_command(declared: DomainEntry) -> click.Command:
         plan = FlightsPlan("domain", options, scenario_path, size, seed, speed, lease)
         vehicles = domain.team(case, options, plan.times)
         limit = case.scenario.duration + 1.0 if max_time is None else max_time
-        processes = _Processes(plan, limit, schedule_of(faults, size, clocks=False))
+        page = DomainOnlooker(domain, case) if watch else None
+        processes = TeamRun(plan, limit, schedule_of(faults, size, clocks=False), page)
         setting = Setting(seed=seed, faults=faults)
         kind_of(domain).run(
             domain.scene(case),
@@ -289,54 +265,3 @@ def _domain_command(declared: DomainEntry) -> click.Command:
     )
     command = click.command(declared.name, help=about, short_help=declared.line)
     return command(domain_options(declared)(process_options(output_options(run))))
-
-
-@dataclass(frozen=True)
-class _Processes:
-    """A team that is to be started."""
-
-    plan: TeamPlan
-    max_time: float  # [s]
-    schedule: Schedule | None  # of faults
-
-    def watched_by(self, watcher: Watcher[ReportT], folder: OutputFolder) -> ReportT:
-        """Run the team to the end of its mission; what it says goes into the folder, if it starts."""
-        logs = folder / "agents"
-        were_there = logs.exists()
-        try:
-            return self._run(watcher, logs)
-        except InputError:
-            if not were_there:
-                rmtree(logs, ignore_errors=True)
-            raise
-
-    def _run(self, watcher: Watcher[ReportT], logs: Path) -> ReportT:
-        text = None if self.schedule is None else faults_text(self.schedule)
-        with ExitStack() as stack:
-            secrets = stack.enter_context(TemporaryDirectory(prefix="vedette-team-"))
-            private, around = Path(secrets), {}
-            if isinstance(self.plan, Ros2Plan):
-                around = environment()
-                self.plan.write(private)
-                stack.enter_context(strangers(private, logs / "robots.log", self.plan.speed, around))
-            team = TeamProcesses(self.plan, private, logs, text, around)
-            processes = stack.enter_context(team)
-            operator = stack.enter_context(Operator(processes.operator))
-            watch = TeamWatch(self.plan, processes, operator, watcher, self.max_time)
-            if self.schedule is not None:
-                watch.befall = Stage(self.schedule, processes, watch).befall
-            stack.enter_context(ending_on_ctrl_c(watch.stop))
-            report = watch.run()
-        for line in _remarks(watch, report.timing.real_time_factor, self.plan.speed):
-            click.echo(f"vedette: {line}", err=True)
-        return report
-
-
-def _remarks(watch: TeamWatch[Any], pace: float, speed: float) -> Iterator[str]:
-    """Say what else whoever started the team should know."""
-    for robot, said in watch.failures.items():
-        yield f"{robot_name(robot)} failed: {said}; see {watch.team.log_of(robot)}"
-    for (robot, other), what in sorted(watch.complaints.items()):
-        yield f"{robot_name(robot)} of {robot_name(other)}: {what}"
-    if 0 < pace < KEPT_UP * speed:
-        yield f"this host kept up {pace:.1f} times real time; robots think better at a --speed below"

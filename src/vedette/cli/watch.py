@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-import time
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -14,15 +13,14 @@ from vedette.cli.reaching import reached
 from vedette.cli.windows import address_options, linger, opened
 from vedette.errors import InputError
 from vedette.interrupt import ending_on_ctrl_c
-from vedette.net.explore.feed import TeamFeed
+from vedette.net.feed import TeamFeed
+from vedette.net.onlookers import onlooker_of
 from vedette.net.transport import Operator
 from vedette.run.mission import RECORD
 from vedette.window.explore import recorded
 from vedette.window.export import Show, export_page
 from vedette.window.foxglove import LOOPBACK, FoxgloveServer
 from vedette.window.hub import Hub
-
-LISTENING = 0.1  # between two pictures [s]
 
 
 @click.command()
@@ -62,25 +60,18 @@ def watch(
             linger()
         return
     configs, access = reached(sources, keys)
-    if configs[0].mission != "explore":
-        raise InputError(f"{sources[0]}: only teams that explore are watched in a browser")
+    onlooker = onlooker_of(configs[0], sources[0].parent)
     ended = threading.Event()
     with Operator(access) as operator, ending_on_ctrl_c(ended.set):
-        feed = TeamFeed(operator, access)
+        feed = TeamFeed(operator, access, onlooker)
         hub = Hub(access.team, feed.give)
         with opened(hub, host, port), ExitStack() as more:
             served = None
             if foxglove is not None:
-                served = more.enter_context(FoxgloveServer(access.team, feed.give, foxglove))
+                server = FoxgloveServer(access.team, feed.give, onlooker.recorder, foxglove)
+                served = more.enter_context(server)
                 click.echo(f"Foxglove connects to ws://{LOOPBACK}:{served.port}", err=True)
-            while not ended.is_set():
-                began = time.monotonic()
-                feed.hearing.listen(LISTENING)
-                if (shown := feed.picture()) is not None:
-                    hub.show(shown)
-                if served is not None and (told := feed.snapshot()) is not None:
-                    served.show(*told)
-                ended.wait(max(began + LISTENING - time.monotonic(), 0.0))
+            feed.follow(hub, ended, served)
 
 
 def _record(sources: tuple[Path, ...]) -> Path | None:

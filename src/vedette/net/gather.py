@@ -2,15 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.net.report import Condition
+from vedette.net.names import robot_name
+from vedette.net.report import Condition, Report
 from vedette.overlay import LinkStatus, Place, Status
 from vedette.record.figures import RobotFigures, RoundFigures
+from vedette.record.links import Link, links_of
+from vedette.record.log import VehicleSample
 from vedette.record.summary import Traffic
+
+UNHEARD = "not heard yet"  # state of a vehicle of the scenario that has told nothing
+
+
+def now_of(reports: Mapping[int, Report]) -> float:
+    """Return the time of a mission that goes by a common clock [s]."""
+    return max((report.condition.time for report in reports.values()), default=0.0)
+
+
+def vehicle_name(names: Sequence[str], robot: int) -> str:
+    """Return what a robot is called: by the names that there are, else by its number."""
+    return names[robot] if robot < len(names) else robot_name(robot)
 
 
 def status_of(condition: Condition) -> Status:
@@ -21,6 +37,20 @@ def status_of(condition: Condition) -> Status:
         for link in condition.links
     )
     return Status(condition.root, condition.epoch, 0, place, condition.age, 0.0, links)
+
+
+def links_among(reports: Mapping[int, Report], numbers: Sequence[int]) -> tuple[Link, ...]:
+    """Return the links that both ends tell of, by the places of their robots among ``numbers``, from 1."""
+    place = {number - 1: i for i, number in enumerate(numbers)}
+    told = [reports.get(robot) for robot in range(max(reports, default=-1) + 1)]
+    links = links_of([None if each is None else status_of(each.condition) for each in told])
+    return tuple(replace(link, a=place[link.a], b=place[link.b]) for link in links)
+
+
+def sample_of(condition: Condition, state: str | None = None) -> VehicleSample:
+    """Return a vehicle as it told of itself; ``state``: what has become of it since, None: nothing."""
+    at = condition.x, condition.y, condition.heading
+    return VehicleSample(*at, state or condition.state, state is None, path_of(condition))
 
 
 def path_of(condition: Condition) -> NDArray[np.float64]:

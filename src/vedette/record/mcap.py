@@ -10,6 +10,7 @@ import shutil
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from copy import deepcopy
+from math import isfinite
 from pathlib import Path
 from types import TracebackType
 from typing import IO, Any, Generic, Protocol, Self, TypeAlias, TypeVar, runtime_checkable
@@ -137,9 +138,9 @@ class McapFile(Generic[RosT]):
         self._write(f"/{name}/pose", stamp, self._ros.pose(stamp, vehicle.x, vehicle.y, vehicle.heading))
 
     def _write_metrics(self, stamp: int, snapshot: Timed, names: Iterable[str]) -> None:
-        """Write figures of a snapshot by the names of its fields; None is none."""
+        """Write figures of a snapshot by the names of its fields; None and NaN are none."""
         for name in names:
-            if (value := getattr(snapshot, name)) is not None:
+            if (value := getattr(snapshot, name)) is not None and isfinite(value):
                 self._write(f"/metrics/{name}", stamp, self._ros.number(value))
 
 

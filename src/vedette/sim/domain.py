@@ -17,8 +17,8 @@ from vedette.outcome import Outcome
 from vedette.record.display import Display
 from vedette.record.flights import FlightObserver, FlightScene, FlightSnapshot
 from vedette.record.folder import OutputFolder
-from vedette.record.log import Sink
-from vedette.record.mcap import Place
+from vedette.record.log import Sink, VehicleSample
+from vedette.record.mcap import Medium, Place
 from vedette.record.summary import Setting
 from vedette.sim.domains import DomainEntry
 from vedette.sim.network import Spawn
@@ -84,6 +84,14 @@ class Domain(ABC, Generic[DomainCaseT, ContentT, SceneT, SnapshotT, ReportT]):
     def check(self, content: ContentT, case: DomainCaseT) -> None:
         """Raise ValueError for what no vehicle of the case can tell; it comes from the network."""
 
+    def known(self, content: ContentT, case: DomainCaseT) -> Any:
+        """Return what is worked out of what a vehicle tells, for ``seen``; nothing."""
+        return None
+
+    @abstractmethod
+    def seen(self, t: float, vehicles: Sequence[VehicleSample], known: Any) -> SnapshotT:
+        """Return a mission at a time [s] as one sees it who does not know the truth."""
+
     # -- what it leaves -----------------------------------------------------------------------------
 
     @abstractmethod
@@ -101,8 +109,8 @@ class Domain(ABC, Generic[DomainCaseT, ContentT, SceneT, SnapshotT, ReportT]):
         """Return the live view."""
 
     @abstractmethod
-    def recorder(self, place: Place, scene: SceneT) -> AbstractContextManager[Sink[SnapshotT]]:
-        """Open the run record."""
+    def recorder(self, place: Place | Medium, scene: SceneT) -> AbstractContextManager[Sink[SnapshotT]]:
+        """Open the run record, or speak to a medium."""
 
     @abstractmethod
     def write(self, report: ReportT, folder: OutputFolder, animate: bool) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import singledispatch
-from typing import Any
+from math import isfinite
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +14,12 @@ from vedette.record.flights import FlightScene
 from vedette.record.monitor.log import MonitorScene, MonitorSnapshot
 from vedette.record.own.observer import OwnScene, OwnSnapshot
 from vedette.window.flights import named, plain_ground
-from vedette.window.picture import SHADES, Picture, drawn
+from vedette.window.picture import NOTHING, SHADES, Beside, Picture, drawn
 
 
 @singledispatch
-def pictures(scene: FlightScene) -> Callable[[Any], Picture]:
-    """Return who draws the snapshots of a mission in turn.
+def pictures(scene: FlightScene) -> Callable[..., Picture]:
+    """Return who draws the snapshots of a mission in turn, with what is told ``Beside`` them.
 
     Raises:
         TypeError: nothing is known of such missions' ground.
@@ -28,30 +28,37 @@ def pictures(scene: FlightScene) -> Callable[[Any], Picture]:
 
 
 @pictures.register
-def _(scene: OwnScene) -> Callable[[OwnSnapshot], Picture]:
+def _(scene: OwnScene) -> Callable[..., Picture]:
     frame, ground = plain_ground(scene.area)
 
-    def draw(snapshot: OwnSnapshot) -> Picture:
+    def draw(snapshot: OwnSnapshot, beside: Beside = NOTHING) -> Picture:
         figures = [(name.replace("_", " "), f"{value:.4g}") for name, value in snapshot.figures.items()]
-        return drawn(snapshot.t, frame, ground, named(scene.vehicles, snapshot.vehicles), figures)
+        vehicles = named(scene.vehicles, snapshot.vehicles)
+        return drawn(snapshot.t, frame, ground, vehicles, figures, beside=beside)
 
     return draw
 
 
 @pictures.register
-def _(scene: MonitorScene) -> Callable[[MonitorSnapshot], Picture]:
+def _(scene: MonitorScene) -> Callable[..., Picture]:
     """The higher the field is taken to be, the deeper the shade; where robots must not go it is black."""
     latest = MonitorSnapshot(0.0, (), 0.0, 0.0, 0.0)
 
-    def draw(snapshot: MonitorSnapshot) -> Picture:
+    def draw(snapshot: MonitorSnapshot, beside: Beside = NOTHING) -> Picture:
         nonlocal latest
         latest = latest if snapshot.mean is None else snapshot
-        figures = [("last looked at", f"{snapshot.mean_age:.0f} s ago, {snapshot.worst_age:.0f} s at worst")]
-        if latest.rmse is not None and latest.entropy is not None:
-            figures += [("error", f"{latest.rmse:.3g}"), ("entropy", f"{latest.entropy:.0f} nat")]
+        figures = []
+        if isfinite(snapshot.mean_age):
+            age = f"{snapshot.mean_age:.0f} s ago, {snapshot.worst_age:.0f} s at worst"
+            figures.append(("last looked at", age))
+        if latest.rmse is not None:
+            figures.append(("error", f"{latest.rmse:.3g}"))
+        if latest.entropy is not None:
+            figures.append(("entropy", f"{latest.entropy:.0f} nat"))
         ground = np.full(scene.frame.shape, FREE, np.uint8) if latest.mean is None else _shaded(latest.mean)
         ground[scene.blocked] = OCCUPIED
-        return drawn(snapshot.t, scene.frame, ground, named(scene.vehicles, snapshot.vehicles), figures)
+        vehicles = named(scene.vehicles, snapshot.vehicles)
+        return drawn(snapshot.t, scene.frame, ground, vehicles, figures, beside=beside)
 
     return draw
 

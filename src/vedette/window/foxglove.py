@@ -10,8 +10,8 @@ import msgspec
 
 from vedette.agent.orders import Order
 from vedette.errors import InputError
-from vedette.record.explore.log import ExploreScene, ExploreSnapshot
-from vedette.record.explore.mcap import ExploreMcapWriter
+from vedette.record.log import Sink
+from vedette.record.mcap import Medium
 from vedette.scenario import as_scenario
 
 ORDER, CLICKED = "/order", "/clicked_point"  # topics that Foxglove may publish on
@@ -26,8 +26,20 @@ class _Said(msgspec.Struct, frozen=True):
 class FoxgloveServer:
     """Serves messages by ``foxglove-sdk`` for as long as it is entered; ``vedette.record.mcap.Medium``."""
 
-    def __init__(self, name: str, give: Callable[[Order], str] | None, port: int = PORT) -> None:
-        """Prepare to serve on this computer alone; ``give``: an order, and what has come of it.
+    def __init__(
+        self,
+        name: str,
+        give: Callable[[Order], str] | None,
+        recorder: Callable[[Medium, Any], Sink[Any]],
+        port: int = PORT,
+    ) -> None:
+        """Prepare to serve on this computer alone.
+
+        Args:
+            name: of what is served.
+            give: an order, and what has come of it; None: nobody can be told anything.
+            recorder: tells a scene's snapshots to a medium.
+            port: to listen on; 0: any.
 
         Raises:
             InputError: foxglove-sdk is not installed.
@@ -37,13 +49,14 @@ class FoxgloveServer:
         except ImportError:
             raise InputError("foxglove-sdk is missing: pip install 'vedette[foxglove]'") from None
         self._sdk, self._name, self._give, self._port = foxglove, name, give, port
+        self._recorder = recorder
         self._channels: list[Any] = []
         self._by_topic: dict[str, int] = {}
         self._schemas: list[Any] = []
         self._topics: dict[tuple[int, int], str] = {}  # of what clients publish, by client and channel
         self.answers: list[str] = []  # to orders, oldest first
-        self._scene: ExploreScene | None = None
-        self._writer: ExploreMcapWriter | None = None
+        self._scene: Any = None
+        self._writer: Sink[Any] | None = None
 
     def __enter__(self) -> Self:
         """Begin to serve.
@@ -72,10 +85,10 @@ class FoxgloveServer:
         """Stop."""
         self._server.stop()
 
-    def show(self, scene: ExploreScene, snapshot: ExploreSnapshot) -> None:
-        """Send a snapshot's messages; the map whenever its frame has changed, and every 5 s."""
-        if self._writer is None or scene != self._scene:
-            self._scene, self._writer = scene, ExploreMcapWriter(self, scene)
+    def show(self, scene: Any, snapshot: Any) -> None:
+        """Send a snapshot's messages; grids whenever the scene has changed, and as often as a record's."""
+        if self._writer is None or (scene is not self._scene and scene != self._scene):
+            self._scene, self._writer = scene, self._recorder(self, scene)
         self._writer.update(snapshot)
 
     # -- what is sent: Medium --------------------------------------------------------------------------

@@ -30,6 +30,7 @@ class Beside:
 
     numbers: Sequence[int] = ()  # of the robots, from 1; none: 1, 2, ...
     silent: Mapping[int, float] = field(default_factory=dict)  # by robot's number: for how long [s]
+    links: Sequence[Link] = ()  # between robots, by their places among those that are shown
     orders: Sequence[tuple[str, Sequence[str]]] = ()  # in force, and who holds each
     areas: Sequence[Mapping[str, Any]] = ()  # that are ordered: kind, name and corners
     alerts: Sequence[str] = ()
@@ -149,7 +150,7 @@ def drawn(
         ],
         "figures": figures,
         "share": share,
-        "links": [(link.a, link.b, link.on_tree, round(link.loss, 2)) for link in links],
+        "links": [(link.a, link.b, link.on_tree, round(link.loss, 2)) for link in links or beside.links],
         "orders": beside.orders,
         "areas": beside.areas,
         "alerts": [*_lost(robots), *beside.alerts],

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import log, pi
 
 import numpy as np
 import scipy.sparse as sp
@@ -122,6 +123,12 @@ class FieldBelief:
         """(R, C) What the field is expected to be [unit]."""
         deviation = self.factor.solve(self.spots.weights.T @ self.vector)
         return np.asarray(self.model.mean + deviation.reshape(self.model.frame.shape))
+
+    @property
+    def entropy(self) -> float:
+        """Of the field, ``1/2 ln((2 pi e)^n / det L)`` [nat]."""
+        n = self.model.frame.size
+        return 0.5 * (n * log(2.0 * pi) + n - self.factor.log_det)
 
     @property
     def gained(self) -> float:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,19 +14,55 @@ from vedette.domains.mapping.leftovers import Leftover
 from vedette.maps import UNKNOWN, GridFrame
 from vedette.maps.laid import part_laid
 from vedette.net.explore.content import MOST_CELLS, MapContent, classes_of, frame_of, read_content, sample_of
-from vedette.net.gather import status_of
+from vedette.net.gather import links_among, vehicle_name
 from vedette.net.names import robot_name
 from vedette.net.report import Condition, Report
 from vedette.net.results import lasted
 from vedette.record.explore.log import ExploreScene, ExploreSnapshot, RobotSample
+from vedette.record.explore.mcap import ExploreMcapWriter
 from vedette.record.explore.views import left_out
-from vedette.record.links import Link, links_of
+from vedette.record.log import Sink
+from vedette.record.mcap import Medium
+from vedette.window.picture import Beside, Picture, picture
 
 NOWHERE = GridFrame(1.0, 1, 1)
 
 
+@dataclass(frozen=True)
+class ExploreOnlooker:
+    """``vedette.net.feed.Onlooker``."""
+
+    team: str  # its name
+    names: Sequence[str] = ()  # of its robots, as far as the operator gave them any
+
+    def numbers(self, reports: Mapping[int, Report]) -> Sequence[int]:
+        """Return those that have been heard."""
+        return [robot + 1 for robot in reports]
+
+    def name(self, robot: int) -> str:
+        """Return what a robot is called."""
+        return vehicle_name(self.names, robot)
+
+    def see(
+        self, reports: Mapping[int, Report], states: Mapping[int, str]
+    ) -> tuple[ExploreScene, ExploreSnapshot]:
+        """Return the map that they hold, where they are and where they go."""
+        return picture_of(self.team, reports, states, self.name)
+
+    def draw(self, scene: ExploreScene, snapshot: ExploreSnapshot, beside: Beside) -> Picture:
+        """Return it as the page shows it."""
+        return picture(scene, snapshot, beside)
+
+    def recorder(self, medium: Medium, scene: ExploreScene) -> Sink[ExploreSnapshot]:
+        """Return what tells it in messages."""
+        return ExploreMcapWriter(medium, scene)
+
+
 def picture_of(
-    team: str, reports: Mapping[int, Report], states: Mapping[int, str]
+    team: str,
+    reports: Mapping[int, Report],
+    states: Mapping[int, str],
+    name: Callable[[int], str] = robot_name,
 ) -> tuple[ExploreScene, ExploreSnapshot]:
     """Return what robots report, together: the map that they hold, where they are, what they believe.
 
@@ -34,6 +70,7 @@ def picture_of(
         team: its name.
         reports: by robot, its latest.
         states: words that take the place of robots' own.
+        name: of a robot, by its index.
 
     Raises:
         ValueError: a report is malformed.
@@ -41,13 +78,13 @@ def picture_of(
     contents = [read_content(report.content) for report in reports.values()]
     frame, classes = _together(contents)
     planning = frame.coarse(planning_factor(frame.resolution))
-    names = tuple(map(robot_name, reports))
+    names = tuple(map(name, reports))
     scene = ExploreScene(name=team, vehicles=names, frame=frame, planning=planning)
     told = [report.condition for report in reports.values()]
     snapshot = ExploreSnapshot(
         t=max((lasted(each) for each in told), default=0.0),
         robots=tuple(
-            replace(_sample(report, states.get(robot), content), trust=_trust(robot, told))
+            replace(_sample(report, states.get(robot), content, name(robot)), trust=_trust(robot, told, name))
             for (robot, report), content in zip(reports.items(), contents, strict=True)
         ),
         coverage=None,
@@ -55,7 +92,7 @@ def picture_of(
         entropy=None,
         classes=classes,
         impact=_impact(contents, planning),
-        links=_links(reports),
+        links=links_among(reports, [robot + 1 for robot in reports]),
         left_out=tuple(
             spot
             for name, each in zip(names, contents, strict=True)
@@ -78,14 +115,6 @@ def _together(maps: Sequence[MapContent]) -> tuple[GridFrame, NDArray[np.uint8]]
         there, under = part_laid(classes, part, frame)
         whole[there] = np.maximum(whole[there], under)  # UNKNOWN < FREE < OCCUPIED
     return frame, whole
-
-
-def _links(reports: Mapping[int, Report]) -> tuple[Link, ...]:
-    """Return the links that both ends tell of, by the places of their robots among the reports."""
-    place = {robot: i for i, robot in enumerate(reports)}
-    told = [reports.get(robot) for robot in range(max(reports, default=-1) + 1)]
-    links = links_of([None if each is None else status_of(each.condition) for each in told])
-    return tuple(replace(link, a=place[link.a], b=place[link.b]) for link in links)
 
 
 def _impact(maps: Sequence[MapContent], planning: GridFrame) -> NDArray[np.float32]:
@@ -117,15 +146,14 @@ def _around(frames: Sequence[GridFrame]) -> GridFrame:
     return GridFrame(resolution, rows, cols, x, y)
 
 
-def _trust(robot: int, told: Sequence[Condition]) -> str:
+def _trust(robot: int, told: Sequence[Condition], name: Callable[[int], str]) -> str:
     """Say who believes a robot; nothing where nobody signs."""
-    against = [robot_name(each.robot) for each in told if robot in each.out]
+    against = [name(each.robot) for each in told if robot in each.out]
     if against:
         return f"not believed by {', '.join(against)}"
     return "believed" if any(each.signs for each in told) else ""
 
 
-def _sample(report: Report, state: str | None, content: MapContent) -> RobotSample:
-    told = report.condition
-    sample = sample_of(told, content, robot_name(told.robot))
-    return replace(sample, state=state or told.state, alive=state is None)
+def _sample(report: Report, state: str | None, content: MapContent, name: str) -> RobotSample:
+    sample = sample_of(report.condition, content, name)
+    return replace(sample, state=state or report.condition.state, alive=state is None)

@@ -53,7 +53,7 @@ class MonitorSnapshot(FlightSnapshot):
     """Monitoring at one moment; the first living vehicle's belief."""
 
     way: float  # that a vehicle has gone in the mean [m]
-    worst_age: float  # since a place was last looked at, at most [s]
+    worst_age: float  # since a place was last looked at, at most [s]; NaN, as the next: not known
     mean_age: float  # the same in the mean over all cells [s]
     mean: NDArray[np.float32] | None = None  # (R, C) what the field is taken to be; None: not worked out
     rmse: float | None = None  # of that [unit]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vedette.record.mcap import McapFile, Place, stamp_of
+from vedette.record.mcap import McapFile, Medium, Place, stamp_of
 from vedette.record.monitor.log import MonitorScene, MonitorSnapshot
 from vedette.record.ros import RosMessages, ros_names
 
@@ -12,7 +12,7 @@ from vedette.record.ros import RosMessages, ros_names
 class MonitorMcapWriter(McapFile[RosMessages]):
     """Write each snapshot: a context manager, and a ``Sink``; ``docs/outputs.md`` lists the topics."""
 
-    def __init__(self, place: Place, scene: MonitorScene) -> None:
+    def __init__(self, place: Place | Medium, scene: MonitorScene) -> None:
         """Open the file."""
         self._frame, self._names = scene.frame, ros_names(scene.vehicles)
         pairs = zip(scene.vehicles, self._names, strict=True)

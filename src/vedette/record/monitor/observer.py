@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from math import inf, log, pi
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,12 +66,11 @@ class MonitorObserver(FlightObserver[FieldContent, MonitorSnapshot, MonitorRepor
             return snapshot
         known = self._known()
         error = (known.mean - self._truth.at(known.step)).ravel()
-        entropy = 0.5 * (len(error) * log(2.0 * pi) + len(error) - known.factor.log_det)
         return replace(
             snapshot,
             mean=known.mean.astype(np.float32),
             rmse=float(np.sqrt(np.mean(error**2))),
-            entropy=entropy,
+            entropy=known.entropy,
             nees=float(error @ (known.precision @ error) / len(error)),
         )
 

@@ -9,7 +9,7 @@ from rich.style import Style
 
 from vedette.record.board import Board, fitted
 from vedette.record.display import Display
-from vedette.record.mcap import McapFile, Place, stamp_of
+from vedette.record.mcap import McapFile, Medium, Place, stamp_of
 from vedette.record.own.observer import OwnScene, OwnSnapshot
 from vedette.record.ros import RosMessages, ros_names
 from vedette.record.view import Size, TeamTable, arranged, explained, figure, flowing, states
@@ -48,7 +48,7 @@ def screen(scene: OwnScene, console: Console, snapshot: OwnSnapshot) -> Renderab
 class OwnMcapWriter(McapFile[RosMessages]):
     """Write each snapshot: a context manager, and a ``Sink``; ``docs/outputs.md`` lists the topics."""
 
-    def __init__(self, place: Place, scene: OwnScene) -> None:
+    def __init__(self, place: Place | Medium, scene: OwnScene) -> None:
         """Open the file."""
         self._names = ros_names(scene.vehicles)
         pairs = zip(scene.vehicles, self._names, strict=True)

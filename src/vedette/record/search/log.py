@@ -62,9 +62,12 @@ class SearchSnapshot(FlightSnapshot):
     vehicles: tuple[SearchSample, ...]
     mass: NDArray[np.float32]  # (R, C) probability of each cell, as the first living vehicle knows it
     entropy: float  # of that [nat]
-    detection: float  # probability that the looks so far have detected the target, 0..1
-    target: tuple[float, float]  # where it truly is [m]
+    detection: float  # probability that the looks so far have detected the target, 0..1; NaN: not known
+    target: tuple[float, float]  # where it truly is [m]; NaN: nobody here knows
     outside: float | None = None  # probability that it has left, as that vehicle knows it; None: it cannot
+    declared: tuple[float, float] | None = (
+        None  # where it is declared to be [m], as far as anybody here knows
+    )
 
 
 _NO_MASS = np.empty((0, 0), np.float32)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from math import isfinite
+
 import numpy as np
 
-from vedette.record.mcap import McapFile, Place, stamp_of
+from vedette.record.mcap import McapFile, Medium, Place, stamp_of
 from vedette.record.ros import RosMessages, ros_names
 from vedette.record.search.log import SearchScene, SearchSnapshot
 
@@ -14,7 +16,7 @@ _GRID_PERIOD = 4.0  # of writing the pdf [s]
 class SearchMcapWriter(McapFile[RosMessages]):
     """Write each snapshot: a context manager, and a ``Sink``; ``docs/outputs.md`` lists the topics."""
 
-    def __init__(self, place: Place, scene: SearchScene) -> None:
+    def __init__(self, place: Place | Medium, scene: SearchScene) -> None:
         """Open the file."""
         self._frame, self._names = scene.frame, ros_names(scene.vehicles)
         self._full: float | None = None  # the probability that is shown as 100
@@ -33,7 +35,8 @@ class SearchMcapWriter(McapFile[RosMessages]):
             self._write_flight(stamp, name, vehicle)
             if vehicle.alive and vehicle.goal is not None:
                 self._write(f"/{name}/goal", stamp, self._ros.pose(stamp, *vehicle.goal, 0.0))
-        self._write("/target/truth", stamp, self._ros.pose(stamp, *snapshot.target, 0.0))
+        if isfinite(snapshot.target[0]):
+            self._write("/target/truth", stamp, self._ros.pose(stamp, *snapshot.target, 0.0))
         left = () if snapshot.outside is None else ("outside",)
         self._write_metrics(stamp, snapshot, ("detection", "entropy", *left))
         self._unwritten = snapshot

@@ -53,7 +53,7 @@ class TrackSnapshot(FlightSnapshot):
 
     vehicles: tuple[TrackSample, ...]
     holder: int  # the vehicle whose tracks these are: the first that lives
-    truth: Floats  # (T, 4) x, y, vx, vy [m, m, m/s, m/s]
+    truth: Floats  # (T, 4) x, y, vx, vy [m, m, m/s, m/s]; NaN, as what is measured by it: nobody here knows
     means: Floats  # (T, 4)
     covariances: Floats  # (T, 4, 4)
     entropy: float  # of all targets together [nat], mean over the living vehicles' own tracks

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from math import isfinite
 from typing import Any
 
 import numpy as np
 
 from vedette.record.log import Floats
-from vedette.record.mcap import McapFile, Place, stamp_of
+from vedette.record.mcap import McapFile, Medium, Place, stamp_of
 from vedette.record.ros import RosMessages, ros_names
 from vedette.record.track.log import TrackScene, TrackSnapshot
 
@@ -35,7 +36,7 @@ class TrackMessages(RosMessages):
 class TrackMcapWriter(McapFile[TrackMessages]):
     """Write each snapshot: a context manager, and a ``Sink``; ``docs/outputs.md`` lists the topics."""
 
-    def __init__(self, place: Place, scene: TrackScene) -> None:
+    def __init__(self, place: Place | Medium, scene: TrackScene) -> None:
         """Open the file."""
         self._vehicles, self._targets = ros_names(scene.vehicles), ros_names(scene.targets)
         pairs = [("vehicle", scene.vehicles, self._vehicles), ("target", scene.targets, self._targets)]
@@ -54,6 +55,7 @@ class TrackMcapWriter(McapFile[TrackMessages]):
             track = self._ros.pose_with_covariance(stamp, mean, covariance)
             self._write(f"/targets/{name}/track", stamp, track)
             x, y, vx, vy = snapshot.truth[t].tolist()
-            truth = self._ros.pose(stamp, x, y, float(np.arctan2(vy, vx)))
-            self._write(f"/targets/{name}/truth", stamp, truth)
+            if isfinite(x):
+                truth = self._ros.pose(stamp, x, y, float(np.arctan2(vy, vx)))
+                self._write(f"/targets/{name}/truth", stamp, truth)
         self._write_metrics(stamp, snapshot, ("entropy", "nees", "squared_error"))

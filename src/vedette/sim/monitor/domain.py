@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from functools import partial
+from math import nan
 from pathlib import Path
 from typing import Any, cast
 
+import numpy as np
+
 from vedette.agent.mission import FlightMission
+from vedette.domains.monitoring.belief import FieldBelief
 from vedette.domains.monitoring.case import MonitorCase, default_case, made, read_case
-from vedette.domains.monitoring.content import FieldContent, check_content, content_of
+from vedette.domains.monitoring.content import FieldContent, belief_of, check_content, content_of
 from vedette.domains.monitoring.scenario import MonitorScenario
 from vedette.errors import InputError
 from vedette.missions.flights import FlightTeam, TeamOptions
@@ -20,8 +24,8 @@ from vedette.missions.monitor.monitoring import Monitoring
 from vedette.outcome import Outcome
 from vedette.record.display import Display
 from vedette.record.folder import OutputFolder
-from vedette.record.log import Sink
-from vedette.record.mcap import Place
+from vedette.record.log import Sink, VehicleSample
+from vedette.record.mcap import Medium, Place
 from vedette.record.monitor.live import monitor_display
 from vedette.record.monitor.log import MonitorScene, MonitorSnapshot
 from vedette.record.monitor.mcap import MonitorMcapWriter
@@ -84,6 +88,15 @@ class Monitor(Domain[MonitorCase, FieldContent, MonitorScene, MonitorSnapshot, M
         """Raise ValueError for what is no evidence of this field."""
         check_content(content, case.spots.count)
 
+    def known(self, content: FieldContent, case: MonitorCase) -> FieldBelief:
+        """Return what is known of the field."""
+        return belief_of(content, FieldBelief.prior(case.model, case.spots, case.scenario.step))
+
+    def seen(self, t: float, vehicles: Sequence[VehicleSample], known: FieldBelief) -> MonitorSnapshot:
+        """Return the field as it is taken to be."""
+        mean = known.mean.astype(np.float32)
+        return MonitorSnapshot(t, tuple(vehicles), nan, nan, nan, mean, entropy=known.entropy)
+
     def scene(self, case: MonitorCase) -> MonitorScene:
         """Return what stays the same."""
         return MonitorScene.of(case)
@@ -98,7 +111,9 @@ class Monitor(Domain[MonitorCase, FieldContent, MonitorScene, MonitorSnapshot, M
         """Return the live view."""
         return monitor_display(scene, quiet)
 
-    def recorder(self, place: Place, scene: MonitorScene) -> AbstractContextManager[Sink[MonitorSnapshot]]:
+    def recorder(
+        self, place: Place | Medium, scene: MonitorScene
+    ) -> AbstractContextManager[Sink[MonitorSnapshot]]:
         """Open the run record."""
         return MonitorMcapWriter(place, scene)
 

@@ -20,8 +20,8 @@ from vedette.missions.own.theory import MISSION
 from vedette.outcome import Outcome
 from vedette.record.display import Display
 from vedette.record.folder import OutputFolder
-from vedette.record.log import Sink
-from vedette.record.mcap import Place
+from vedette.record.log import Sink, VehicleSample
+from vedette.record.mcap import Medium, Place
 from vedette.record.own.live import OwnMcapWriter, own_display
 from vedette.record.own.observer import (
     OwnContent,
@@ -80,6 +80,10 @@ class OwnDomain(Domain[OwnCase, OwnContent, OwnScene, OwnSnapshot, OwnReport]):
         """Raise ValueError for what is no sum of evidence."""
         total_of(content, case.theory.size)
 
+    def seen(self, t: float, vehicles: Sequence[VehicleSample], known: Any) -> OwnSnapshot:
+        """Return who moves where: the theory's figures are against the truth."""
+        return OwnSnapshot(t, tuple(vehicles), {})
+
     def scene(self, case: OwnCase) -> OwnScene:
         """Return what stays the same."""
         return OwnScene.of(case)
@@ -94,7 +98,7 @@ class OwnDomain(Domain[OwnCase, OwnContent, OwnScene, OwnSnapshot, OwnReport]):
         """Return the live view."""
         return own_display(scene, quiet)
 
-    def recorder(self, place: Place, scene: OwnScene) -> AbstractContextManager[Sink[OwnSnapshot]]:
+    def recorder(self, place: Place | Medium, scene: OwnScene) -> AbstractContextManager[Sink[OwnSnapshot]]:
         """Open the run record."""
         return OwnMcapWriter(place, scene)
 

@@ -1,0 +1,63 @@
+"""The reports of a team of a declared domain as one picture, without knowing the truth."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import msgspec
+import numpy as np
+
+from vedette import wire
+from vedette.missions.flights import FlightCase
+from vedette.net.domain import AnyDomain
+from vedette.net.gather import UNHEARD, now_of, sample_of, vehicle_name
+from vedette.net.report import Report
+from vedette.record.log import Sink, VehicleSample
+from vedette.record.mcap import Medium
+from vedette.window.declared import pictures
+from vedette.window.picture import Beside, Picture
+
+
+class DomainOnlooker:
+    """``vedette.net.feed.Onlooker``: what is known is what the first vehicle that is heard tells."""
+
+    def __init__(self, domain: AnyDomain, case: FlightCase) -> None:
+        """Look at a team of a domain."""
+        self._domain, self._case, self._scene = domain, case, domain.scene(case)
+        self._decoder: msgspec.msgpack.Decoder[Any] = msgspec.msgpack.Decoder(domain.content)
+        self._draw = pictures(self._scene)
+        self._told: tuple[bytes, Any] | None = None  # what was told last, and what it comes to
+
+    def numbers(self, reports: Mapping[int, Report]) -> Sequence[int]:
+        """Return all of the scenario."""
+        return range(1, len(self._scene.vehicles) + 1)
+
+    def name(self, robot: int) -> str:
+        """Return the scenario's word for a vehicle."""
+        return vehicle_name(self._scene.vehicles, robot)
+
+    def see(self, reports: Mapping[int, Report], states: Mapping[int, str]) -> tuple[Any, Any]:
+        """Return where vehicles are, and what is known; that is worked out anew when it has changed."""
+        first = next((robot for robot in reports if robot not in states), next(iter(reports)))
+        packed = reports[first].content
+        if self._told is None or self._told[0] != packed:
+            content = wire.decode(self._decoder, packed, "report")
+            self._domain.check(content, self._case)
+            self._told = packed, self._domain.known(content, self._case)
+        vehicles = []
+        for i, vehicle in enumerate(self._case.scenario.vehicles):
+            if i in reports:
+                vehicles.append(sample_of(reports[i].condition, states.get(i)))
+            else:
+                vehicles.append(VehicleSample(*vehicle.pose, UNHEARD, True, np.empty((0, 2))))
+        return self._scene, self._domain.seen(now_of(reports), vehicles, self._told[1])
+
+    def draw(self, scene: Any, snapshot: Any, beside: Beside) -> Picture:
+        """Return it as the page shows it."""
+        return self._draw(snapshot, beside)
+
+    def recorder(self, medium: Medium, scene: Any) -> Sink[Any]:
+        """Return what tells it in messages."""
+        sink: Sink[Any] = self._domain.recorder(medium, scene).__enter__()
+        return sink

@@ -1,0 +1,76 @@
+"""A searching team's reports as one picture, without knowing where the target truly is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from math import nan
+
+import numpy as np
+
+from vedette.missions.search.case import SearchCase
+from vedette.net.gather import UNHEARD, now_of, vehicle_name
+from vedette.net.report import Report
+from vedette.net.search.content import view_of
+from vedette.record.log import Sink
+from vedette.record.mcap import Medium
+from vedette.record.search.log import SearchSample, SearchScene, SearchSnapshot
+from vedette.record.search.mcap import SearchMcapWriter
+from vedette.record.search.observer import first_declared
+from vedette.window.flights import search_picture
+from vedette.window.picture import Beside, Picture
+
+
+class SearchOnlooker:
+    """``vedette.net.feed.Onlooker``: the pdf is that of the first vehicle that is heard."""
+
+    def __init__(self, case: SearchCase) -> None:
+        """Look at a team that searches."""
+        self._case, self._scene = case, SearchScene.of(case, case.scenario.duration)
+
+    def numbers(self, reports: Mapping[int, Report]) -> Sequence[int]:
+        """Return all of the scenario."""
+        return range(1, len(self._scene.vehicles) + 1)
+
+    def name(self, robot: int) -> str:
+        """Return the scenario's word for a vehicle."""
+        return vehicle_name(self._scene.vehicles, robot)
+
+    def see(
+        self, reports: Mapping[int, Report], states: Mapping[int, str]
+    ) -> tuple[SearchScene, SearchSnapshot]:
+        """Return where vehicles are, and how likely the target is where."""
+        views = {
+            robot: view_of(report.condition, report.content, self._case.pdf)[0]
+            for robot, report in reports.items()
+        }
+        known = views[next((robot for robot in views if robot not in states), next(iter(views)))].pdf
+        assert known is not None
+        samples = []
+        for i, vehicle in enumerate(self._case.scenario.vehicles):
+            if i not in views:
+                samples.append(SearchSample(*vehicle.pose, UNHEARD, True, np.empty((0, 2)), None))
+            elif i in states:
+                samples.append(replace(views[i].sample, state=states[i], alive=False))
+            else:
+                samples.append(views[i].sample)
+        declared = first_declared([view.declared for view in views.values()])
+        snapshot = SearchSnapshot(
+            t=now_of(reports),
+            vehicles=tuple(samples),
+            mass=known.mass.astype(np.float32),
+            entropy=known.entropy,
+            detection=nan,
+            target=(nan, nan),
+            outside=known.outside if known.motion.leaves else None,
+            declared=None if declared is None else (declared[1].x, declared[1].y),
+        )
+        return self._scene, snapshot
+
+    def draw(self, scene: SearchScene, snapshot: SearchSnapshot, beside: Beside) -> Picture:
+        """Return it as the page shows it."""
+        return search_picture(scene, snapshot, beside)
+
+    def recorder(self, medium: Medium, scene: SearchScene) -> Sink[SearchSnapshot]:
+        """Return what tells it in messages."""
+        return SearchMcapWriter(medium, scene)

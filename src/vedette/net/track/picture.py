@@ -1,0 +1,79 @@
+"""A tracking team's reports as one picture, without knowing where its targets truly are."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from math import nan
+
+import numpy as np
+
+from vedette.agent.flight import step_of
+from vedette.domains.tracking.filter import predict
+from vedette.missions.track.scenario import TrackScenario
+from vedette.net.gather import UNHEARD, now_of, vehicle_name
+from vedette.net.report import Report
+from vedette.net.track.content import view_of
+from vedette.record.log import Sink
+from vedette.record.mcap import Medium
+from vedette.record.track.log import TrackSample, TrackScene, TrackSnapshot
+from vedette.record.track.mcap import TrackMcapWriter
+from vedette.window.flights import track_picture
+from vedette.window.picture import Beside, Picture
+
+
+class TrackOnlooker:
+    """``vedette.net.feed.Onlooker``: the tracks are those of the first vehicle that is heard."""
+
+    def __init__(self, scenario: TrackScenario, name: str) -> None:
+        """Look at a team that follows the targets of a scenario."""
+        self._scenario, self._prior = scenario, scenario.prior()
+        self._scene = TrackScene.of(scenario, name)
+
+    def numbers(self, reports: Mapping[int, Report]) -> Sequence[int]:
+        """Return all of the scenario."""
+        return range(1, len(self._scene.vehicles) + 1)
+
+    def name(self, robot: int) -> str:
+        """Return the scenario's word for a vehicle."""
+        return vehicle_name(self._scene.vehicles, robot)
+
+    def see(
+        self, reports: Mapping[int, Report], states: Mapping[int, str]
+    ) -> tuple[TrackScene, TrackSnapshot]:
+        """Return where vehicles are, and what is known of the targets."""
+        t = now_of(reports)
+        views = {
+            robot: view_of(report.condition, report.content, self._prior) for robot, report in reports.items()
+        }
+        holder = next((robot for robot in views if robot not in states), next(iter(views)))
+        known = views[holder].tracks
+        known = predict(known, max(0, step_of(t, known.dt) - known.k0))
+        samples = []
+        for i, vehicle in enumerate(self._scenario.vehicles):
+            if i not in views:
+                samples.append(TrackSample(*vehicle.pose, UNHEARD, True, np.empty((0, 2)), ()))
+            elif i in states:
+                samples.append(replace(views[i].sample, state=states[i], alive=False))
+            else:
+                samples.append(views[i].sample)
+        snapshot = TrackSnapshot(
+            t=t,
+            vehicles=tuple(samples),
+            holder=holder,
+            truth=np.full_like(known.means, nan),
+            means=known.means,
+            covariances=known.covariances,
+            entropy=float(known.entropies.sum()),
+            nees=nan,
+            squared_error=nan,
+        )
+        return self._scene, snapshot
+
+    def draw(self, scene: TrackScene, snapshot: TrackSnapshot, beside: Beside) -> Picture:
+        """Return it as the page shows it."""
+        return track_picture(scene, snapshot, beside)
+
+    def recorder(self, medium: Medium, scene: TrackScene) -> Sink[TrackSnapshot]:
+        """Return what tells it in messages."""
+        return TrackMcapWriter(medium, scene)
