@@ -136,6 +136,23 @@ class Itinerary:
             here = _moved(here, control, speed, duration)
         return here
 
+    def traced(self, pose: ArrayLike, speed: float, begin: float, spacing: float) -> NDArray[np.float64]:
+        """Return a vehicle's poses (N, 3), at most so far apart [m], from ``begin`` to the end of its plans.
+
+        The first is the one given.
+        """
+        here = np.asarray(pose, np.float64)
+        poses = [here[None]]
+        for control, duration in self.held(begin, max((plan.end for plan in self.plans), default=begin)):
+            parts = max(1, ceil(speed * duration / spacing))
+            if isinstance(control, float):
+                poses.append(drive(here, np.full(parts, control), speed, duration / parts))
+            else:
+                ends = np.arange(1, parts + 1) * (duration / parts)
+                poses.append(np.array([_moved(here, control, speed, end) for end in ends.tolist()]))
+            here = poses[-1][-1]
+        return np.concatenate(poses)
+
     def rested(self, speed: float, begin: float, end: float) -> float:
         """Return how much longer than its way at full ``speed`` [m/s] takes the time between two is [s]."""
         rested = 0.0

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from vedette.agent.driving import YIELD_LIMIT, Driver
 from vedette.agent.effects import Drive, Effect
 from vedette.agent.events import Arrived, Pose, Scan, Sensed, Stuck
-from vedette.agent.mission import Enduring, GroundMission, Heeding
+from vedette.agent.mission import Enduring, GroundMission, Leaving
 from vedette.agent.orders import End, Given, LookThere, Pause, Recall, Stay
 from vedette.agent.state import Agent, State
 from vedette.outcome import Outcome
@@ -152,7 +152,7 @@ class GroundBehaviour:
             return []
         if not agent.orders.any_no_go or not agent.is_due("leave", CHECK_PERIOD, now):
             return None
-        route = self.mission.way_out(pose) if isinstance(self.mission, Heeding) else None
+        route = self.mission.way_out(pose) if isinstance(self.mission, Leaving) else None
         if route is None:
             return None
         self.mission.stand_by()

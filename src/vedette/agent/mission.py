@@ -14,8 +14,11 @@ from vedette.agent.flight import AnyPlan
 from vedette.agent.mates import Mate
 from vedette.agent.messages import Note
 from vedette.agent.orders import OrderBook
+from vedette.forbidden import Forbidden
 from vedette.outcome import Outcome
 from vedette.problem import Codec, Objective, Reach
+
+Place = tuple[float, float]  # [m], team frame
 
 BeliefT = TypeVar("BeliefT")
 BeliefT_contra = TypeVar("BeliefT_contra", contravariant=True)
@@ -152,6 +155,11 @@ class Heeding(Protocol):
     def heed(self, book: OrderBook) -> None:
         """Plan by these orders from now on."""
 
+
+@runtime_checkable
+class Leaving(Heeding, Protocol):
+    """A mission on the ground, that knows the ways out of where nobody may be any more."""
+
     def way_out(self, pose: Pose) -> Route | None:
         """Return the shortest way out of where nobody may be any more; None: the robot is not in there."""
 
@@ -192,3 +200,19 @@ class FlightMission(Mission[BeliefT, StrategyT, ImpactT], Protocol[BeliefT, Stra
 
     def plan(self) -> AnyPlan | None:
         """Return the present strategy as turn rates or velocities; None: circle, or stand."""
+
+    @property
+    def forbidden(self) -> Forbidden:
+        """Where nobody may be."""
+
+    def stand_by(self) -> None:
+        """Leave the present strategy: orders keep the vehicle from it."""
+
+    def route(self, here: Place, there: Place, room: float) -> list[Place]:
+        """Return the corners of a way from place to place [m], both included; none: there is no way.
+
+        ``room``: that it keeps from where nobody may be [m].
+        """
+
+    def passes(self, places: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Tell at which places (..., 2) [m] the vehicle can be, whatever is forbidden."""

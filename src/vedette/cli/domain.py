@@ -14,12 +14,13 @@ from vedette.cli.options import (
     Output,
     Positive,
     fault_options,
+    orders_option,
     output_options,
     seed_option,
     with_options,
 )
 from vedette.cli.running import Kind, simulate, simulate_watched
-from vedette.cli.windows import watch_options
+from vedette.cli.windows import orders_of, watch_options, watched
 from vedette.missions.flights import FUSIONS
 from vedette.missions.pairs import SCHEME
 from vedette.negotiation import SCHEMES
@@ -27,7 +28,7 @@ from vedette.run.domain import DomainMission
 from vedette.sim.domain import Domain
 from vedette.sim.domains import DomainEntry
 from vedette.window.explore import Shower
-from vedette.window.hub import Hub
+from vedette.window.picture import Picture
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 STATUS = "Exit status: 0 complete, 1 incomplete, 2 bad input, 130 interrupted."
@@ -64,21 +65,32 @@ def command_of(declared: DomainEntry) -> click.Command:
     """Return ``vedette NAME``."""
 
     def run(
-        scenario_path: Path | None, output: Output, watch: bool, pace: float, no_compare: bool, **options: Any
+        scenario_path: Path | None,
+        orders: Path | None,
+        output: Output,
+        watch: bool,
+        pace: float,
+        no_compare: bool,
+        **options: Any,
     ) -> None:
         domain = declared.load()
-        mission = DomainMission(domain, scenario_path, **options)
+        mission = DomainMission(domain, scenario_path, orders=orders or (), **options)
         beside = (lambda report, say: report) if no_compare else mission.compared
         kind = kind_of(domain)
         if not watch:
             simulate(kind, mission, mission.scene, output, beside)
         from vedette.window.declared import pictures  # who watches nothing does not wait for it
 
-        hub = Hub(mission.scene.name)
-        shower = Shower[Any](hub, pictures(mission.scene), pace)
+        hub, names = watched(mission, mission.scene.name), mission.scene.vehicles
+        draw = pictures(mission.scene)
+
+        def drawn(snapshot: Any) -> Picture:
+            return draw(snapshot, orders_of(mission, names))
+
+        shower = Shower[Any](hub, drawn, pace)
         simulate_watched(kind, mission, mission.scene, output, hub, shower, beside)
 
     no_compare = click.option("--no-compare", is_flag=True, help="Leave out the other ways of coordination.")
-    options = output_options(watch_options(with_options(run, no_compare)))
+    options = orders_option(fault_options(output_options(watch_options(with_options(run, no_compare)))))
     about = f"{declared.about}\n\n{STATUS}"
-    return click.command(declared.name, help=about)(domain_options(declared)(fault_options(options)))
+    return click.command(declared.name, help=about)(domain_options(declared)(options))

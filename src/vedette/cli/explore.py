@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import click
 
-from vedette.agent.orders import Order
 from vedette.cli.exploring import EXPLORING, exploring_options, team_named, world_named
-from vedette.cli.options import FILE, Output, fault_options, output_options
+from vedette.cli.options import FILE, Output, fault_options, orders_option, output_options
 from vedette.cli.running import simulate, simulate_watched
-from vedette.cli.windows import watch_options
+from vedette.cli.windows import watch_options, watched
 from vedette.errors import InputError
 from vedette.record.explore.log import ExploreSnapshot
 from vedette.record.space import short_of_space
@@ -20,7 +18,6 @@ from vedette.run import Explore
 from vedette.run.inputs import files_of
 from vedette.run.saved import seed_of
 from vedette.window.explore import Shower
-from vedette.window.hub import Hub
 from vedette.window.picture import Beside, Picture, picture
 
 
@@ -29,12 +26,7 @@ from vedette.window.picture import Beside, Picture, picture
 @click.option(
     "--continue", "saved", type=FILE, metavar="RUN_DIR", help="Start from the map that an earlier run left."
 )
-@click.option(
-    "--orders",
-    type=FILE,
-    metavar="FILE",
-    help="What the operator orders, and when: pause, recall, no-go areas.",
-)
+@orders_option
 @fault_options
 @watch_options
 @output_options
@@ -64,18 +56,11 @@ def explore(
     mission.inputs += files_of(None if saved is None else saved / "map.yaml", team)
     if not watch:
         simulate(EXPLORING, mission, mission.scene, output)
-    hub = Hub(mission.scene.name, partial(_order, mission))
-    shower = Shower[ExploreSnapshot](hub, partial(_drawn, mission, output.out or Path()), pace)
+    hub, folder = watched(mission, mission.scene.name), output.out or Path()
+
+    def drawn(snapshot: ExploreSnapshot) -> Picture:
+        short = short_of_space(folder)
+        return picture(mission.scene, snapshot, Beside(alerts=[short] if short else []))
+
+    shower = Shower[ExploreSnapshot](hub, drawn, pace)
     simulate_watched(EXPLORING, mission, mission.scene, output, hub, shower)
-
-
-def _drawn(mission: Explore, folder: Path, snapshot: ExploreSnapshot) -> Picture:
-    """Return a snapshot, and whether its record finds room in its folder."""
-    short = short_of_space(folder)
-    return picture(mission.scene, snapshot, Beside(alerts=[short] if short else []))
-
-
-def _order(mission: Explore, order: Order) -> str:
-    """Give an order, and say what has come of it."""
-    mission.order(order)
-    return "given"

@@ -137,6 +137,16 @@ class Kill(click.ParamType[tuple[int, float]]):
         return int(match[1]), float(match[2])
 
 
+def orders_option(command: CommandT) -> CommandT:
+    """``--orders``."""
+    return click.option(
+        "--orders",
+        type=FILE,
+        metavar="FILE",
+        help="What the operator orders, and when: pause, recall, no-go areas.",
+    )(command)
+
+
 def fault_options(command: CommandT) -> CommandT:
     """``--radio``, ``--faults``, ``--link-delay``, ``--link-loss`` and ``--kill``."""
     return with_options(

@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import click
 
-from vedette.cli.options import Output, fault_options, output_options
+from vedette.cli.options import Output, fault_options, orders_option, output_options
 from vedette.cli.running import Say, simulate, simulate_watched
 from vedette.cli.searching import SEARCHING, searching_options
 from vedette.cli.seeking import OF_UNKNOWN_MAPS, OF_VEHICLES, check_together, seek, seeking_options
-from vedette.cli.windows import watch_options
+from vedette.cli.windows import orders_of, watch_options, watched
 from vedette.record.search.log import SearchSnapshot
 from vedette.record.search.observer import SearchReport
 from vedette.run import Search
 from vedette.window.explore import Shower
 from vedette.window.flights import search_picture
-from vedette.window.hub import Hub
+from vedette.window.picture import Picture
 
 MOST_TRIALS = 1_000_000
 
@@ -26,6 +25,7 @@ MOST_TRIALS = 1_000_000
 @click.command()
 @searching_options
 @seeking_options
+@orders_option
 @fault_options
 @click.option(
     "--trials",
@@ -42,6 +42,7 @@ def search(
     /,
     scenario_path: Path | None,
     unknown_map: bool,
+    orders: Path | None,
     trials: int | None,
     output: Output,
     watch: bool,
@@ -56,6 +57,7 @@ def search(
     1 not found in time or declared where it is not, 2 bad input, 130 interrupted.
     """
     check_together(context, unknown_map)
+    options["orders"] = orders or ()
     if unknown_map:
         seek(scenario_path, output=output, **{k: v for k, v in options.items() if k not in OF_VEHICLES})
     options = {name: value for name, value in options.items() if name not in OF_UNKNOWN_MAPS}
@@ -66,6 +68,10 @@ def search(
 
     if not watch:
         simulate(SEARCHING, mission, mission.scene, output, beside)
-    hub = Hub(mission.scene.name)
-    shower = Shower[SearchSnapshot](hub, partial(search_picture, mission.scene), pace)
+    hub, names = watched(mission, mission.scene.name), mission.scene.vehicles
+
+    def drawn(snapshot: SearchSnapshot) -> Picture:
+        return search_picture(mission.scene, snapshot, orders_of(mission, names))
+
+    shower = Shower[SearchSnapshot](hub, drawn, pace)
     simulate_watched(SEARCHING, mission, mission.scene, output, hub, shower, beside)

@@ -41,10 +41,11 @@ from vedette.record.search.curves import ideal
 from vedette.record.search.log import SearchScene
 from vedette.record.summary import Setting
 from vedette.record.track.log import TrackScene
-from vedette.run.inputs import files_of, schedule_of, world_of
+from vedette.run.inputs import files_of, orders_in, schedule_of, world_of
 from vedette.run.searching import case_of, heat_maps
 from vedette.run.tracking import scenario_of
 from vedette.sim.domains import DOMAINS, DomainEntry, entry_of, own_domain
+from vedette.sim.orders import check_flight_orders, check_orders
 from vedette.sim.search.hidden import Hidden
 from vedette.sim.starts import choose_starts
 from vedette.sim.track.targets import Targets
@@ -95,6 +96,7 @@ def explore(
     speed: float,
     lease: float,
     faults: str | None,
+    orders: Path | None,
     watch: bool,
     ros2: bool,
     output: Output,
@@ -121,13 +123,15 @@ def explore(
     places = choose_starts(world, specs, np.random.default_rng([seed, 1]), area_of)
     kind = Ros2Plan if ros2 else ExplorePlan
     plan = kind(world, specs, places, options, seed, speed, lease)
-    page = ExploreOnlooker(world.name, [spec.name for spec in specs]) if watch else None
-    run = TeamRun(plan, max_time, schedule_of(faults, plan.size, clocks=False), page)
+    given = orders_in(orders)
+    check_orders(given, world, specs, str(orders), signed=fusion == "replicated")
+    page = ExploreOnlooker(world.name, [spec.name for spec in specs])
+    run = TeamRun(plan, max_time, schedule_of(faults, plan.size, clocks=False), page, watch, given)
     setting = Setting(seed=seed, faults=faults)
     EXPLORING.run(
         ExploreScene.of(world, [spec.name for spec in specs]),
         output,
-        files_of(map_path, team, faults, prior),
+        files_of(map_path, team, faults, prior, orders),
         lambda sinks, folder: run.watched_by(ExploreWatcher(plan, setting, sinks), folder),
     )
 
@@ -148,6 +152,7 @@ def track(
     speed: float,
     lease: float,
     faults: str | None,
+    orders: Path | None,
     watch: bool,
     output: Output,
 ) -> None:
@@ -166,13 +171,15 @@ def track(
     plan = FlightsPlan("track", options, scenario_path, len(scenario.vehicles), seed, speed, lease)
     vehicles = TrackTeam(scenario, options, plan.times)
     limit = scenario.duration + 1.0 if max_time is None else max_time
-    page = TrackOnlooker(scenario, name) if watch else None
-    run = TeamRun(plan, limit, schedule_of(faults, plan.size, clocks=False), page)
+    given = orders_in(orders)
+    check_flight_orders(given, vehicles.grounds, str(orders))
+    page = TrackOnlooker(scenario, name)
+    run = TeamRun(plan, limit, schedule_of(faults, plan.size, clocks=False), page, watch, given)
     setting, truth = Setting(seed=seed, faults=faults), Targets.of(vehicles, seed)
     TRACKING.run(
         TrackScene.of(scenario, name),
         output,
-        files_of(None, scenario_path, faults),
+        files_of(None, scenario_path, faults, orders),
         lambda sinks, folder: run.watched_by(TrackWatcher(vehicles, name, setting, truth.at, sinks), folder),
     )
 
@@ -191,6 +198,7 @@ def search(
     speed: float,
     lease: float,
     faults: str | None,
+    orders: Path | None,
     watch: bool,
     output: Output,
 ) -> None:
@@ -206,14 +214,16 @@ def search(
     plan = FlightsPlan("search", options, scenario_path, len(case.names), seed, speed, lease)
     vehicles = SearchTeam(case, options, plan.times)
     duration = case.scenario.duration if max_time is None else min(max_time, case.scenario.duration)
-    page = SearchOnlooker(case) if watch else None
-    run = TeamRun(plan, duration, schedule_of(faults, plan.size, clocks=False), page)
+    given = orders_in(orders)
+    check_flight_orders(given, vehicles.grounds, str(orders))
+    page = SearchOnlooker(case)
+    run = TeamRun(plan, duration, schedule_of(faults, plan.size, clocks=False), page, watch, given)
     setting, hidden = Setting(seed=seed, faults=faults), Hidden.of(case, seed)
     curves = ideal(case, floor(duration / case.scenario.step + 1e-6))
     SEARCHING.run(
         SearchScene.of(case, duration),
         output,
-        files_of(None, scenario_path, faults, *heat_maps(case, scenario_path)),
+        files_of(None, scenario_path, faults, orders, *heat_maps(case, scenario_path)),
         lambda sinks, folder: run.watched_by(
             SearchWatcher(vehicles, duration, setting, hidden.at, curves, sinks), folder
         ),
@@ -230,6 +240,7 @@ def _domain_command(declared: DomainEntry) -> click.Command:
         speed: float,
         lease: float,
         faults: str | None,
+        orders: Path | None,
         watch: bool,
         output: Output,
         **how: Any,
@@ -247,13 +258,15 @@ def _domain_command(declared: DomainEntry) -> click.Command:
         plan = FlightsPlan("domain", options, scenario_path, size, seed, speed, lease)
         vehicles = domain.team(case, options, plan.times)
         limit = case.scenario.duration + 1.0 if max_time is None else max_time
-        page = DomainOnlooker(domain, case) if watch else None
-        processes = TeamRun(plan, limit, schedule_of(faults, size, clocks=False), page)
+        given = orders_in(orders)
+        check_flight_orders(given, vehicles.grounds, str(orders))
+        page = DomainOnlooker(domain, case)
+        processes = TeamRun(plan, limit, schedule_of(faults, size, clocks=False), page, watch, given)
         setting = Setting(seed=seed, faults=faults)
         kind_of(domain).run(
             domain.scene(case),
             output,
-            (*files_of(None, scenario_path, faults), *case.files),
+            (*files_of(None, scenario_path, faults, orders), *case.files),
             lambda sinks, folder: processes.watched_by(
                 DomainWatcher(domain, vehicles, setting, sinks), folder
             ),

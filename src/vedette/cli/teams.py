@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 
 import click
 
-from vedette.cli.options import Positive, with_options
+from vedette.cli.options import Positive, orders_option, with_options
 from vedette.cli.running import ReportT
 from vedette.cli.staging import Stage
 from vedette.cli.windows import opened
@@ -20,13 +20,16 @@ from vedette.errors import InputError
 from vedette.interrupt import ending_on_ctrl_c
 from vedette.net.explore.ros2_plan import Ros2Plan, environment, strangers
 from vedette.net.feed import Onlooker, TeamFeed
+from vedette.net.giving import Giving
 from vedette.net.launch import TeamPlan, TeamProcesses
 from vedette.net.names import robot_name
 from vedette.net.team import TeamWatch, Watcher
 from vedette.net.transport import Operator
 from vedette.record.folder import OutputFolder
 from vedette.sim.faults import Schedule, faults_text
+from vedette.sim.orders import OrderAt
 from vedette.window.hub import Hub
+from vedette.window.picture import said
 
 CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 SPEED = 3.0  # more costs mission time, as thoughts and messages take as long as ever: 5 % at 5, 16 % at 10
@@ -34,9 +37,10 @@ KEPT_UP = 0.8  # of the speed asked for; less is worth a remark
 
 
 def process_options(command: CommandT) -> CommandT:
-    """``--speed``, ``--lease``, ``--faults`` and ``--watch``."""
+    """``--orders``, ``--speed``, ``--lease``, ``--faults`` and ``--watch``."""
     return with_options(
         command,
+        orders_option,
         click.option(
             "--speed", type=Positive("times real time", most=50.0), default=SPEED, show_default=True,
             help="Of the mission, in seconds a second; too much for this host makes robots think slowly.",
@@ -60,7 +64,9 @@ class TeamRun:
     plan: TeamPlan
     max_time: float  # [s]
     schedule: Schedule | None  # of faults
-    page: Onlooker[Any, Any] | None  # makes a page's pictures; None: nobody watches
+    onlooker: Onlooker[Any, Any]  # makes a page's pictures
+    watch: bool  # whether there is one
+    orders: tuple[OrderAt, ...]  # of the operator, in order of time
 
     def watched_by(self, watcher: Watcher[ReportT], folder: OutputFolder) -> ReportT:
         """Run the team to the end of its mission; what it says goes into the folder, if it starts."""
@@ -85,14 +91,17 @@ class TeamRun:
             team = TeamProcesses(self.plan, private, logs, text, around)
             processes = stack.enter_context(team)
             operator = stack.enter_context(Operator(processes.operator))
-            if self.page is not None:
-                feed = TeamFeed(operator, processes.operator, self.page)
+            if self.watch:
+                feed = TeamFeed(operator, processes.operator, self.onlooker)
                 hub = Hub(processes.operator.team, feed.give)
                 stack.enter_context(opened(hub))
                 stack.enter_context(feed.followed(hub))
             watch = TeamWatch(self.plan, processes, operator, watcher, self.max_time)
             if self.schedule is not None:
                 watch.befall = Stage(self.schedule, processes, watch).befall
+            watch.tell = _Telling(
+                Giving(operator, processes.operator, self.onlooker.name), watch, list(self.orders)
+            ).tell
             stack.enter_context(ending_on_ctrl_c(watch.stop))
             report = watch.run()
         for line in _remarks(watch, report.timing.real_time_factor, self.plan.speed):
@@ -100,10 +109,29 @@ class TeamRun:
         return report
 
 
+@dataclass(frozen=True)
+class _Telling:
+    """Gives a team what an operator has written down, each order at its time, and says what comes of it."""
+
+    giving: Giving
+    watch: TeamWatch[Any]
+    orders: list[OrderAt]  # that have not been given
+
+    def tell(self, now: float) -> None:
+        """Give what is due at a time of the mission [s]."""
+        while self.orders and self.orders[0].at <= now:
+            order = self.orders.pop(0).what
+            try:
+                answer = self.giving.give(order, list(self.watch.conditions.values()))
+            except InputError as error:
+                answer = f"refused: {error}"
+            click.echo(f"{now:7.1f} s  order {said(order)}: {answer}", err=True)
+
+
 def _remarks(watch: TeamWatch[Any], pace: float, speed: float) -> Iterator[str]:
     """Say what else whoever started the team should know."""
-    for robot, said in watch.failures.items():
-        yield f"{robot_name(robot)} failed: {said}; see {watch.team.log_of(robot)}"
+    for robot, last in watch.failures.items():
+        yield f"{robot_name(robot)} failed: {last}; see {watch.team.log_of(robot)}"
     for (robot, other), what in sorted(watch.complaints.items()):
         yield f"{robot_name(robot)} of {robot_name(other)}: {what}"
     if 0 < pace < KEPT_UP * speed:

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from vedette.agent.orders import Order
 from vedette.cli.options import Positive, with_options
 from vedette.interrupt import ending_on_ctrl_c
+from vedette.run.mission import StepwiseMission
 from vedette.window.hub import LOOPBACK, Hub
+from vedette.window.picture import Beside, ordered
 
 if TYPE_CHECKING:
     from vedette.window.server import WindowServer
@@ -45,6 +48,23 @@ def watch_options(command: CommandT) -> CommandT:
             help="Of a mission that is watched.",
         ),
     )  # fmt: skip
+
+
+def watched(mission: StepwiseMission[Any, Any, Any, Any], name: str) -> Hub:
+    """Return a hub that gives a simulated mission orders."""
+
+    def give(order: Order) -> str:
+        mission.order(order)
+        return "given"
+
+    return Hub(name, give)
+
+
+def orders_of(mission: StepwiseMission[Any, Any, Any, Any], names: Sequence[str]) -> Beside:
+    """Return the orders that robots of these names hold."""
+    held = [[given.order for given in book.all] for book in mission.books]
+    orders, areas = ordered(zip(names, held, strict=True))
+    return Beside(orders=orders, areas=areas)
 
 
 @contextmanager

@@ -20,6 +20,7 @@ from vedette.fusion.seals import Notary
 from vedette.fusion.steps import Sparse, SparseIntegers, StepEvidence, StepSums, replicated_steps
 from vedette.missions.flying import RoundTimes
 from vedette.missions.pairs import SCHEME
+from vedette.missions.sense import Grounds
 from vedette.number import many
 from vedette.scenario import Metre
 
@@ -159,6 +160,11 @@ class FlightTeam(ABC, Generic[CaseT]):
     @abstractmethod
     def domain(self) -> str:
         """By name."""
+
+    @property
+    @abstractmethod
+    def grounds(self) -> Grounds:
+        """What orders can be about."""
 
     @abstractmethod
     def mission(self, robot: int, boot: int, notary: Notary | None) -> FlightMission[Any, Any, Any]:

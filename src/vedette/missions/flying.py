@@ -3,17 +3,76 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Generic
 
+import numpy as np
+from numpy.typing import NDArray
+
 from vedette.agent.messages import Note
-from vedette.agent.mission import BeliefT, ImpactT, RoundPlatform, StrategyT
+from vedette.agent.mission import BeliefT, ImpactT, Place, RoundPlatform, StrategyT
+from vedette.agent.orders import OrderBook
+from vedette.forbidden import NOWHERE, Forbidden
+from vedette.maps.area import Area
+from vedette.missions.ordered import no_go_areas, priority_areas
 from vedette.problem import Objective, Reach
 
 
-class FlyingMission:
-    """Tells nothing beside the evidence, and has no end of its own: the world says when it is over."""
+@dataclass(frozen=True, eq=False)
+class Held(Generic[BeliefT, StrategyT, ImpactT]):
+    """A platform that does nothing, whatever the others do: orders keep it from work."""
+
+    objective: Objective[BeliefT, ImpactT]
+
+    def impact(self, belief: BeliefT, strategy: StrategyT) -> ImpactT:
+        """Promise nothing."""
+        return self.objective.nothing(belief)
+
+    def reply(self, belief: BeliefT, others: ImpactT, current: StrategyT) -> StrategyT:
+        """Go on."""
+        return current
+
+    def slack(self, belief: BeliefT, base: ImpactT) -> float:
+        """Nothing can be gained."""
+        return 0.0
+
+
+class FlyingMission(ABC, Generic[BeliefT, StrategyT, ImpactT]):
+    """Tells nothing beside the evidence, and has no end of its own: the world says when it is over.
+
+    It heeds orders: no-go areas bind its plans, and priorities what they are worth.
+    """
+
+    working: RoundPlatform[BeliefT, StrategyT, ImpactT]  # what it plans with
+    held = False  # orders keep it from work, as of the last round
+    forbidden = NOWHERE  # where nobody may be
+    priorities: Sequence[tuple[Area, float]] = ()  # areas, and how many times as much all in them is worth
+
+    @property
+    @abstractmethod
+    def objective(self) -> Objective[BeliefT, ImpactT]:
+        """What the team gains."""
+
+    @property
+    def platform(self) -> RoundPlatform[BeliefT, StrategyT, ImpactT]:
+        """What it plans with, if nothing keeps it from work."""
+        return Held(self.objective) if self.held else self.working
+
+    def heed(self, book: OrderBook) -> None:
+        """Plan by these orders from now on."""
+        self.forbidden = Forbidden(no_go_areas(book))
+        self.priorities = priority_areas(book)
+
+    def route(self, here: Place, there: Place, room: float) -> list[Place]:
+        """Return the corners of a way from place to place [m]; none: there is no way."""
+        corners = self.forbidden.round(np.array(here), np.array(there), room)
+        return [(float(x), float(y)) for x, y in corners]
+
+    def passes(self, places: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Tell at which places ``(..., 2)`` [m] its vehicle can be."""
+        return np.ones(places.shape[:-1], np.bool_)
 
     def notes(self) -> list[Note]:
         """Tell nothing beside the evidence."""

@@ -18,13 +18,13 @@ from vedette.agent.mission import FlightMission
 from vedette.errors import check_word
 from vedette.missions.flights import FlightCase, FlightTeam, FlightVehicle
 from vedette.net.config import AgentConfig
-from vedette.net.flights import check_number, round_times
+from vedette.net.flights import check_number, judge_of, round_times
 from vedette.net.gather import figures_of, path_of
 from vedette.net.notary import notary_of
 from vedette.net.report import Condition
 from vedette.net.robot import Robot
 from vedette.net.simulated import Domain, domain_of, simulated_vehicle
-from vedette.net.team import Fates, Links, ReportT_co, as_it_is
+from vedette.net.team import Fates, Links, ReportT_co, as_it_is, called_off
 from vedette.outcome import Outcome
 from vedette.record.figures import RobotFigures
 from vedette.record.flights import FlightView
@@ -49,7 +49,8 @@ def vehicle(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robot
     notary, terms = notary_of(config, folder, team.terms, speed)
     agent = team.assemble(config.robot - 1, boot, notary)
     teller = DomainTeller(agent, domain, case)
-    return Robot(agent, simulated_vehicle(config, domain, case), None, teller, terms)
+    judge = judge_of(config, team, agent, notary)
+    return Robot(agent, simulated_vehicle(config, domain, case), None, teller, terms, judge=judge)
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +112,9 @@ class DomainWatcher(Generic[ReportT_co]):
         self._observer.finish(now, self._seen(fates))
 
     def over(self, now: float, heard: Sequence[Condition], silent: bool) -> Outcome | None:
-        """Tell whether the scenario's time is over."""
+        """Tell whether the scenario's time is over, or the operator has called all off."""
+        if called_off(heard, silent):
+            return Outcome.ORDERED
         return Outcome.COMPLETE if now >= self._case.scenario.duration - 1e-9 else None
 
     def report(self, outcome: Outcome, timing: Timing, now: float) -> ReportT_co:

@@ -8,12 +8,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any, Protocol, TypeVar
 
-from vedette.agent.orders import Order, encode
-from vedette.errors import InputError
+from vedette.agent.orders import Order
 from vedette.net.access import Access
 from vedette.net.gather import links_among
+from vedette.net.giving import Giving
 from vedette.net.hearing import Hearing
-from vedette.net.orders import TAKEN, pen_of, written
 from vedette.net.report import Report
 from vedette.net.transport import Operator
 from vedette.record.log import LEFT, Sink
@@ -57,7 +56,7 @@ class TeamFeed:
     def __init__(self, operator: Operator, access: Access, onlooker: Onlooker[Any, Any]) -> None:
         """Begin to hear."""
         self.hearing = Hearing(operator)
-        self._operator, self._access, self._onlooker = operator, access, onlooker
+        self._onlooker, self._giving = onlooker, Giving(operator, access, onlooker.name)
 
     def picture(self) -> Picture | None:
         """Return the team as it was heard last; None: nobody was, or it makes no sense."""
@@ -83,19 +82,7 @@ class TeamFeed:
     def give(self, order: Order) -> str:
         """Give the team an order, and say what has come of it."""
         told = [report.condition for report in list(self.hearing.reports.values())]
-        mission = next((each.mission for each in told if each.mission), "")
-        if not mission:
-            return "refused: nobody who takes orders has been heard"
-        heard = [each.counter for condition in told for each in condition.orders]
-        given = written(order, mission, heard, pen_of(self._access.credentials, mission))
-        answers = self._operator.order(encode(given))
-        taken = sorted(robot for robot, line in answers.items() if line == TAKEN)
-        if taken:
-            return f"taken by {', '.join(map(self._onlooker.name, taken))}"
-        if answers:
-            robot, line = sorted(answers.items())[0]
-            raise InputError(f"{self._onlooker.name(robot)}: {line}")
-        return "refused: nobody answered"
+        return self._giving.give(order, told)
 
     def follow(self, hub: Hub, ended: threading.Event, served: FoxgloveServer | None = None) -> None:
         """Show the team until it has ended; ``served``: in Foxglove as well."""

@@ -6,13 +6,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import degrees
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import msgspec
 
+from vedette.agent import Agent
+from vedette.agent.terms import Terms, fingerprint_of
 from vedette.errors import InputError
 from vedette.missions.flying import RoundTimes
-from vedette.net.config import LinkSettings
+from vedette.missions.sense import Grounds
+from vedette.net.config import AgentConfig, LinkSettings
+from vedette.net.notary import CertifiedNotary
+from vedette.net.orders import Judge, flight_judge, gate_of
 
 THINKING = 0.1  # that a vehicle's preparation of a round is reckoned to take [s of real time]
 
@@ -20,6 +25,23 @@ THINKING = 0.1  # that a vehicle's preparation of a round is reckoned to take [s
 def round_times(links: LinkSettings, speed: float) -> RoundTimes:
     """Return what rounds take over such links, in mission time."""
     return RoundTimes(links.delay * speed, THINKING * speed)
+
+
+class Ordered(Protocol):
+    """A team of vehicles that takes orders."""
+
+    @property
+    def terms(self) -> Terms:
+        """What all of it have to agree on."""
+
+    @property
+    def grounds(self) -> Grounds:
+        """What orders can be about."""
+
+
+def judge_of(config: AgentConfig, team: Ordered, agent: Agent, notary: CertifiedNotary | None) -> Judge:
+    """Return who says whether a vehicle takes an order, of its operator or passed on by a mate."""
+    return flight_judge(agent, gate_of(config, f"{fingerprint_of(team.terms):x}", notary), team.grounds)
 
 
 def check_number(robot: int, vehicles: int) -> None:

@@ -16,6 +16,7 @@ from vedette.errors import InputError
 from vedette.maps import OCCUPIED
 from vedette.maps.area import Area
 from vedette.missions.explore.exploring import Exploring
+from vedette.missions.sense import Grounds
 from vedette.net.config import AgentConfig
 from vedette.net.credentials import Credentials
 from vedette.net.endpoints import is_loopback
@@ -55,8 +56,8 @@ def gate_of(config: AgentConfig, mission: str, notary: CertifiedNotary | None) -
 class Judge:
     """Says of an order whether one robot takes it."""
 
-    agent: Agent
     gate: Gate
+    objection: Callable[[Order], str | None]  # why an order makes no sense; None: it does
 
     def verdict(self, data: bytes) -> str:
         """Return ``TAKEN``, or why an order is refused, in a line; nothing is changed by it."""
@@ -65,7 +66,18 @@ class Judge:
             self.gate.check(given)
         except ValueError as error:
             return str(error)
-        return _objection(self.agent, cast(Exploring, self.agent.mission), given.order) or TAKEN
+        return self.objection(given.order) or TAKEN
+
+
+def explorer_judge(agent: Agent, gate: Gate) -> Judge:
+    """Return the judge of a robot that explores."""
+    return Judge(gate, lambda order: _objection(agent, cast(Exploring, agent.mission), order))
+
+
+def flight_judge(agent: Agent, gate: Gate, grounds: Grounds) -> Judge:
+    """Return the judge of a vehicle, which also checks orders that mates pass on."""
+    agent.check_order = gate.check
+    return Judge(gate, lambda order: grounds.objection(order, agent.orders.all_of(NoGo)))
 
 
 def _objection(agent: Agent, mission: Exploring, order: Order) -> str | None:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Generic, Protocol, TypeVar
 
+from vedette.agent.state import State
 from vedette.errors import InputError
 from vedette.net.gather import status_of
 from vedette.net.inbox import Inbox
@@ -32,6 +33,12 @@ Fates = Sequence[str | None]
 def as_it_is(sample: SampleT, fate: str | None) -> SampleT:
     """Return what a robot last told of itself, with what has become of it since."""
     return sample if fate is None else replace(sample, alive=False, state=fate)
+
+
+def called_off(heard: Sequence[Condition], silent: bool) -> bool:
+    """Tell whether all who live are done by order; ``silent``: of some nothing is known."""
+    ordered = (each.state == State.DONE.value and each.ending == Outcome.ORDERED.value for each in heard)
+    return bool(heard) and not silent and all(ordered)
 
 
 class Watcher(Protocol[ReportT_co]):
@@ -70,6 +77,7 @@ class TeamWatch(Generic[ReportT_co]):
     watcher: Watcher[ReportT_co]
     max_time: float  # of the mission [s]
     befall: Callable[[float], None] = lambda now: None  # does to the processes what is staged by a time [s]
+    tell: Callable[[float], None] = lambda now: None  # tells the team what is ordered by a mission's time [s]
     stopped: bool = False
     malformed: int = 0  # reports that did not make sense
     conditions: dict[int, Condition] = field(default_factory=dict)  # the latest, by robot
@@ -95,6 +103,8 @@ class TeamWatch(Generic[ReportT_co]):
             self._hear(inbox, watcher.period / self.plan.speed / 4)
             self.befall(self.team.time)
             outcome = self._over()
+            if self._first is not None:
+                self.tell(self.now)
             if self._first is not None and self.now >= next_look:
                 watcher.look(self.now, self._fates, self._links())
                 next_look = self.now + watcher.period

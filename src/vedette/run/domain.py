@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Generic, Unpack
 
+from vedette.agent.orders import NoGo, Priority
 from vedette.interrupt import ending_on_ctrl_c
 from vedette.missions.pairs import tell_duration, tell_unsaid
 from vedette.outcome import Outcome
-from vedette.run.inputs import AnyPath, Conditions, files_of, links_of, setup_of
+from vedette.run.inputs import AnyPath, Conditions, files_of, links_of, order_file, setup_of
 from vedette.run.mission import Followers, ProgressSink, ReportT, StepwiseMission
 from vedette.sim.domain import Domain
 from vedette.sim.domain_run import DomainRun, DomainSetup, DomainSimulation
+from vedette.sim.orders import OrderAt, check_flight_orders
 
 
 class DomainMission(StepwiseMission[Any, Any, Any, ReportT], Generic[ReportT]):
@@ -58,6 +60,8 @@ class DomainMission(StepwiseMission[Any, Any, Any, ReportT], Generic[ReportT]):
         tell_unsaid(coordination, size, **links_of(self._setup))
         tell_duration(max_time, duration)
         self.simulation = DomainSimulation(domain, self.case, self._setup)
+        orders = conditions.get("orders", ())
+        check_flight_orders(self._setup.orders, self.simulation.team.grounds, order_file(orders))
         self.scene = domain.scene(self.case)
         followers = Followers[Any]()
         super().__init__(
@@ -66,8 +70,12 @@ class DomainMission(StepwiseMission[Any, Any, Any, ReportT], Generic[ReportT]):
             followers,
             lambda place: domain.recorder(place, self.scene),
             record,
-            (*files_of(None, scenario, conditions.get("faults")), *self.case.files),
+            (*files_of(None, scenario, conditions.get("faults"), orders), *self.case.files),
         )
+
+    def _check_order(self, given: OrderAt, known: Sequence[NoGo | Priority]) -> None:
+        """Raise InputError for an order that makes no sense to these vehicles."""
+        check_flight_orders([given], self.simulation.team.grounds, "order", known)
 
     def run(self, progress: Callable[[Any], object] | None = None, compare: bool = True) -> ReportT:
         """Run to the end; ``progress`` is called with a snapshot a step.

@@ -10,7 +10,7 @@ from typing import Any, TypeAlias, Unpack
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.agent.orders import NoGo, Order, OrderBook, Priority
+from vedette.agent.orders import NoGo, Priority
 from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.planners import DEFAULT
 from vedette.domains.mapping.platform import Tour
@@ -30,6 +30,7 @@ from vedette.run.inputs import (
     Conditions,
     files_of,
     links_of,
+    order_file,
     setup_of,
     team_of,
     world_of,
@@ -39,7 +40,7 @@ from vedette.run.result import MissionResult
 from vedette.run.saved import read_saved_map
 from vedette.sim.explore.run import ExploreRun, prepare, views
 from vedette.sim.explore.simulation import ExploreSetup, ExploreSimulation
-from vedette.sim.orders import OrderAt, check_orders, load_orders
+from vedette.sim.orders import OrderAt, check_orders
 
 _Mission: TypeAlias = StepwiseMission[ExploreSnapshot, Tour, Impact, ExploreReport]
 
@@ -89,7 +90,6 @@ class Explore(_Mission):
         unbounded: bool = False,
         saved: str | Path | None = None,
         prior: str | Path | None = None,
-        orders: str | Path | Sequence[OrderAt] = (),
         record: str | Path | None = None,
         **conditions: Unpack[Conditions],
     ) -> None:
@@ -107,7 +107,6 @@ class Explore(_Mission):
             unbounded: whether the robots are not told how far their ground goes.
             saved: folder of an earlier run, whose map the team starts from: its first robot has it.
             prior: an old map of the building, a map's file, which may be out of date or wrong.
-            orders: of the operator, each with its time; or a file of them.
             record: a folder for the run record, ``run.mcap``.
             conditions: see `vedette.run.inputs.Conditions`.
 
@@ -132,12 +131,8 @@ class Explore(_Mission):
         if prior is not None:
             lattice = setup.options.lattice_on(self.world.frame)
             setup = replace(setup, prior=read_prior(Path(prior), lattice))
-        if orders:
-            given = load_orders(orders) if isinstance(orders, str | Path) else tuple(orders)
-            check_orders(
-                given, self.world, specs, str(orders) if isinstance(orders, str | Path) else "orders"
-            )
-            setup = replace(setup, orders=given)
+        orders = conditions.get("orders", ())
+        check_orders(setup.orders, self.world, specs, order_file(orders))
         simulation = prepare(self.world, specs, setup)
         files = files_of(world, team, conditions.get("faults"), orders, prior)
         self._begin(simulation, ExploreRun, record, files)
@@ -167,21 +162,9 @@ class Explore(_Mission):
         """``(R, C)`` what the living robots know together now: UNKNOWN, FREE or OCCUPIED."""
         return union_map(views(self.simulation), self.world.frame)
 
-    def order(self, order: Order) -> None:
-        """Give the team an order, from the next tick on; any thread may.
-
-        Raises:
-            InputError: it makes no sense.
-        """
-        areas = [each.area for book in self.books for each in book.all_of(NoGo) + book.all_of(Priority)]
-        given = [OrderAt(self.now, order)]
-        check_orders(given, self.world, self.simulation.specs, "order", areas)
-        self.simulation.order(order)
-
-    @property
-    def books(self) -> list[OrderBook]:
-        """The orders that each robot holds."""
-        return [agent.orders for agent in self.simulation.agents]
+    def _check_order(self, given: OrderAt, known: Sequence[NoGo | Priority]) -> None:
+        """Raise InputError for an order that makes no sense in this world."""
+        check_orders([given], self.world, self.simulation.specs, "order", [each.area for each in known])
 
     def run(self, progress: Callable[[ExploreSnapshot], object] | None = None) -> ExploreResult:
         """Explore to the end; ``progress`` is called with a snapshot every second."""

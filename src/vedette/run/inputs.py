@@ -19,6 +19,7 @@ from vedette.parts import is_reference
 from vedette.scenario import as_scenario
 from vedette.sim.faults import Schedule, load_faults
 from vedette.sim.faults.kinds import Skew
+from vedette.sim.orders import OrderAt, load_orders
 from vedette.sim.radio import Radio, parse_radio
 from vedette.sim.setup import Setup
 from vedette.sim.worlds import WORLD, generated, office
@@ -40,6 +41,7 @@ class Conditions(TypedDict, total=False):
     link_delay: float  # of a message [s]; 0.02
     link_loss: float  # share of messages lost; 0
     kills: Sequence[tuple[int, float]]  # robot, from 1, and when it dies [s]
+    orders: AnyPath | Sequence[OrderAt]  # of the operator, each with its time; or a file of them
 
 
 def setup_of(
@@ -54,6 +56,7 @@ def setup_of(
     link_delay: float = Setup.link_delay,
     link_loss: float = Setup.link_loss,
     kills: Sequence[tuple[int, float]] = (),
+    orders: AnyPath | Sequence[OrderAt] = (),
 ) -> Setup:
     """Return what all simulated missions share; ``clocks``: they may go wrong.
 
@@ -71,11 +74,28 @@ def setup_of(
         radio=radio if radio is None or isinstance(radio, Radio) else parse_radio(str(radio)),
         faults=schedule_of(text, robots, clocks),
         faults_from=text,
+        orders=orders_in(orders),
     )
     if faults is None:
         _check_deaths(setup.kills)
     tell_too_late(setup.kills, setup.max_time)
     return setup
+
+
+def orders_in(orders: AnyPath | Sequence[OrderAt] | None) -> tuple[OrderAt, ...]:
+    """Return the operator's orders, each with its time, in order: of a file, as they are given, or none.
+
+    Raises:
+        InputError: the file cannot be read, or is none of orders.
+    """
+    if isinstance(orders, str | Path):
+        return load_orders(orders)
+    return tuple(sorted(orders or (), key=lambda each: each.at))
+
+
+def order_file(orders: object) -> str:
+    """Return what orders are called where something is wrong with them: by their file, if they have one."""
+    return str(orders) if isinstance(orders, str | Path) else "orders"
 
 
 def links_of(setup: Setup) -> dict[str, Any]:

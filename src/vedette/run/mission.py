@@ -15,11 +15,13 @@ from numpy.typing import NDArray
 
 from vedette.agent import Agent
 from vedette.agent.events import Event
+from vedette.agent.orders import NoGo, Order, OrderBook, Priority
 from vedette.interrupt import ending_on_ctrl_c
 from vedette.outcome import Outcome
 from vedette.record.folder import OutputFolder
 from vedette.record.log import Sink
 from vedette.record.mcap import Place
+from vedette.sim.orders import OrderAt
 from vedette.sim.simulation import Simulation
 from vedette.sim.views import state
 from vedette.sim.watched import Watched
@@ -140,6 +142,29 @@ class StepwiseMission(ABC, Generic[SnapshotT, StrategyT, ImpactT, ReportT]):
     ) -> None:
         """Close the record."""
         self.close()
+
+    # -- orders -------------------------------------------------------------------------------------
+
+    def order(self, order: Order) -> None:
+        """Give the team an order, from the next tick on; any thread may.
+
+        Raises:
+            InputError: it makes no sense.
+        """
+        known: list[NoGo | Priority] = []
+        for book in self.books:
+            known += [*book.all_of(NoGo), *book.all_of(Priority)]
+        self._check_order(OrderAt(self.now, order), known)
+        self._running.order(order)
+
+    @property
+    def books(self) -> list[OrderBook]:
+        """The orders that each robot holds."""
+        return [agent.orders for agent in self._agents]
+
+    @abstractmethod
+    def _check_order(self, given: OrderAt, known: Sequence[NoGo | Priority]) -> None:
+        """Raise InputError for an order that makes no sense, where there are some areas already."""
 
     # -- looking at it ------------------------------------------------------------------------------
 

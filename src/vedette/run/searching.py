@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias, Unpack
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.agent.flight import step_of
+from vedette.agent.orders import NoGo, Priority
 from vedette.domains.search.flights import Flight
 from vedette.domains.search.impact import Impact
 from vedette.interrupt import ending_on_ctrl_c
@@ -23,9 +24,10 @@ from vedette.record.search.log import SearchLog, SearchScene, SearchSnapshot
 from vedette.record.search.mcap import SearchMcapWriter
 from vedette.record.search.observer import SearchReport
 from vedette.record.search.summary import SearchSummary
-from vedette.run.inputs import AnyPath, Conditions, described, files_of, links_of, setup_of
+from vedette.run.inputs import AnyPath, Conditions, described, files_of, links_of, order_file, setup_of
 from vedette.run.mission import Followers, ProgressSink, StepwiseMission
 from vedette.run.result import MissionResult
+from vedette.sim.orders import OrderAt, check_flight_orders
 from vedette.sim.search.run import SearchRun
 from vedette.sim.search.simulation import SearchSetup, SearchSimulation
 from vedette.sim.search.trials import Running, assessed
@@ -100,6 +102,8 @@ class Search(_Mission):
         tell_unsaid(setup.coordination, len(self.case.names), **links_of(setup))
         tell_duration(max_time, longest)
         self.simulation = SearchSimulation(self.case, setup)
+        orders = conditions.get("orders", ())
+        check_flight_orders(setup.orders, self.simulation.team.grounds, order_file(orders))
         self.scene = SearchScene.of(self.case, limit)
         self._trials = Running()
         followers = Followers[SearchSnapshot]()
@@ -109,7 +113,7 @@ class Search(_Mission):
             followers,
             lambda place: SearchMcapWriter(place, self.scene),
             record,
-            (*files_of(None, scenario, conditions.get("faults")), *heat_maps(self.case, scenario)),
+            (*files_of(None, scenario, conditions.get("faults"), orders), *heat_maps(self.case, scenario)),
         )
 
     @property
@@ -117,6 +121,10 @@ class Search(_Mission):
         """``(R, C)`` probability of each cell at the present step, as the first living vehicle knows it."""
         step = step_of(self.now, self.case.scenario.step)
         return self.simulation.missions[self._first].pdf(step).mass
+
+    def _check_order(self, given: OrderAt, known: Sequence[NoGo | Priority]) -> None:
+        """Raise InputError for an order that makes no sense to these vehicles."""
+        check_flight_orders([given], self.simulation.team.grounds, "order", known)
 
     def run(
         self,

@@ -12,8 +12,19 @@ from vedette.record.explore.log import ExploreSnapshot
 from vedette.record.explore.observer import ExploreReport
 from vedette.record.seek.summary import SeekSummary
 from vedette.run.exploring import Explore, ExploreResult
-from vedette.run.inputs import ROBOTS, AnyTeam, AnyWorld, Conditions, files_of, setup_of, team_of, world_of
+from vedette.run.inputs import (
+    ROBOTS,
+    AnyTeam,
+    AnyWorld,
+    Conditions,
+    files_of,
+    order_file,
+    setup_of,
+    team_of,
+    world_of,
+)
 from vedette.run.mission import ProgressSink
+from vedette.sim.orders import check_orders
 from vedette.sim.seek.run import SeekRun, prepare
 from vedette.sim.seek.simulation import SeekSetup
 
@@ -59,7 +70,9 @@ class Seek(Explore):
         setup = SeekSetup(**vars(common), seek=SeekOptions(order, reach, detection))
         self.world = world_of(world, setup.seed)
         simulation = prepare(self.world, specs, setup)
-        self._begin(simulation, SeekRun, record, files_of(world, team, conditions.get("faults")))
+        orders = conditions.get("orders", ())
+        check_orders(common.orders, self.world, specs, order_file(orders))
+        self._begin(simulation, SeekRun, record, files_of(world, team, conditions.get("faults"), orders))
 
     def run(self, progress: Callable[[ExploreSnapshot], object] | None = None) -> SeekResult:
         """Search to the end; ``progress`` is called with a snapshot every second."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias, Unpack
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.agent.flight import step_of
+from vedette.agent.orders import NoGo, Priority
 from vedette.domains.tracking.belief import Tracks
 from vedette.domains.tracking.courses import Course
 from vedette.domains.tracking.filter import predict
@@ -22,9 +23,10 @@ from vedette.record.track.log import TrackLog, TrackScene, TrackSnapshot
 from vedette.record.track.mcap import TrackMcapWriter
 from vedette.record.track.observer import TrackReport
 from vedette.record.track.summary import TrackSummary
-from vedette.run.inputs import AnyPath, Conditions, described, files_of, links_of, setup_of
+from vedette.run.inputs import AnyPath, Conditions, described, files_of, links_of, order_file, setup_of
 from vedette.run.mission import Followers, ProgressSink, StepwiseMission
 from vedette.run.result import MissionResult
+from vedette.sim.orders import OrderAt, check_flight_orders
 from vedette.sim.track.run import TrackRun, compared
 from vedette.sim.track.run import track as run_beside
 from vedette.sim.track.simulation import TrackSetup, TrackSimulation
@@ -111,6 +113,8 @@ class Track(_Mission):
         tell_duration(max_time, self.scenario.duration)
         tell_objective(objective, self.scenario.objective, default_scenario().objective)
         self.simulation = TrackSimulation(self.scenario, setup)
+        orders = conditions.get("orders", ())
+        check_flight_orders(setup.orders, self.simulation.team.grounds, order_file(orders))
         self.scene = TrackScene.of(self.scenario, name)
         followers = Followers[TrackSnapshot]()
         super().__init__(
@@ -119,7 +123,7 @@ class Track(_Mission):
             followers,
             lambda place: TrackMcapWriter(place, self.scene),
             record,
-            files_of(None, scenario, conditions.get("faults")),
+            files_of(None, scenario, conditions.get("faults"), orders),
         )
 
     @property
@@ -137,6 +141,10 @@ class Track(_Mission):
     def covariances(self) -> NDArray[np.float64]:
         """``(T, 4, 4)`` of the tracks."""
         return self.tracks.covariances
+
+    def _check_order(self, given: OrderAt, known: Sequence[NoGo | Priority]) -> None:
+        """Raise InputError for an order that makes no sense to these vehicles."""
+        check_flight_orders([given], self.simulation.team.grounds, "order", known)
 
     def run(
         self, progress: Callable[[TrackSnapshot], object] | None = None, compare: bool = True

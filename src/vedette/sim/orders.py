@@ -12,6 +12,7 @@ from vedette.agent.orders import Exclude, LookThere, NoGo, Order, Priority, Reca
 from vedette.errors import InputError, nearest_name
 from vedette.maps.area import Area
 from vedette.maps.world import World, standable
+from vedette.missions.sense import Grounds
 from vedette.scenario import as_scenario, load_scenario
 from vedette.team import PlatformSpec
 
@@ -45,8 +46,11 @@ def check_orders(
     specs: Sequence[PlatformSpec],
     where: str,
     known: Iterable[str] = (),
+    signed: bool = False,
 ) -> None:
-    """Refuse orders that make no sense to this team in this world; ``known``: areas that there are already.
+    """Refuse orders that make no sense to this team in this world.
+
+    ``known``: areas that there are already; ``signed``: robots sign what they say.
 
     Raises:
         InputError: there is no such robot, or no such area yet; an area, or a place, lies outside or in a
@@ -66,8 +70,31 @@ def check_orders(
             case Recall(to=(x, y)) | LookThere(at=(x, y)):
                 robots = specs if order.robot is None else [specs[order.robot - 1]]
                 _check_place(x, y, world, max(spec.radius for spec in robots), at)
-            case Exclude() | Reinstate():
+            case Exclude() | Reinstate() if not signed:
                 raise InputError(f"{at}: simulated robots sign nothing, and all are believed; leave it out")
+
+
+def check_flight_orders(
+    orders: Sequence[OrderAt], grounds: Grounds, where: str, known: Sequence[NoGo | Priority] = ()
+) -> None:
+    """Refuse orders that make no sense to a team of vehicles; ``known``: areas that there are already.
+
+    Raises:
+        InputError: there is no such robot, or no such area yet, or what `Grounds.objection` says.
+    """
+    areas: dict[str, NoGo | Priority] = {each.area: each for each in known}
+    for each in orders:
+        order, at = each.what, f"{where}: {each.what.subject} at {each.at:g} s"
+        no_go = [area for area in areas.values() if isinstance(area, NoGo)]
+        if (objection := grounds.objection(order, no_go)) is not None:
+            raise InputError(f"{at}: {objection}")
+        match order:
+            case NoGo() | Priority():
+                areas[order.area] = order
+            case Remove() if order.area not in areas:
+                raise InputError(f"{at}: there is no such area by then; {nearest_name(order.area, areas)}")
+            case Remove():
+                del areas[order.area]
 
 
 def _time(each: OrderAt) -> float:

@@ -12,6 +12,7 @@ from vedette.negotiation import SCHEMES
 from vedette.number import is_number, is_whole
 from vedette.scenario import as_scenario
 from vedette.sim.faults import Schedule, check_faults
+from vedette.sim.orders import OrderAt
 from vedette.sim.radio import Radio
 
 
@@ -32,6 +33,7 @@ class Setup:
     radio: Radio | None = None  # None: everybody reaches everybody
     faults: Schedule | None = None
     faults_from: str | None = None  # the schedule's file or seed
+    orders: tuple[OrderAt, ...] = ()  # of the operator, in order of time
 
     def __post_init__(self) -> None:
         if self.scheme is not None:

@@ -10,6 +10,7 @@ import heapq
 import itertools
 from collections.abc import Callable, Sequence
 from functools import partial
+from queue import Queue
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,8 @@ from numpy.typing import NDArray
 from vedette.agent import Agent
 from vedette.agent.body import TICK
 from vedette.agent.effects import Drive, Fly, Job
-from vedette.agent.events import Event, JobDone
+from vedette.agent.events import Event, JobDone, Ordered
+from vedette.agent.orders import Given, Order, encode
 from vedette.maps import GridFrame
 from vedette.maps.world import World
 from vedette.outcome import Agreement, Outcome
@@ -62,6 +64,8 @@ class Simulation:
         self._kills = sorted(setup.kills, key=lambda kill: kill[1])
         self._stopped = False
         self._agreement = Agreement()
+        self._orders, self._given = list(setup.orders), 0
+        self._told = Queue[Order]()  # from other threads
 
     def _planted(self, spawn: Spawn) -> Network:
         wires = Wires(len(self.field.alive), self.setup.link_delay)
@@ -151,8 +155,25 @@ class Simulation:
         """Return a digest each of what these have to agree on before their mission ends: of nothing."""
         return []
 
+    def order(self, order: Order) -> None:
+        """Give an order at the next tick; any thread may."""
+        self._told.put(order)
+
+    def _give_orders(self) -> None:
+        """Let the operator tell the first living robot what is due, who passes it on; if nobody does, all."""
+        due = [each.what for each in self._orders if each.at <= self.now + 1e-9]
+        del self._orders[: len(due)]
+        while not self._told.empty():
+            due.append(self._told.get())
+        for order in due:
+            self._given += 1
+            for i in self.living if self.setup.apart else self.living[:1]:
+                told = Ordered(encode(Given(self._given, "operator", order)))
+                self._let(i, self.network.tell(i, [told], self.now))
+
     def _tick(self) -> None:
-        """Let faults happen, then tell every agent what its robot senses."""
+        """Let orders be given and faults happen, then tell every agent what its robot senses."""
+        self._give_orders()
         while self._kills and self._kills[0][1] <= self.now:
             robot, _ = self._kills.pop(0)
             self.field.kill(robot)

@@ -129,6 +129,14 @@ class LayerLooks:
         starts = np.searchsorted(owner, np.arange(count + 1)).astype(np.int64)
         return cls(spots.astype(np.int64), starts, places.astype(np.int64), summed)
 
+    def within(self, some: NDArray[np.bool_]) -> LayerLooks:
+        """Return what of the impacts is at some of all spots (spots,)."""
+        used, kept = some[self.spots], some[self.spots[self.places]]
+        starts = np.concatenate(([0], np.cumsum(kept)))[self.starts].astype(np.int64)
+        renumbered = np.cumsum(used) - 1
+        places = renumbered[self.places[kept]].astype(np.int64)
+        return LayerLooks(self.spots[used], starts, places, self.units[kept])
+
     def gains(self, posterior: Posterior, before: Indices, unit: float) -> Floats:
         """``1/2 ln det`` that each impact adds to a team that has units ``before`` (spots,)."""
         if not len(self.spots):

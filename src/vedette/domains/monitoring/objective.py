@@ -23,12 +23,21 @@ _KEPT = 32  # posteriors of one round
 
 
 @dataclass(frozen=True, eq=False)
+class Priority:
+    """Spots where measurements are worth more."""
+
+    spots: NDArray[np.bool_]  # (spots,)
+    extra: float  # how many times as much, less one
+
+
+@dataclass(frozen=True, eq=False)
 class MonitoringBelief:
     """What a round of monitoring is decided on; the field is taken to stand still over the horizon."""
 
     field: FieldBelief
     patrol: Patrol
     unit: float  # of information in impacts [1 / unit^2]
+    priorities: Sequence[Priority] = ()
 
     @cached_property
     def banded(self) -> BandedField:
@@ -64,6 +73,8 @@ class MonitoringObjective(Objective[MonitoringBelief, Impact]):
     ``Y_l = W' diag(y_l) W`` is the information of all measurements up to the end of layer l, y_l in whole
     units, cut off at 255. ``*`` adds them: exactly associative. docs/monitoring.md (V124), (V125)
 
+    With priorities a it is ``psi(all) + sum_a (f_a - 1) psi(measurements in a)``. (V161)
+
     Monotone and submodular: so is each mutual information with measurements that are independent given the
     field, and a sum of such with weights >= 0 is. (V126)
     """
@@ -86,21 +97,37 @@ class MonitoringObjective(Objective[MonitoringBelief, Impact]):
     def value(self, belief: MonitoringBelief, impact: Impact) -> float:
         """Return the entropy taken off, discounted."""
         units = belief.by_layer(impact)
-        prior = belief.posterior(np.zeros_like(units[0])).log_det
-        logs = [belief.posterior(layer).log_det for layer in units]
-        return float(0.5 * belief.patrol.weights @ (np.array(logs) - prior))
+        more = (each.extra * _taken_off(belief, units * each.spots) for each in belief.priorities)
+        return _taken_off(belief, units) + sum(more)
 
     def gains(self, belief: MonitoringBelief, others: Impact, own: Sequence[LayerLooks]) -> Floats:
         """``value(others * own_k) - value(others)`` for every k; ``own``: as `LayerLooks.of`."""
-        weighed = [
-            weight * looks.gains(belief.posterior(before), before, belief.unit)
-            for weight, looks, before in zip(belief.patrol.weights, own, belief.by_layer(others), strict=True)
-            if weight > 0.0
-        ]
-        return np.asarray(np.sum(weighed, axis=0))
+        before = belief.by_layer(others)
+        gains = _gains(belief, before, own)
+        for each in belief.priorities:
+            some = [looks.within(each.spots) for looks in own]
+            gains = gains + each.extra * _gains(belief, before * each.spots, some)
+        return gains
 
     def values(self, belief: MonitoringBelief, others: Impact, own: Sequence[Impact]) -> Floats:
         """``value(others * own_k)`` for every k, by one factor a layer and small determinants."""
         return self.value(belief, others) + self.gains(
             belief, others, LayerLooks.of(own, belief.patrol.layers)
         )
+
+
+def _taken_off(belief: MonitoringBelief, units: Units) -> float:
+    """Return what measurements of units by layer, (layers, spots), take off the entropy, discounted."""
+    prior = belief.posterior(np.zeros_like(units[0])).log_det
+    logs = [belief.posterior(layer).log_det for layer in units]
+    return float(0.5 * belief.patrol.weights @ (np.array(logs) - prior))
+
+
+def _gains(belief: MonitoringBelief, before: Units, own: Sequence[LayerLooks]) -> Floats:
+    """Return what each of several impacts adds to that, after measurements ``before``, (layers, spots)."""
+    weighed = [
+        weight * looks.gains(belief.posterior(layer), layer, belief.unit)
+        for weight, looks, layer in zip(belief.patrol.weights, own, before, strict=True)
+        if weight > 0.0
+    ]
+    return np.asarray(np.sum(weighed, axis=0))

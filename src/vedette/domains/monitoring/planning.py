@@ -79,6 +79,13 @@ class Outlook:
         cells = (row // self.factor) * self.model.frame.cols + col // self.factor
         return np.concatenate([self.large.of(kind, cells) for kind in self.kinds])
 
+    def spots_over(self, cells: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """(spots,) Which spots in planning cells are about one that holds any of some cells (R, C)."""
+        row, col = np.nonzero(cells)
+        large = np.zeros(self.model.frame.shape, np.bool_)
+        large[row // self.factor, col // self.factor] = True
+        return np.tile(large.ravel(), len(self.large.sides))
+
     def deviations(self, known: FieldBelief) -> Floats:
         """(R, C) Standard deviation of each of the field's cells, worked out on planning cells [unit]."""
         large = BandedField(self.of(known)).posterior(np.zeros(self.large.count)).deviations

@@ -25,6 +25,7 @@ from vedette.domains.search.impact import Impact
 from vedette.domains.search.options import FlightOptions, boxes_of, quantised_looks, with_promises
 from vedette.domains.search.paths import impact_of
 from vedette.errors import InputError
+from vedette.forbidden import NOWHERE, Forbidden, Turning
 from vedette.kernels import search
 from vedette.problem import Reach
 from vedette.vehicle import CALM, Gust, check_gusts, drive
@@ -60,6 +61,7 @@ class SearchPlatform:
     gusts: tuple[Gust, ...] = CALM  # winds that may carry it off its way
     pose: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
     present: Flight | None = None
+    forbidden: Forbidden = NOWHERE  # ground that it must not be over
     options: FlightOptions | None = None
     _known: dict[Impact, NDArray[np.float64]] = field(default_factory=dict)  # gains by the rest of the team
 
@@ -102,6 +104,7 @@ class SearchPlatform:
         towards = self._steer(belief, begin, goals.places, free)
         chosen = np.concatenate((held_sequences(self.turn_rate, free, self.controls, self.choices), towards))
         turn_rates = np.vstack((present, np.hstack((np.tile(kept, (len(chosen), 1)), chosen))))
+        turn_rates = self._kept_out(belief, turn_rates)
         tree = branches(turn_rates)
         poses = look_poses(tree, self.pose, self.speed, belief.dt, self.looks_a_step(belief.dt))
         starts, cells, probability = expected_footprints(
@@ -194,6 +197,13 @@ class SearchPlatform:
             return np.concatenate((left, np.zeros(missing)))
         end = drive(self.pose, left, self.speed, belief.dt)[-1] if len(left) else self.pose
         return np.concatenate((left, self._steer(belief, end, np.array([self.present.goal]), missing)[0]))
+
+    def _kept_out(self, belief: SearchBelief, turn_rates: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return flights with those that lead over forbidden ground replaced."""
+        if self.speed == 0.0 or self.turn_rate == 0.0:
+            return turn_rates
+        turning = Turning(self.speed, self.turn_rate)
+        return self.forbidden.kept_out(self.pose, turn_rates, turning, belief.dt, belief.committed)
 
     def _steer(
         self, belief: SearchBelief, pose: NDArray[np.float64], goals: NDArray[np.float64], steps: int

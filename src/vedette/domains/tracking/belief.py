@@ -39,6 +39,7 @@ class Tracks:
     y: NDArray[np.float64]  # (T, 4)
     origin: tuple[float, float] = (0.0, 0.0)  # o, team frame [m]
     layers: tuple[float, ...] = ()  # ends of the tail's layers, after the horizon [s]
+    weights: tuple[float, ...] = ()  # (T,) how many times as much knowing each is worth; none: once, all
 
     def __post_init__(self) -> None:
         count = len(self.models)

@@ -64,6 +64,12 @@ def remove(total: Impact, own: Impact) -> Impact:
     return impact_of(blocks, total.targets)
 
 
+def of_targets(impact: Impact, some: NDArray[np.bool_]) -> Impact:
+    """Return what of an impact is about some of all targets (T,)."""
+    kept = some[impact.targets]
+    return Impact(impact.targets[kept], impact.blocks[kept])
+
+
 def clip(impact: Impact, predicted_means: NDArray[np.float64], reach: Reach) -> Impact:
     """Keep the targets whose common track enters a box: for who sees only into the boxes nothing changes.
 

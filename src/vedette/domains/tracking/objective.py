@@ -55,7 +55,27 @@ class TrackingObjective(Objective[Tracks, Impact]):
         return float(self.values(belief, impact, [self.nothing(belief)])[0])
 
     def values(self, belief: Tracks, others: Impact, own: Sequence[Impact]) -> NDArray[np.float64]:
-        """``value(others * own_k)`` for every k, by one kernel call that redoes only what own_k sees."""
+        """``value(others * own_k)`` for every k, by one kernel call that redoes only what own_k sees.
+
+        Where targets differ in weight, by one for all that share it: ``psi = sum_t w_t psi_t``. (V162)
+        """
+        if not belief.weights:
+            return self._values(belief, others, own)
+        weights = np.array(belief.weights)
+        return np.asarray(
+            sum(
+                weight
+                * self._values(
+                    belief,
+                    impacts.of_targets(others, weights == weight),
+                    [impacts.of_targets(each, weights == weight) for each in own],
+                )
+                for weight in np.unique(weights).tolist()
+            )
+        )
+
+    def _values(self, belief: Tracks, others: Impact, own: Sequence[Impact]) -> NDArray[np.float64]:
+        """The values of targets that all weigh the same."""
         rows = impacts.stack(own, belief.blocks)
         values = self._within(belief, others, rows)
         return values + self._after(belief, others, rows) if belief.layers else values
@@ -84,6 +104,11 @@ class TrackingObjective(Objective[Tracks, Impact]):
 
     def gradient(self, belief: Tracks, team: Impact) -> NDArray[np.float64]:
         """Derivative of ``value`` by each number in the horizon's ``team.blocks``, (M, K, 3)."""
+        slopes = self._gradient(belief, team)
+        return slopes * np.array(belief.weights)[team.targets, None, None] if belief.weights else slopes
+
+    def _gradient(self, belief: Tracks, team: Impact) -> NDArray[np.float64]:
+        """The same of targets that all weigh the same."""
         return chain_gradient(belief.motion, self.measure, (team.targets, _near(team.blocks, belief)))
 
 
@@ -135,7 +160,7 @@ class Endless(TrackingObjective):
         """(B,) Discounted steps in each layer."""
         return belief.tail.discounted(belief.horizon, self.discount(belief))
 
-    def gradient(self, belief: Tracks, team: Impact) -> NDArray[np.float64]:
+    def _gradient(self, belief: Tracks, team: Impact) -> NDArray[np.float64]:
         """Derivative of the horizon's part by each number in ``team.blocks``, (M, K, 3)."""
         total = np.zeros((len(team.targets), belief.horizon, 3))
         for k, weight in enumerate(self._weights(belief), 1):

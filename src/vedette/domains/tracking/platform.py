@@ -19,6 +19,7 @@ from vedette.domains.tracking.objective import TrackingObjective
 from vedette.domains.tracking.sensing import Sensor
 from vedette.domains.tracking.transit import nearest_worth, times_to_see
 from vedette.errors import InputError
+from vedette.forbidden import NOWHERE, Forbidden, Turning
 from vedette.problem import Reach
 from vedette.vehicle import carried, drive
 
@@ -45,6 +46,7 @@ class TrackingPlatform:
     pose: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))  # [m, m, rad], team frame
     present: Course | None = None
     wind: tuple[float, float] = (0.0, 0.0)  # that carries it off its way [m/s], team frame
+    forbidden: Forbidden = NOWHERE  # ground that it must not be over
     courses: list[Course] = field(default_factory=list)  # that are compared; set by prepare
     candidates: Impacts | None = None  # what each would observe
     _near: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
@@ -66,6 +68,7 @@ class TrackingPlatform:
         carried = np.clip(present.rates, -self.turn_rate, self.turn_rate)
         if not (rates == carried).all(axis=1).any():
             rates = np.vstack([rates, carried])
+        rates = self._kept_out(belief, rates)
         self.courses = [Course(belief.k0, tuple(row), present.target) for row in rates.tolist()]
         if belief.layers:
             self.courses += self._ways_to_others(belief, rates, present.target)
@@ -82,6 +85,13 @@ class TrackingPlatform:
         if not belief.layers or course.target is not None:
             return course
         return replace(course, target=int(np.argmin(self._times(belief, self.pose))))
+
+    def kept_out(self, belief: Tracks, course: Course) -> Course:
+        """Return a course, or the first of those compared where it would lead over forbidden ground."""
+        if not self.forbidden:
+            return course
+        rates = np.array([course.rates])
+        return course if (self._kept_out(belief, rates) == rates).all() else self.courses[0]
 
     def impact(self, belief: Tracks, strategy: Course) -> Impact:
         """Information about each target along the course, step by step; paper, eq. (25)."""
@@ -105,6 +115,7 @@ class TrackingPlatform:
         if self.continuous:
             start = best if value > present else current
             best, value = self._climb(belief, others, start)
+            best = self.kept_out(belief, best)
         return best if value - present > EPSILON * abs(present) else current
 
     def slack(self, belief: Tracks, team: Impact) -> float:
@@ -127,6 +138,13 @@ class TrackingPlatform:
         return ((x - most, y - most, x + most, y + most),)
 
     # -- what a course observes ----------------------------------------------------------------------
+
+    def _kept_out(self, belief: Tracks, rates: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return turn rates with those that lead over forbidden ground replaced."""
+        if self.speed == 0.0 or self.turn_rate == 0.0:
+            return rates
+        turning = Turning(self.speed, self.turn_rate)
+        return self.forbidden.kept_out(self.pose, rates, turning, belief.dt)
 
     def _within_reach(self, belief: Tracks) -> NDArray[np.int64]:
         """Targets that it might see at some step."""

@@ -44,10 +44,10 @@ from vedette.missions.explore.failures import BLOCKING, Failures
 from vedette.missions.explore.looking import Looking
 from vedette.missions.explore.notes import given_up as given_up_at
 from vedette.missions.explore.notes import sifted
-from vedette.missions.explore.ordered import no_go_areas, priority_areas, trusted
 from vedette.missions.explore.own_map import OwnMap
 from vedette.missions.explore.resort import LastResort, hemmed_in
 from vedette.missions.explore.ways import Ways
+from vedette.missions.ordered import no_go_areas, priority_areas, trusted
 from vedette.outcome import Outcome
 from vedette.problem import Codec, Objective
 from vedette.team import Most, PlatformSpec

@@ -19,6 +19,7 @@ from vedette.domains.monitoring.worth import Patrol
 from vedette.fusion.seals import Notary
 from vedette.missions.flights import FlightTeam
 from vedette.missions.monitor.monitoring import Monitoring, MonitorPlan
+from vedette.missions.sense import Grounds
 
 _FINE = 4.0  # units of the weakest sensor's measurement
 
@@ -49,6 +50,16 @@ class MonitorTeam(FlightTeam[MonitorCase]):
             unit,
             max(units_of(variance, unit) for variance in variances),
         )
+
+    @property
+    def grounds(self) -> Grounds:
+        """What orders can be about."""
+        case, scenario = self.case, self.case.scenario
+        x0, x1, y0, y1 = scenario.frame.extent
+        flies = tuple(each.flies for each in scenario.vehicles)
+        fixed = self.options.coordination in ("lawnmower", "random")
+        why = "vehicles that follow fixed patrols weigh nothing; leave it out" if fixed else ""
+        return Grounds(len(case.names), (x0, y0, x1, y1), why, why, (scenario.frame, case.blocked), flies)
 
     def mission(self, robot: int, boot: int, notary: Notary | None) -> Monitoring:
         """Return a vehicle's share, by its number from 0."""

@@ -17,15 +17,21 @@ from vedette.agent.mission import RoundPlatform
 from vedette.domains.monitoring.belief import FieldBelief
 from vedette.domains.monitoring.evidence import FieldPacking
 from vedette.domains.monitoring.impact import FieldImpactCodec, Impact, check_claim
-from vedette.domains.monitoring.objective import MonitoringBelief, MonitoringObjective
+from vedette.domains.monitoring.objective import MonitoringBelief, MonitoringObjective, Priority
+from vedette.domains.monitoring.patrols import around
 from vedette.domains.monitoring.planning import Outlook
 from vedette.domains.monitoring.platform import FieldSensor, MonitoringPlatform, within
 from vedette.domains.monitoring.purse import Purse
-from vedette.domains.monitoring.ways import Place, Way
+from vedette.domains.monitoring.ways import Place, Way, cells_of
 from vedette.domains.monitoring.worth import Patrol
 from vedette.fusion.steps import Refilter, Sparse, SparseIntegers, StepEvidence
+from vedette.maps import GridFrame
+from vedette.maps.leave import Leave
 from vedette.missions.flying import FlyingMission, SharedBelief, box_around
+from vedette.missions.ordered import cells_in
 from vedette.problem import Reach
+
+OBJECTIVE = MonitoringObjective()
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +82,7 @@ class Pilot:
 
 
 @dataclass(eq=False)
-class Monitoring(FlyingMission):
+class Monitoring(FlyingMission[MonitoringBelief, Way, Impact]):
     """One vehicle's share; ``vedette.agent.mission.FlightMission``.
 
     Evidence waits to be published: a round's must not change while it lasts.
@@ -88,25 +94,31 @@ class Monitoring(FlyingMission):
     fusion: StepEvidence[Sparse]
     purse: Purse
     shares_plans: bool = True  # False: the team shares beliefs alone
-    route: Callable[[Place], Way] | None = None  # a fixed patrol from a place; None: it plans
+    patrol: Callable[[Place], Way] | None = None  # a fixed one from a place; None: it plans
     strategy: Way = field(default_factory=lambda: Way(((0.0, 0.0),)))
-    objective: MonitoringObjective = field(default_factory=MonitoringObjective)
     codec: FieldImpactCodec = field(init=False)
-    platform: RoundPlatform[MonitoringBelief, Way, Impact] = field(init=False)
+    working: RoundPlatform[MonitoringBelief, Way, Impact] = field(init=False)
     _elements: SparseIntegers = field(init=False)
     _filter: Refilter[FieldBelief, Sparse] = field(init=False)
     _waiting: list[tuple[int, FieldLook]] = field(default_factory=list)
+    _walls: NDArray[np.bool_] | None = field(init=False)  # (R, C) where it cannot go on the ground
     _planned: bool = False  # the strategy is a way, since a round has been
     _seen: tuple[Place, float] | None = None  # where it was last, and when [s]
 
     def __post_init__(self) -> None:
         outlook, size = self.team.outlook, self.team.packing.size
         self.codec = FieldImpactCodec(outlook.large.count, self.team.patrol.layers)
-        self.platform = self.vehicle if self.shares_plans else SharedBelief(self.vehicle, self.objective)
-        if self.route is not None:
-            self.platform = Pilot()
+        self.working = self.vehicle if self.shares_plans else SharedBelief(self.vehicle, self.objective)
+        if self.patrol is not None:
+            self.working = Pilot()
+        self._walls = self.vehicle.blocked
         self._elements = SparseIntegers(size)
         self._filter = Refilter(self.fusion, self.team.prior, 0, predict=_moved, update=self._observed)
+
+    @property
+    def objective(self) -> MonitoringObjective:
+        """What the team gains."""
+        return OBJECTIVE
 
     def _observed(self, belief: FieldBelief, step: int, total: Sparse) -> FieldBelief:
         return self.team.packing.add(belief, total.index, total.value) if len(total.index) else belief
@@ -148,22 +160,30 @@ class Monitoring(FlyingMission):
         step = max(step_of(t0, self.team.dt), self.first_step)
         start = max(step, start_step(t0, self.team.lead, self.team.dt))
         known = self._filter.at(step).predict(start - step)
-        return MonitoringBelief(self.team.outlook.of(known), self.team.patrol, self.team.unit)
+        outlook, patrol = self.team.outlook, self.team.patrol
+        more = [
+            Priority(outlook.spots_over(cells_in(area, self._frame)), f - 1.0) for area, f in self.priorities
+        ]
+        return MonitoringBelief(outlook.of(known), patrol, self.team.unit, more)
 
     def prepare(
         self, belief: MonitoringBelief, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float
     ) -> None:
         """List the ways from where the vehicle will be, and restate the present one."""
+        self.held, self.vehicle.blocked = not pose.at_work, self._blocked
+        if self.held:
+            self._planned = False
+            return
         start, here = belief.field.step, self._inside(pose)
         present = None
         if self._planned:
             present = self.strategy.after(self.vehicle.speed * self.team.dt * (start - self.strategy.step))
-        elif self.route is not None:
-            present = self.route(here)
+        elif self.patrol is not None:
+            present = self.patrol(here)
         begin, horizon = start * self.team.dt, self.team.patrol.horizon
         self.vehicle.awake = self.purse.awake(begin)
         self.vehicle.place(*here, self.purse.left(begin, horizon), present)
-        if self.route is None:
+        if self.patrol is None:
             self.vehicle.prepare(belief)
             self.strategy = self.vehicle.ways[0]
         else:
@@ -189,6 +209,43 @@ class Monitoring(FlyingMission):
         """Refuse more than so many of the team's best sensors measure."""
         steps = round(self.team.patrol.horizon / self.team.dt)
         check_claim(impact, robots * steps * self.team.most, robots)
+
+    # -- orders -------------------------------------------------------------------------------------
+
+    @property
+    def _blocked(self) -> NDArray[np.bool_] | None:
+        """(R, C) Where it must not go: on the ground walls, and what is forbidden, with a cell around it."""
+        if not self.forbidden:
+            return self._walls
+        closed = Leave(no_go=self.forbidden.areas).forbidden(self.vehicle.ground or self._frame)
+        return closed if self._walls is None else closed | self._walls
+
+    def stand_by(self) -> None:
+        """Leave the present way: orders keep the vehicle from it."""
+        self._planned = False
+
+    def route(self, here: Place, there: Place, room: float) -> list[Place]:
+        """Return the corners of a way round what it must not enter; none: there is no way."""
+        frame, blocked = self._frame, self._blocked
+        if not frame.contains(*there):
+            return []
+        if blocked is None:
+            return [here, there]
+        way = around(Way((here, there)), frame, blocked)
+        return list(way.places) if way.places[-1] == there else []
+
+    def passes(self, places: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Tell at which places (..., 2) there is ground, and no wall."""
+        row, col = cells_of(self._frame, places.reshape(-1, 2))
+        rows, cols = self._frame.shape
+        inside = (row >= 0) & (row < rows) & (col >= 0) & (col < cols)
+        if self._walls is not None:
+            inside[inside] = ~self._walls[row[inside], col[inside]]
+        return inside.reshape(places.shape[:-1])
+
+    @property
+    def _frame(self) -> GridFrame:
+        return self.team.packing.model.frame
 
     # -- moving -------------------------------------------------------------------------------------
 

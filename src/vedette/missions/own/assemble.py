@@ -9,6 +9,7 @@ from vedette.fusion.seals import Notary
 from vedette.missions.flights import FlightTeam
 from vedette.missions.own.case import OwnCase
 from vedette.missions.own.mission import OwnMission
+from vedette.missions.sense import Grounds
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,6 +22,12 @@ class OwnTeam(FlightTeam[OwnCase]):
     def domain(self) -> str:
         """By name."""
         return self.name
+
+    @property
+    def grounds(self) -> Grounds:
+        """What orders can be about."""
+        why = "nobody knows what is worth more in a domain of somebody's own; leave it out"
+        return Grounds(len(self.case.names), self.case.scenario.area, why, why)
 
     @property
     def terms(self) -> Terms:

@@ -63,7 +63,7 @@ class OnOwnBelief(Objective[OwnBelief, Any]):
 
 
 @dataclass(eq=False)
-class OwnMission(FlyingMission):
+class OwnMission(FlyingMission[OwnBelief, Turns, Any]):
     """One vehicle's share; ``vedette.agent.mission.FlightMission``.
 
     Evidence waits to be published: a round's must not change while it lasts.
@@ -75,21 +75,24 @@ class OwnMission(FlyingMission):
     fusion: StepEvidence[Sparse]
     tells_plans: bool = True  # False: the team shares beliefs alone
     strategy: Turns = field(default_factory=lambda: Turns(0, ()))
-    objective: OnOwnBelief = field(init=False)
     vehicle: SteeredPlatform = field(init=False)
-    platform: RoundPlatform[Any, Turns, Any] = field(init=False)
+    working: RoundPlatform[Any, Turns, Any] = field(init=False)
     _elements: SparseIntegers = field(init=False)
     _filter: Refilter[NDArray[np.int64], Sparse] = field(init=False)
     _waiting: list[tuple[int, OwnReading]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         theory = self.case.theory
-        self.objective = OnOwnBelief(theory.objective)
-        self.vehicle = SteeredPlatform(self.case, self.objective, self.robot)
-        self.platform = self.vehicle if self.tells_plans else SharedBelief(self.vehicle, self.objective)
+        self.vehicle = SteeredPlatform(self.case, OnOwnBelief(theory.objective), self.robot)
+        self.working = self.vehicle if self.tells_plans else SharedBelief(self.vehicle, self.objective)
         self._elements = SparseIntegers(theory.size)
         nothing = np.zeros(theory.size, np.int64)
         self._filter = Refilter(self.fusion, nothing, 0, predict=lambda total, step: total, update=_added)
+
+    @property
+    def objective(self) -> Objective[OwnBelief, Any]:
+        """What the team gains."""
+        return self.vehicle.objective
 
     @property
     def codec(self) -> Codec[Any]:
@@ -126,6 +129,9 @@ class OwnMission(FlyingMission):
         self, belief: OwnBelief, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float
     ) -> None:
         """Work out what each course would add from where the vehicle will be."""
+        self.held, self.vehicle.forbidden = not pose.at_work, self.forbidden
+        if self.held:
+            return
         here = np.array([pose.x, pose.y, pose.heading])
         self.strategy = self.vehicle.prepare(belief, here, self.strategy)
 
@@ -135,11 +141,15 @@ class OwnMission(FlyingMission):
 
     def admit(self, belief: OwnBelief, impact: Any, robots: int) -> None:
         """Take what the theory's objective takes; ValueError for what it refuses."""
-        wrong = self.objective.own.wrong_impact(belief.belief, [impact])
+        wrong = self.case.theory.objective.wrong_impact(belief.belief, [impact])
         if wrong is not None:
             raise ValueError(wrong[1])
 
     # -- flying -------------------------------------------------------------------------------------
+
+    def stand_by(self) -> None:
+        """Leave the present course: orders keep the vehicle from it."""
+        self.strategy = Turns(0, ())
 
     def start(self, belief: OwnBelief) -> float:
         """Return when courses planned on this belief begin [s]."""

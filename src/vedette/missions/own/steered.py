@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.errors import PartError
+from vedette.forbidden import NOWHERE, Forbidden, Turning
 from vedette.missions.own.case import OwnCase
 from vedette.parts import telling
 from vedette.problem import Objective
@@ -49,6 +50,7 @@ class SteeredPlatform:
     case: OwnCase
     objective: Objective[OwnBelief, Any]
     robot: int
+    forbidden: Forbidden = NOWHERE  # ground that it must not be over
     courses: list[Turns] = field(default_factory=list)  # that are compared, the present one first
     own: list[Any] = field(default_factory=list)  # what each would add
 
@@ -58,12 +60,21 @@ class SteeredPlatform:
         vehicle, horizon = scenario.vehicles[self.robot], scenario.horizon
         now = present.after(step, horizon)
         others = (Turns(step, tuple(rates)) for rates in self._sequences(vehicle.turn_rate).tolist())
-        self.courses = list(dict.fromkeys([now, *others]))
+        self.courses = self._kept_out(pose, list(dict.fromkeys([now, *others])))
         rates = np.array([course.rates for course in self.courses])
         poses = drive(pose, rates, vehicle.speed, scenario.step)
         self.own = list(self.case.theory.impacts(known.belief, self.robot, poses))
         self._try(known)
-        return now
+        return self.courses[0]
+
+    def _kept_out(self, pose: NDArray[np.float64], courses: list[Turns]) -> list[Turns]:
+        """Return courses with those that lead over forbidden ground replaced."""
+        vehicle, dt = self.case.scenario.vehicles[self.robot], self.case.scenario.step
+        if not self.forbidden or vehicle.speed == 0.0 or vehicle.turn_rate == 0.0:
+            return courses
+        turning = Turning(vehicle.speed, vehicle.turn_rate)
+        rates = self.forbidden.kept_out(pose, np.array([each.rates for each in courses]), turning, dt)
+        return list(dict.fromkeys(Turns(courses[0].step, tuple(row)) for row in rates.tolist()))
 
     def _try(self, known: OwnBelief) -> None:
         """Raise PartError where the theory's parts do not go together, before a message is sent."""

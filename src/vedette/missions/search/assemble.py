@@ -9,6 +9,7 @@ from vedette.fusion.seals import Notary
 from vedette.missions.flights import FlightTeam
 from vedette.missions.search.case import SearchCase
 from vedette.missions.search.searching import Searching, SearchPlan
+from vedette.missions.sense import Grounds
 from vedette.team import Most
 
 
@@ -26,6 +27,12 @@ class SearchTeam(FlightTeam[SearchCase]):
             max(detector.range for detector in case.detectors), max(each.speed for each in scenario.vehicles)
         )
         return SearchPlan(case.pdf, scenario.weights, self.lead, declare.probability, declare.radius, most)
+
+    @property
+    def grounds(self) -> Grounds:
+        """What orders can be about."""
+        x0, x1, y0, y1 = self.case.pdf.frame.extent
+        return Grounds(len(self.case.names), (x0, y0, x1, y1))
 
     def mission(self, robot: int, boot: int, notary: Notary | None) -> Searching:
         """Return a vehicle's share, by its number from 0."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,10 +24,12 @@ from vedette.domains.search.platform import SearchPlatform
 from vedette.domains.search.worth import Worth
 from vedette.fusion.steps import Refilter, Sparse, SparseIntegers, StepEvidence
 from vedette.missions.flying import FlyingMission, SharedBelief, box_around
+from vedette.missions.ordered import cells_in
 from vedette.problem import Reach
 from vedette.team import Most
 from vedette.vehicle import drive
 
+OBJECTIVE = SearchObjective()
 LOOKS_KEPT = 8  # steps whose looks are kept, for people to see
 
 
@@ -66,7 +68,7 @@ class Declared:
 
 
 @dataclass(eq=False)
-class Searching(FlyingMission):
+class Searching(FlyingMission[SearchBelief, Flight, Impact]):
     """One vehicle's share of a search; ``vedette.agent.mission.FlightMission``.
 
     Evidence waits to be published: a round's must not change while it lasts.
@@ -79,9 +81,8 @@ class Searching(FlyingMission):
     strategy: Flight = field(default_factory=lambda: Flight(0, np.empty(0)))
     declared: Declared | None = None
     looked: deque[tuple[int, NDArray[np.float64]]] = field(default_factory=lambda: deque(maxlen=LOOKS_KEPT))
-    objective: SearchObjective = field(default_factory=SearchObjective)
     codec: SearchImpactCodec = field(init=False)
-    platform: RoundPlatform[SearchBelief, Flight, Impact] = field(init=False)
+    working: RoundPlatform[SearchBelief, Flight, Impact] = field(init=False)
     _elements: SparseIntegers = field(init=False)
     _filter: Refilter[TargetPdf, Sparse] = field(init=False)
     _waiting: list[tuple[int, LookEvidence]] = field(default_factory=list)
@@ -91,9 +92,14 @@ class Searching(FlyingMission):
     def __post_init__(self) -> None:
         prior = self.team.prior
         self.codec = SearchImpactCodec(prior.frame.size, len(self.team.worth.weights))
-        self.platform = self.vehicle if self.tells_plans else SharedBelief(self.vehicle, self.objective)
+        self.working = self.vehicle if self.tells_plans else SharedBelief(self.vehicle, self.objective)
         self._elements = SparseIntegers(prior.frame.size)
         self._filter = Refilter(self.fusion, prior, prior.step, predict=_moved, update=_observed)
+
+    @property
+    def objective(self) -> SearchObjective:
+        """What the team gains."""
+        return OBJECTIVE
 
     # -- evidence -----------------------------------------------------------------------------------
 
@@ -137,7 +143,15 @@ class Searching(FlyingMission):
         if self.declared is None and self.vehicle.detector.false_alarm > 0.0:
             place = declared_place(pdf, self.team.threshold, self.team.radius)
             self.declared = None if place is None else Declared(*place, t0, certain=False)
-        return freeze(pdf, self.team.worth, max(0, start_step(t0, self.team.lead, pdf.dt) - step))
+        belief = freeze(pdf, self.team.worth, max(0, start_step(t0, self.team.lead, pdf.dt) - step))
+        return replace(belief, mass=self._weighed(belief)) if self.priorities else belief
+
+    def _weighed(self, belief: SearchBelief) -> NDArray[np.float64]:
+        """``P(x) prod_a f_a``, (R, C), over the priority areas a that x lies in; docs/search.md (V160)."""
+        mass = belief.mass.copy()
+        for area, factor in self.priorities:
+            mass[cells_in(area, belief.frame)] *= factor
+        return mass
 
     def prepare(
         self, belief: SearchBelief, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float
@@ -146,6 +160,9 @@ class Searching(FlyingMission):
 
         ``pose`` is where the committed steps end; flown backwards they lead to where they begin.
         """
+        self.held, self.vehicle.forbidden = not pose.at_work, self.forbidden
+        if self.held:
+            return
         flown = self._taken_to(belief)
         kept = flown.turn_rates[max(0, belief.step - flown.step) :][: belief.committed]
         end = np.array((pose.x, pose.y, pose.heading))
@@ -183,6 +200,10 @@ class Searching(FlyingMission):
             check_claim(impact, robots, self.team.most, side, belief.layers, horizon, belief.dt)
 
     # -- flying -------------------------------------------------------------------------------------
+
+    def stand_by(self) -> None:
+        """Leave the present flight: orders keep the vehicle from it."""
+        self.strategy, self._flown = Flight(0, np.empty(0)), None
 
     def start(self, belief: SearchBelief) -> float:
         """Return when flights planned on this belief take over [s]."""

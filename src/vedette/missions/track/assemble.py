@@ -8,13 +8,14 @@ from functools import cached_property
 from vedette.agent import Agent, FlightBehaviour, Pace
 from vedette.agent.terms import Terms, flat
 from vedette.domains.tracking.belief import Tracks
-from vedette.domains.tracking.objective import TrackingObjective, objective
+from vedette.domains.tracking.objective import OBJECTIVES, TrackingObjective, objective
 from vedette.domains.tracking.platform import TrackingPlatform
 from vedette.domains.tracking.sensing import Sensor
 from vedette.errors import InputError
 from vedette.fusion.gaussian import Information, TrackMotion, track_fusion
 from vedette.fusion.seals import Notary
 from vedette.missions.flying import RoundTimes
+from vedette.missions.sense import Grounds
 from vedette.missions.track.options import TrackOptions
 from vedette.missions.track.scenario import TrackScenario
 from vedette.missions.track.tracking import LookBounds, Tracking, TrackPlan
@@ -87,6 +88,17 @@ class TrackTeam:
         extent = _EXTENT * max(x1 - x0, y1 - y0)
         each = [sensor.most_evidence(extent) for sensor in self.sensors]
         return LookBounds(max(matrix for matrix, _ in each), max(vector for _, vector in each))
+
+    @property
+    def grounds(self) -> Grounds:
+        """What orders can be about."""
+        own = (self.options.objective or self.scenario.objective) not in OBJECTIVES
+        return Grounds(
+            len(self.scenario.vehicles),
+            self.scenario.area,
+            "trackers weigh targets, not places: give one robot, or a priority area",
+            "an objective of somebody's own weighs nothing; leave it out" if own else "",
+        )
 
     def assemble(self, robot: int, boot: int, notary: Notary | None = None) -> Agent:
         """Return a fresh agent for a vehicle, by its number from 0; InputError if the fusion is unknown.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -50,7 +50,7 @@ class LookBounds(NamedTuple):
 
 
 @dataclass(eq=False)
-class Tracking(FlyingMission):
+class Tracking(FlyingMission[Tracks, Course, Impact]):
     """One vehicle's share of tracking; ``vedette.agent.mission.FlightMission``.
 
     Measurements are linearised as they come, about the vehicle's own estimate, and wait to be published: a
@@ -66,13 +66,13 @@ class Tracking(FlyingMission):
     skipped: int = 0  # measurements whose likelihood exceeded the bounds
     seen: tuple[int, ...] = ()  # targets, by the latest look
     codec: TrackImpactCodec = field(init=False)
-    platform: RoundPlatform[Tracks, Course, Impact] = field(init=False)
+    working: RoundPlatform[Tracks, Course, Impact] = field(init=False)
     _waiting: list[tuple[int, Information]] = field(default_factory=list)  # step, likelihood
     _seen_at: tuple[float, float, float] | None = None  # x, y [m], time [s] of the last pose
 
     def __post_init__(self) -> None:
         self.codec = TrackImpactCodec(len(self.team.models), self.team.horizon + len(self.team.layers))
-        self.platform = self.vehicle if self.tells_plans else SharedBelief(self.vehicle, self.objective)
+        self.working = self.vehicle if self.tells_plans else SharedBelief(self.vehicle, self.objective)
 
     @property
     def objective(self) -> TrackingObjective:
@@ -121,13 +121,24 @@ class Tracking(FlyingMission):
         """
         self.fusion.advance(min([self.team.step(t0), *(step for step, _ in self._waiting)]))
         known = self.tracks()
-        return predict(known, max(0, start_step(t0, self.team.lead, self.team.dt) - known.k0))
+        known = predict(known, max(0, start_step(t0, self.team.lead, self.team.dt) - known.k0))
+        return replace(known, weights=self._weights(known)) if self.priorities else known
+
+    def _weights(self, known: Tracks) -> tuple[float, ...]:
+        """(T,) ``w_t = prod_a f_a`` over the priority areas a in which a target is expected; (V162)."""
+        weights = np.ones(len(known))
+        for area, factor in self.priorities:
+            weights[area.distance(known.means[:, :2]) <= 0.0] *= factor
+        return tuple(weights.tolist())
 
     def prepare(self, belief: Tracks, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float) -> None:
         """List the courses from where the vehicle will be, and restate the present one."""
+        self.held, self.vehicle.forbidden = not pose.at_work, self.forbidden
+        if self.held:
+            return
         self.vehicle.place(pose.x, pose.y, pose.heading, self.strategy)
         self.vehicle.prepare(belief)
-        self.strategy = self.vehicle.carry_over(belief, self.strategy)
+        self.strategy = self.vehicle.kept_out(belief, self.vehicle.carry_over(belief, self.strategy))
 
     def reach(self, now: float) -> Reach | None:
         """Return the box that it can see into by the end of plans frozen within ``lead`` of now.
@@ -148,6 +159,10 @@ class Tracking(FlyingMission):
         check_claim(impact, robots, self.bounds.matrix)
 
     # -- flying -------------------------------------------------------------------------------------
+
+    def stand_by(self) -> None:
+        """Leave the present course: orders keep the vehicle from it."""
+        self.strategy = Course(0, ())
 
     def start(self, belief: Tracks) -> float:
         """Return when courses planned on this belief start [s]."""

@@ -22,7 +22,7 @@ from vedette.net.config import RESOLUTION, AgentConfig, BodySettings
 from vedette.net.explore.content import ExploreTeller
 from vedette.net.names import robot_name
 from vedette.net.notary import notary_of
-from vedette.net.orders import Judge, gate_of
+from vedette.net.orders import explorer_judge, gate_of
 from vedette.net.own import OwnSettings
 from vedette.net.real import real_robot, shows
 from vedette.net.robot import Robot
@@ -73,7 +73,7 @@ def explorer(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robo
     )
     agent.check_order = gate.check
     show = None if place.showing is None else place.showing(agent)
-    teller, judge = ExploreTeller(agent), Judge(agent, gate)
+    teller, judge = ExploreTeller(agent), explorer_judge(agent, gate)
     return Robot(agent, place.body, place.shown, teller, terms, show, place.time, judge)
 
 

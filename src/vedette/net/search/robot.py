@@ -7,7 +7,7 @@ from pathlib import Path
 from vedette.missions.search.assemble import SearchTeam
 from vedette.missions.search.case import default_case, read_case
 from vedette.net.config import AgentConfig
-from vedette.net.flights import check_number, round_times
+from vedette.net.flights import check_number, judge_of, round_times
 from vedette.net.notary import notary_of
 from vedette.net.robot import Robot
 from vedette.net.search.content import SearchTeller
@@ -26,4 +26,6 @@ def searcher(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robo
     team = SearchTeam(case, config.search, round_times(config.links, speed))
     notary, terms = notary_of(config, folder, team.terms, speed)
     agent = team.assemble(config.robot - 1, boot, notary)
-    return Robot(agent, simulated_searcher(config, case), None, SearchTeller(agent, case), terms)
+    judge = judge_of(config, team, agent, notary)
+    body, teller = simulated_searcher(config, case), SearchTeller(agent, case)
+    return Robot(agent, body, None, teller, terms, judge=judge)

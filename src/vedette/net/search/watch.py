@@ -10,7 +10,7 @@ import numpy as np
 from vedette.missions.search.assemble import SearchTeam
 from vedette.net.report import Condition
 from vedette.net.search.content import view_of
-from vedette.net.team import Fates, Links, as_it_is
+from vedette.net.team import Fates, Links, as_it_is, called_off
 from vedette.outcome import Outcome
 from vedette.record.figures import RobotFigures
 from vedette.record.log import Floats, Sink
@@ -67,7 +67,9 @@ class SearchWatcher:
         self._observer.finish(now, self._seen(fates))
 
     def over(self, now: float, heard: Sequence[Condition], silent: bool) -> Outcome | None:
-        """Tell whether somebody has declared the target found."""
+        """Tell whether somebody has declared the target found, or the operator has called all off."""
+        if called_off(heard, silent):
+            return Outcome.ORDERED
         found = any(view.declared is not None for view in self._views)
         return Outcome.COMPLETE if found else None
 

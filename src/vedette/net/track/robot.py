@@ -7,7 +7,7 @@ from pathlib import Path
 from vedette.missions.track.assemble import TrackTeam
 from vedette.missions.track.scenario import default_scenario, read_scenario
 from vedette.net.config import AgentConfig
-from vedette.net.flights import check_number, round_times
+from vedette.net.flights import check_number, judge_of, round_times
 from vedette.net.notary import notary_of
 from vedette.net.robot import Robot
 from vedette.net.simulated import simulated_tracker
@@ -26,4 +26,6 @@ def tracker(config: AgentConfig, folder: Path, boot: int, speed: float) -> Robot
     team = TrackTeam(scenario, config.track, round_times(config.links, speed))
     notary, terms = notary_of(config, folder, team.terms, speed)
     agent = team.assemble(config.robot - 1, boot, notary)
-    return Robot(agent, simulated_tracker(config, team), None, TrackTeller(agent, scenario), terms)
+    judge = judge_of(config, team, agent, notary)
+    body, teller = simulated_tracker(config, team), TrackTeller(agent, scenario)
+    return Robot(agent, body, None, teller, terms, judge=judge)

@@ -9,7 +9,7 @@ import numpy as np
 
 from vedette.missions.track.assemble import TrackTeam
 from vedette.net.report import Condition
-from vedette.net.team import Fates, Links, as_it_is
+from vedette.net.team import Fates, Links, as_it_is, called_off
 from vedette.net.track.content import view_of
 from vedette.outcome import Outcome
 from vedette.record.figures import RobotFigures
@@ -58,7 +58,9 @@ class TrackWatcher:
         self._observer.finish(self._seen(fates))
 
     def over(self, now: float, heard: Sequence[Condition], silent: bool) -> Outcome | None:
-        """Tell whether the scenario's time is up, and whether all who live are there in the end."""
+        """Tell whether the operator has called all off, or time is up; and who is there then."""
+        if called_off(heard, silent):
+            return Outcome.ORDERED
         if now < self._duration - 1e-9:
             return None
         return Outcome.UNHEARD if silent else Outcome.COMPLETE

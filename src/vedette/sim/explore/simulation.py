@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf
-from queue import Queue
 from typing import cast
 
 import numpy as np
@@ -13,8 +12,6 @@ from numpy.typing import NDArray
 
 from vedette.agent import Agent, GroundBehaviour
 from vedette.agent.driving import Driver
-from vedette.agent.events import Ordered
-from vedette.agent.orders import Given, Order, encode
 from vedette.agent.state import State
 from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.planners import DEFAULT
@@ -25,7 +22,6 @@ from vedette.missions.explore.exploring import Exploring
 from vedette.missions.explore.options import ExploreOptions
 from vedette.missions.explore.own_map import OwnMap
 from vedette.outcome import NO_PROGRESS, Outcome
-from vedette.sim.orders import OrderAt
 from vedette.sim.robots import Robots
 from vedette.sim.setup import Setup
 from vedette.sim.simulation import Simulation, random_streams
@@ -43,7 +39,6 @@ class ExploreSetup(Setup):
     unbounded: bool = False
     saved: OwnMap | None = None  # an earlier mission's map, which the first robot knows from the start
     prior: PriorMap | None = None  # an old map of the building, which all have
-    orders: tuple[OrderAt, ...] = ()  # of the operator, in order of time
 
     @property
     def options(self) -> ExploreOptions:
@@ -76,8 +71,6 @@ class ExploreSimulation(Simulation):
         self.world, self.specs, self.starts = world, tuple(specs), starts
         self.robots = self._bodies()
         super().__init__(self._explorer, self.robots, setup, world)
-        self._orders, self._given = list(setup.orders), 0
-        self._told = Queue[Order]()  # from other threads
         self._paused = -inf  # when anybody was told to wait last [s]
 
     def _bodies(self) -> Robots:
@@ -101,21 +94,9 @@ class ExploreSimulation(Simulation):
             return None
         return outcome
 
-    def order(self, order: Order) -> None:
-        """Give an order at the next tick; any thread may."""
-        self._told.put(order)
 
     def _tick(self) -> None:
-        """Let the operator tell the first living robot what is due; the team passes it on."""
-        due = [each.what for each in self._orders if each.at <= self.now + 1e-9]
-        del self._orders[: len(due)]
-        while not self._told.empty():
-            due.append(self._told.get())
-        for order in due:
-            self._given += 1
-            for i in self.living[:1]:
-                told = Ordered(encode(Given(self._given, "operator", order)))
-                self._let(i, self.network.tell(i, [told], self.now))
+        """Live through a tick, and note whether anybody is held."""
         super()._tick()
         if any(self.agents[i].state is State.PAUSED for i in self.living):
             self._paused = self.now

@@ -42,7 +42,7 @@ class FieldOracle:
         agent = team.assemble(robot, boot)
         assert isinstance(agent.mission, Monitoring)
         self.vehicles[robot] = agent.mission.vehicle
-        agent.mission.platform = FieldDictated(agent.mission.vehicle, self)
+        agent.mission.working = FieldDictated(agent.mission.vehicle, self)
         return agent
 
     def way(self, vehicle: MonitoringPlatform, belief: MonitoringBelief, current: Way) -> Way:

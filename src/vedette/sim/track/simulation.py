@@ -68,7 +68,7 @@ class TrackSimulation(Simulation):
         agent = self.team.assemble(robot, boot)
         if self.team.options.coordination == "optimum":
             mission = cast(Tracking, agent.mission)
-            mission.platform = Dictated(mission.vehicle, self._oracle)
+            mission.working = Dictated(mission.vehicle, self._oracle)
         return agent
 
     def _over_at_the_end(self, now: float) -> Outcome | None:
