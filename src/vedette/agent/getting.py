@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,6 +17,7 @@ from vedette.forbidden import BODY, Forbidden, Turning, steered
 
 Floats = NDArray[np.float64]
 _ROOMS = (1.5, 2.5, 4.0)  # that ways keep from areas, in radii of the least circle: the wider where need be
+_SIDES, _APPROACH = 8, 2.5  # from which a place is come to, and from how far, in such radii
 _STEP = 1.0  # of a way of one that turns at once [s]
 _BEARINGS = 32
 _MARCH = 0.25  # between two places on a way out [m]
@@ -55,18 +57,44 @@ class Getting:
         if self._turns is None:
             way = mission.route(here, place, 2.0 * BODY)
             return self._along(way, now) if way else None
-        at = np.array((pose.x, pose.y, pose.heading))
         for room in _ROOMS:
-            way = mission.route(here, place, room * self._turns.radius)
-            turns = steered(at, [np.array(each) for each in way[1:]], self._turns) if way else None
-            if turns is None:
-                continue
-            plan = FlightPlan(now, turns[1], turns[0])
-            if not mission.forbidden or self.keeps_out(
-                mission.forbidden, Itinerary(self.turn_rate).joined(plan, now), pose, now
-            ):
-                return plan
+            for by in self._approaches(place) if mission.forbidden else ((place,),):
+                plan = self._turning(mission, pose, by, room * self._turns.radius, now)
+                if plan is not None:
+                    return plan
         return None
+
+    def _approaches(self, place: Place) -> Iterator[tuple[Place, ...]]:
+        """Yield ways to come to a place: straight, then from each side, for the circle there to be free."""
+        yield (place,)
+        assert self._turns is not None
+        for turn in np.linspace(0.0, 2.0 * math.pi, _SIDES, endpoint=False).tolist():
+            far = _APPROACH * self._turns.radius
+            yield (place[0] - far * math.cos(turn), place[1] - far * math.sin(turn)), place
+
+    def _turning(
+        self,
+        mission: FlightMission[Any, Any, Any],
+        pose: Pose,
+        by: tuple[Place, ...],
+        room: float,
+        now: float,
+    ) -> AnyPlan | None:
+        """Return a plan that leads by places to the last of them, and keeps out; None: none is found."""
+        assert self._turns is not None
+        corners = [(pose.x, pose.y)]
+        for place in by:
+            way = mission.route(corners[-1], place, room)
+            if not way:
+                return None
+            corners += way[1:]
+        at = np.array((pose.x, pose.y, pose.heading))
+        turns = steered(at, [np.array(each) for each in corners[1:]], self._turns)
+        if turns is None:
+            return None
+        plan = FlightPlan(now, turns[1], turns[0])
+        flight = Itinerary(self.turn_rate).joined(plan, now)
+        return plan if not mission.forbidden or self.keeps_out(mission.forbidden, flight, pose, now) else None
 
     def out(self, mission: FlightMission[Any, Any, Any], pose: Pose, now: float) -> AnyPlan | None:
         """Return a plan that leads out of what is forbidden, the soonest; None: there is none, or no need."""

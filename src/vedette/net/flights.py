@@ -27,7 +27,7 @@ def round_times(links: LinkSettings, speed: float) -> RoundTimes:
     return RoundTimes(links.delay * speed, THINKING * speed)
 
 
-class Ordered(Protocol):
+class OrderedTeam(Protocol):
     """A team of vehicles that takes orders."""
 
     @property
@@ -39,7 +39,7 @@ class Ordered(Protocol):
         """What orders can be about."""
 
 
-def judge_of(config: AgentConfig, team: Ordered, agent: Agent, notary: CertifiedNotary | None) -> Judge:
+def judge_of(config: AgentConfig, team: OrderedTeam, agent: Agent, notary: CertifiedNotary | None) -> Judge:
     """Return who says whether a vehicle takes an order, of its operator or passed on by a mate."""
     return flight_judge(agent, gate_of(config, f"{fingerprint_of(team.terms):x}", notary), team.grounds)
 

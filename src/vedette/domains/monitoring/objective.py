@@ -23,7 +23,7 @@ _KEPT = 32  # posteriors of one round
 
 
 @dataclass(frozen=True, eq=False)
-class Priority:
+class SpotsFirst:
     """Spots where measurements are worth more."""
 
     spots: NDArray[np.bool_]  # (spots,)
@@ -37,7 +37,7 @@ class MonitoringBelief:
     field: FieldBelief
     patrol: Patrol
     unit: float  # of information in impacts [1 / unit^2]
-    priorities: Sequence[Priority] = ()
+    priorities: Sequence[SpotsFirst] = ()
 
     @cached_property
     def banded(self) -> BandedField:

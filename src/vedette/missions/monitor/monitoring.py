@@ -17,7 +17,7 @@ from vedette.agent.mission import RoundPlatform
 from vedette.domains.monitoring.belief import FieldBelief
 from vedette.domains.monitoring.evidence import FieldPacking
 from vedette.domains.monitoring.impact import FieldImpactCodec, Impact, check_claim
-from vedette.domains.monitoring.objective import MonitoringBelief, MonitoringObjective, Priority
+from vedette.domains.monitoring.objective import MonitoringBelief, MonitoringObjective, SpotsFirst
 from vedette.domains.monitoring.patrols import around
 from vedette.domains.monitoring.planning import Outlook
 from vedette.domains.monitoring.platform import FieldSensor, MonitoringPlatform, within
@@ -162,7 +162,8 @@ class Monitoring(FlyingMission[MonitoringBelief, Way, Impact]):
         known = self._filter.at(step).predict(start - step)
         outlook, patrol = self.team.outlook, self.team.patrol
         more = [
-            Priority(outlook.spots_over(cells_in(area, self._frame)), f - 1.0) for area, f in self.priorities
+            SpotsFirst(outlook.spots_over(cells_in(area, self._frame)), f - 1.0)
+            for area, f in self.priorities
         ]
         return MonitoringBelief(outlook.of(known), patrol, self.team.unit, more)
 
