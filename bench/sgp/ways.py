@@ -88,7 +88,7 @@ class Given(Monitor):
 
             agent = team.assemble(robot, boot)
             assert isinstance(agent.mission, Monitoring)
-            agent.mission.route = route
+            agent.mission.patrol = route
             return agent
 
         return assemble

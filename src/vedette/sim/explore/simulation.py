@@ -94,7 +94,6 @@ class ExploreSimulation(Simulation):
             return None
         return outcome
 
-
     def _tick(self) -> None:
         """Live through a tick, and note whether anybody is held."""
         super()._tick()
