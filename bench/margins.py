@@ -32,11 +32,11 @@ class Margin:
     expelled: bool
 
 
-def measure(robots: int, seed: int, deviation: float, folder: Path) -> Margin:
-    """Play one mission of robots whose poses are wrong by a deviation [m]."""
-    keys = issue_team("bench", folder / f"keys-{robots}-{seed}-{deviation:g}", robots, datetime.now(UTC))
+def measure(robots: int, seed: int, folder: Path, **body: float) -> Margin:
+    """Play one mission of robots whose poses are wrong as their bodies say: ``pose_std``, ``drift``."""
+    keys = issue_team("bench", folder / f"keys-{robots}-{seed}-{body}", robots, datetime.now(UTC))
     world = office(np.random.default_rng([seed, 5]), *SIDE)
-    team = KeyedTeam(world, robots, seed, keys, pose_std=deviation)
+    team = KeyedTeam(world, robots, seed, keys, **body)
     found, out = [Comparison(0, 0, 0)], set[int]()
 
     def look() -> None:
@@ -70,7 +70,7 @@ def margins(robots: tuple[int, ...], deviations: tuple[int, ...], seeds: tuple[i
     with TemporaryDirectory(prefix="vedette-bench-") as folder:
         for n in robots:
             for deviation in deviations:
-                played = [measure(n, seed, deviation / 100.0, Path(folder)) for seed in seeds]
+                played = [measure(n, seed, Path(folder), pose_std=deviation / 100.0) for seed in seeds]
                 rows.append(row(n, deviation / 100.0, played))
     header = ["pose error", "robots", "missions", "wall against", "of what is open", "of walls", "expelled"]
     click.echo(markdown(header, rows, "r" * 7), nl=False)

@@ -83,12 +83,10 @@ class Meter:
 class KeyedTeam(ExploreSimulation):
     """A simulated team on links that lose nothing, with keys or without."""
 
-    def __init__(
-        self, world: World, robots: int, seed: int, keys: list[Path] | None, *, pose_std: float = 0.0
-    ) -> None:
+    def __init__(self, world: World, robots: int, seed: int, keys: list[Path] | None, **body: Any) -> None:
         """Bring it to life at starts that follow from the seed; ``keys``: a folder for each robot."""
         self.keys, self.now = keys, 0.0
-        specs = [PlatformSpec(name=f"robot-{i + 1}", pose_std=pose_std) for i in range(robots)]
+        specs = [PlatformSpec(name=f"robot-{i + 1}", **body) for i in range(robots)]
         starts = choose_starts(world, specs, np.random.default_rng([seed, 1]), None)
         super().__init__(world, specs, starts, ExploreSetup(seed=seed, max_time=MOST, faults=Schedule(())))
 

@@ -28,6 +28,7 @@ _LIMITS = {
     "range_noise": (0.0, 1.0, "m"),
     "pose_std": (0.0, 1.0, "m"),
     "pose_std_heading": (0.0, 30.0, "deg"),
+    "drift": (0.0, 0.1, "per root of m and rad"),
     "energy": (1.0, ENDLESS, "m, or Wh"),
     "drain": (1e-3, 1e4, "Wh/m"),
 }
@@ -54,6 +55,7 @@ class PlatformSpec:
     start: tuple[float, ...] | None = None  # x, y[, heading] [m, m, deg], team frame; None: chosen
     pose_std: float = 0.0  # standard deviation of each coordinate of the place that it is told [m]
     pose_std_heading: float = 0.0  # and of the heading [deg]
+    drift: float = 0.0  # of its odometry after a metre [m, rad] and a radian [rad], SLAM corrects it
     energy: float = ENDLESS  # way that it can drive [m]; with ``drain``, what its battery holds [Wh]
     drain: float = 1.0  # [Wh/m]
     sensor: str | None = None  # a class of somebody's own, ``module:NAME``; None: the lidar
@@ -64,6 +66,8 @@ class PlatformSpec:
                 f"name must be letters, digits, '-', '_' or '.', at most 64; got {repr_short(self.name)}"
             )
         check_limits(self, _LIMITS)
+        if self.drift and (self.pose_std or self.pose_std_heading):
+            raise InputError("drift makes the pose wrong already; leave out pose_std and pose_std_heading")
         if not is_whole(self.beams):
             raise InputError(f"beams must be a whole number; got {self.beams}")
         if self.sensor is not None:

@@ -43,6 +43,7 @@ GOLDEN: dict[str, Any] = {
     "turned_back": [],
     "map_errors": 0,
     "map_error_share": 0.0,
+    "pose_error_m": {"robot-1": 0.0, "robot-2": 0.0},
     "path_m": {"robot-1": 35.354265, "robot-2": 36.549873},
     "overlap": 0.577833,
     "collisions": 0,

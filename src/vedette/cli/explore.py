@@ -36,6 +36,7 @@ def explore(
     robots: int | None,
     team: Path | None,
     starts: str | None,
+    drift: float | None,
     saved: Path | None,
     orders: Path | None,
     watch: bool,
@@ -49,7 +50,7 @@ def explore(
     cave, maze, MODULE:NAME); without it, a generated office of 30 x 20 m. Exit status: 0 complete,
     1 incomplete, 2 bad input, 130 interrupted.
     """
-    world, specs = world_named(map_path, resolution), team_named(team, robots, starts)
+    world, specs = world_named(map_path, resolution), team_named(team, robots, starts, drift)
     if saved is not None and world is None and (seed := seed_of(saved)) not in (None, options["seed"]):
         raise InputError(f"--continue: {saved} is of the office of seed {seed}; add --seed {seed}")
     mission = Explore(world, specs, saved=saved, orders=orders or (), **options)

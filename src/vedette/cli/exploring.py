@@ -78,6 +78,13 @@ def exploring_options(command: CommandT) -> CommandT:
             metavar='"x,y;x,y"',
             help="Where the robots start [m].  [default: together, chosen by the seed]",
         ),
+        click.option(
+            "--drift",
+            type=float,
+            metavar="D",
+            help="Odometry errs by a deviation of D m over a metre and D rad over a radian, and SLAM "
+            "corrects it where a robot comes by again.",
+        ),
         seed_option("the office, the starts and all chance"),
         click.option(
             "--planner",
@@ -137,8 +144,10 @@ def world_named(path: Path | None, resolution: float | None) -> AnyWorld:
     return None
 
 
-def team_named(team: Path | None, robots: int | None, starts: str | None) -> list[PlatformSpec]:
-    """Return the platforms of ``--team``, ``--robots`` and ``--starts``.
+def team_named(
+    team: Path | None, robots: int | None, starts: str | None, drift: float | None = None
+) -> list[PlatformSpec]:
+    """Return the platforms of ``--team``, ``--robots``, ``--starts`` and ``--drift``.
 
     Raises:
         InputError: they cannot be, or contradict each other.
@@ -162,6 +171,8 @@ def team_named(team: Path | None, robots: int | None, starts: str | None) -> lis
     moved = [spec.name for spec, _ in zip(specs, places, strict=False) if spec.start is not None]
     if moved:
         _say(f"--starts replaces the team file's start of {', '.join(moved)}")
+    if drift is not None:
+        specs = [replace(spec, drift=drift) for spec in specs]
     return [replace(spec, start=places[i]) if i < len(places) else spec for i, spec in enumerate(specs)]
 
 

@@ -84,6 +84,7 @@ def explore(
     robots: int | None,
     team: Path | None,
     starts: str | None,
+    drift: float | None,
     seed: int,
     planner: str,
     scheme: str | None,
@@ -108,12 +109,14 @@ def explore(
     130 interrupted.
     """
     agreed = scheme_of(planner, scheme)
-    world, specs = world_of(world_named(map_path, resolution), seed), team_named(team, robots, starts)
+    world, specs = world_of(world_named(map_path, resolution), seed), team_named(team, robots, starts, drift)
     tell_unheeded(planner, len(specs), scheme, fusion=fusion, lease=lease)
     if ros2 and unbounded:
         raise InputError("--unbounded: robots that run ROS 2 are never told how far it goes; leave it out")
     if ros2 and any(spec.sensor for spec in specs):
         raise InputError("sensor: simulated ROS 2 robots have lidars; leave it, or --ros2, out")
+    if ros2 and any(spec.drift for spec in specs):
+        raise InputError("drift: simulated ROS 2 robots know where they are; leave it, or --ros2, out")
     old = None if prior is None else str(prior.resolve())
     options = ExploreOptions(planner, agreed, fusion, return_home, area, unbounded, old)
     lattice = options.lattice_on(world.frame)

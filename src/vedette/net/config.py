@@ -81,6 +81,7 @@ class BodySettings(Struct, forbid_unknown_fields=True, frozen=True):
     range_noise: float = 0.01  # [m]
     pose_std: float = 0.0  # of the pose that the robot is told [m]
     pose_std_heading: float = 0.0  # [deg]
+    drift: float = 0.0  # of the simulated robot's odometry [m, rad]
     energy: float = ENDLESS  # way that it can drive [m]; with ``drain``, what its battery holds [Wh]
     drain: float = 1.0  # [Wh/m]
     sensor: str | None = None  # a class of somebody's own, ``module:NAME``; None: the lidar

@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.agent.effects import Drive, Motion
-from vedette.agent.events import Arrived, Event, Pose, Scan, Stuck
+from vedette.agent.effects import Drive, Motion, Route
+from vedette.agent.events import Arrived, Event, Pose, Scan, Sensed, Stuck
 from vedette.kernels.lidar import cast_rays
+from vedette.kernels.motion import remaining
 from vedette.maps import GridFrame
 from vedette.maps.world import World
 from vedette.outcome import NO_PROGRESS, Outcome
 from vedette.sensor import CheckedSensor
 from vedette.sim.body import Bodies
 from vedette.sim.localisation import Localisation
+from vedette.sim.odometry import seen_from
+from vedette.sim.slam import Slam
 from vedette.team import PlatformSpec
 
 STUCK_AFTER = 4.0  # without progress [s]
+ASIDE = np.array((0.05, 0.05, np.radians(1.0)))  # who errs otherwise by so much steers anew [m, m, rad]
 
 
 class Robots:
@@ -43,6 +49,13 @@ class Robots:
         ]
         self._sensors = [CheckedSensor.of(spec) for spec in specs]
         self._localisers = [Localisation.of(spec, rng) for spec, rng in zip(specs, noise, strict=False)]
+        self._slams = [
+            Slam(world.frame, spec, start.copy(), rng.spawn(1)[0]) if spec.drift else None
+            for spec, start, rng in zip(specs, starts, noise, strict=False)
+        ]
+        self._wanted: list[Route | None] = [None] * n
+        self._aside = np.zeros((n, 3))  # errors of where each took itself to be, as it set out [m, m, rad]
+        self.pose_errors = np.zeros(n)  # farthest that each took itself to be from where it was [m]
         self._next_scan = [0.0] * n
         self._stuck_told = [0.0] * n
         self._told_arrival = [True] * n
@@ -63,10 +76,11 @@ class Robots:
         slowed = self.bodies.stuck_for(i)
         pose = self._told(i, slowed)
         events: list[Event] = [pose]
-        if now >= self._next_scan[i] - 1e-9:
+        arrived = not self._told_arrival[i] and self.bodies.arrived(i)
+        if now >= self._next_scan[i] - 1e-9 or (arrived and self._slams[i] is not None):
             self._next_scan[i] += 1.0 / self._specs[i].rate
-            events.append(self._scan(i, pose.heading))
-        if not self._told_arrival[i] and self.bodies.arrived(i):
+            events += self._seen(i, pose, now, arrived)
+        if arrived:
             self._told_arrival[i] = True
             events.append(Arrived())
         elif slowed < STUCK_AFTER:
@@ -79,12 +93,33 @@ class Robots:
     def _told(self, i: int, slowed: float) -> Pose:
         """Return where the robot takes itself to be."""
         x, y, heading = self.pose(i)
+        dx, dy, turn = self._error(i)
+        self.pose_errors[i] = max(self.pose_errors[i], math.hypot(dx, dy))
         localiser = self._localisers[i]
         if localiser is None:
-            return Pose(x, y, heading, slowed)
-        dx, dy, turn = localiser.error.tolist()
+            return Pose(x + dx, y + dy, heading + turn, slowed)
         deviation, _, heading_deviation = localiser.deviation.tolist()
         return Pose(x + dx, y + dy, heading + turn, slowed, deviation, heading_deviation)
+
+    def _error(self, i: int) -> tuple[float, float, float]:
+        """Return how far the robot takes itself to be from where it is [m, m, rad]."""
+        localiser, slam = self._localisers[i], self._slams[i]
+        if slam is not None:
+            x, y, turn = (slam.place - self.pose(i)).tolist()
+            return x, y, turn
+        if localiser is not None:
+            x, y, turn = localiser.error.tolist()
+            return x, y, turn
+        return 0.0, 0.0, 0.0
+
+    def _seen(self, i: int, pose: Pose, now: float, arrived: bool) -> list[Event]:
+        """Return a scan; of a robot with a SLAM where it has looked, and its map if there is a new one."""
+        scan, slam = self._scan(i, pose.heading), self._slams[i]
+        if slam is None:
+            return [scan]
+        own_map = slam.look(scan, now, arrived)
+        looked = replace(scan, ranges=np.full(len(scan.ranges), math.nan))
+        return [looked] if own_map is None else [looked, Sensed(own_map, now)]
 
     def _scan(self, i: int, told_heading: float) -> Scan:
         spec = self._specs[i]
@@ -119,22 +154,27 @@ class Robots:
         map lie as far beside the truth as it takes itself to be.
         """
         assert isinstance(motion, Drive), "robots on the ground do not fly"
-        route = motion.route
-        self._told_arrival[i] = route is None
-        if route is None:
+        self._told_arrival[i] = motion.route is None
+        self._wanted[i] = motion.route
+        if motion.route is None:
             self.bodies.command(i, None)
             return
-        path, facing = route.path - self.corner, route.facing
-        east, north = 0.0, 0.0
-        localiser = self._localisers[i]
-        if localiser is not None:
-            east, north, turn = localiser.error.tolist()
-            path = path - (east, north)
-            facing = None if facing is None else facing - turn
-        self.bodies.command(
-            i, path, route.passable, self._first(route.frame, east, north), route.room, facing
-        )
+        self._follow(i, motion.route, motion.route.path)
         self._last_change = now
+
+    def _follow(self, i: int, route: Route, path: NDArray[np.float64]) -> None:
+        """Let a robot follow a path of a route, as it takes itself to lie now."""
+        east, north, turn = self._error(i)
+        self._aside[i] = east, north, turn
+        if self._slams[i] is not None:  # its map is turned as it is
+            here = np.array(self.pose(i))
+            told = np.append(path - (here + self._aside[i])[:2], np.zeros((len(path), 1)), axis=1)
+            path = here[:2] + seen_from(np.array((0.0, 0.0, turn)), told)[:, :2]
+        else:
+            path = path - (east, north)
+        facing = None if route.facing is None else route.facing - turn
+        first = self._first(route.frame, east, north)
+        self.bodies.command(i, path - self.corner, route.passable, first, route.room, facing)
 
     def _first(self, frame: GridFrame, east: float, north: float) -> tuple[int, int]:
         """Return where a grid begins among the world's cells, for a robot that lies so far beside it [m]."""
@@ -148,6 +188,18 @@ class Robots:
         for localiser in self._localisers:
             if localiser is not None:
                 localiser.advance(dt)
+        for i, slam in enumerate(self._slams):
+            if slam is not None and self.bodies.alive[i]:
+                slam.advance(np.array(self.pose(i)))
+                self._correct(i, slam)
+
+    def _correct(self, i: int, slam: Slam) -> None:
+        """Let a robot that has come to take itself elsewhere steer by that."""
+        route, error = self._wanted[i], np.array(self._error(i))
+        gap = np.abs(error - self._aside[i])
+        if route is not None and (gap > ASIDE).any():
+            x, y, _ = slam.place.tolist()
+            self._follow(i, route, remaining(route.path, x, y, math.inf))
 
     def kill(self, i: int) -> None:
         """Stop a robot; its body stays as an obstacle."""

@@ -42,7 +42,8 @@ def _summary(log: ExploreLog, **changes: object) -> ExploreSummary:
         "t50_s": 5.0, "t90_s": 12.0, "t95_s": 15.0, "t99_s": None, "auc_s": 12.0, "coverage": 0.98,
         "known_m2": 90.0, "rate_m2_s": 3.0, "frontiers": 2, "beyond": 0, "no_go_m2": 0.0, "cut_off_m2": 0.0,
         "turned_back": (),
-        "map_errors": 0, "map_error_share": 0.0, "path_m": dict.fromkeys(names, 1.0), "overlap": 0.2,
+        "map_errors": 0, "map_error_share": 0.0, "pose_error_m": None,
+        "path_m": dict.fromkeys(names, 1.0), "overlap": 0.2,
         "collisions": 0, "min_clearance_m": 0.06, "rounds": 12, "sweeps": 30, "bound_ratio": None,
         "messages": traffic, "bytes": traffic, "maps": (), "left_out": (),
     }  # fmt: skip

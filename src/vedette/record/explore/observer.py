@@ -200,6 +200,7 @@ class ExploreObserver:
             turned_back=tuple(view.sample.name for view in views if view.turned_back),
             map_errors=wrong,
             map_error_share=wrong / known if known else 0.0,
+            pose_error_m=self._pose_errors(),
             overlap=overlap(view.seen_on(self._world.frame) for view in views),
             collisions=sum(each.collisions for each in team),
             min_clearance_m=min(each.min_clearance_m for each in team),
@@ -209,6 +210,12 @@ class ExploreObserver:
             **vars(self._setting),
             **vars(TeamFigures.of(self.log.scene.vehicles, team, samples)),
         )
+
+    def _pose_errors(self) -> dict[str, float] | None:
+        """Return how far each robot took itself to be from where it was, at most [m]."""
+        errors = {view.sample.name: view.figures.pose_error_m for view in self._views}
+        known = {name: error for name, error in errors.items() if error is not None}
+        return known if len(known) == len(errors) else None
 
     def _left_out(self) -> tuple[LeftOut, ...]:
         """Return what robots left and nobody knows by now; out of reach is what is so to all who live."""

@@ -47,6 +47,7 @@ class ExploreSummary(MissionSummary):
     turned_back: tuple[str, ...]
     map_errors: int
     map_error_share: float
+    pose_error_m: Mapping[str, float] | None  # None where nobody knows where the robots truly were
     path_m: Mapping[str, float]
     overlap: float
     collisions: int

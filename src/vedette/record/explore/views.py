@@ -25,6 +25,7 @@ class GroundFigures(RobotFigures):
 
     collisions: int = 0  # steps in which a contact stopped it
     min_clearance_m: float = 0.5  # from its edge to a wall or to another robot, so far; measured up to 0.5 m
+    pose_error_m: float | None = None  # farthest that it took itself to be from where it was; None: not known
 
 
 @dataclass(frozen=True, eq=False)

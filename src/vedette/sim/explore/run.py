@@ -108,6 +108,7 @@ def _view(simulation: ExploreSimulation, i: int, ways: bool) -> RobotView:
             **vars(figures(simulation, i, float(bodies.travelled[i]))),
             collisions=int(bodies.collisions[i]),
             min_clearance_m=float(bodies.min_clearance[i]),
+            pose_error_m=float(simulation.robots.pose_errors[i]),
         ),
         mission.fusion.digest,
         left_out(mission.left_out, sample.name),
