@@ -39,6 +39,9 @@ def test_leaving_out_one_of_many_takes_few_combinations() -> None:
     fold: Fold[int] = Fold(1024, add)
     for place in range(1024):
         fold.put(place, 1)
+    assert count == 0  # nobody has asked
+    assert fold.total == 1024
+    assert count == 1023
     count = 0
     fold.put(17, 2)
     assert (fold.total, fold.without(17)) == (1025, 1023)
