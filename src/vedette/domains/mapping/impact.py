@@ -106,18 +106,24 @@ def check_claim(
         side: of a planning cell [m].
         edges: (LAYERS,) upper edge of each layer [s]; the last takes all later arrivals.
     """
-    cell = impact.keys // np.uint32(LAYERS)
-    earliest = _first_of_each(cell)
-    claimed = np.cumsum(np.bincount(impact.keys[earliest] % np.uint32(LAYERS), minlength=LAYERS))
     discs = stops * most_cells_swept(most.range, 0.0, side)
     seen = np.minimum(most_cells_swept(most.range, most.speed * edges, side), discs)
     seen[-1] = discs
-    if np.any(claimed > robots * seen):
-        late = int(np.argmax(claimed > robots * seen))
-        limit = f"{many(robots, 'robot')} with {seen[late]:.0f} at most each"
-        raise ValueError(f"impact claims {claimed[late]} cells by {edges[late]:g} s; {limit}")
+    if len(impact.keys) > robots * seen.min():  # else there are not as many cells as are allowed by any edge
+        claimed = _cells_claimed(impact)
+        if np.any(claimed > robots * seen):
+            late = int(np.argmax(claimed > robots * seen))
+            limit = f"{many(robots, 'robot')} with {seen[late]:.0f} at most each"
+            raise ValueError(f"impact claims {claimed[late]} cells by {edges[late]:g} s; {limit}")
     if impact.misses.sum(dtype=np.int64) > robots * discs * int(_LEVELS[-1]):
         raise ValueError(f"impact claims to see more surely than {many(robots, 'robot')} can")
+
+
+def _cells_claimed(impact: Impact) -> NDArray[np.int64]:
+    """Return how many planning cells are looked at by the end of each layer, (LAYERS,)."""
+    earliest = _first_of_each(impact.keys // np.uint32(LAYERS))
+    cells: NDArray[np.int64] = np.bincount(impact.keys[earliest] % np.uint32(LAYERS), minlength=LAYERS)
+    return np.cumsum(cells)
 
 
 class MapImpactCodec(MissesCodec):
