@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from vedette.domains.mapping.impact import MIN_SHARE
 from vedette.kernels.components import components
@@ -40,7 +40,7 @@ class PriorMap:
         made the map had not been there.
         """
         known = classes != UNKNOWN
-        nearest = ndimage.distance_transform_edt(~known, return_distances=False, return_indices=True)
+        nearest = scipy.ndimage.distance_transform_edt(~known, return_distances=False, return_indices=True)
         solid = ~known & (classes[tuple(nearest)] == OCCUPIED)
         return cls(np.where(solid, np.uint8(OCCUPIED), classes), frame)
 
@@ -131,8 +131,8 @@ def trust(classes: NDArray[np.uint8], said: NDArray[np.uint8], resolution: float
     """
     beside = 2 * max(1, round(SAME_WALL / resolution)) + 1
     wall, old_wall = classes == OCCUPIED, said == OCCUPIED
-    by_old = ndimage.maximum_filter(old_wall, beside)
-    by_wall = ndimage.maximum_filter(wall, beside)
+    by_old = scipy.ndimage.maximum_filter(old_wall, beside)
+    by_wall = scipy.ndimage.maximum_filter(wall, beside)
     confirmed = wall & by_old
     wrong = (wall & ~by_old & (said == FREE)) | ((classes == FREE) & old_wall & ~by_wall)
     overall = _share(confirmed.sum(), wrong.sum(), BELIEVED, 1.0)
