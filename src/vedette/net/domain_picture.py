@@ -15,7 +15,6 @@ from vedette.net.gather import UNHEARD, now_of, sample_of, vehicle_name
 from vedette.net.report import Report
 from vedette.record.log import Sink, VehicleSample
 from vedette.record.mcap import Medium
-from vedette.window.declared import pictures
 from vedette.window.picture import Beside, Picture
 
 
@@ -24,6 +23,8 @@ class DomainOnlooker:
 
     def __init__(self, domain: AnyDomain, case: FlightCase) -> None:
         """Look at a team of a domain."""
+        from vedette.window.declared import pictures  # who looks at none does not wait for SciPy
+
         self._domain, self._case, self._scene = domain, case, domain.scene(case)
         self._decoder: msgspec.msgpack.Decoder[Any] = msgspec.msgpack.Decoder(domain.content)
         self._draw = pictures(self._scene)
