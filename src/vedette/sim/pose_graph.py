@@ -6,9 +6,8 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.sparse import csc_matrix
-from scipy.sparse.linalg import splu
 
 from vedette.sim.odometry import laid_at, seen_from
 
@@ -75,6 +74,8 @@ def _least_squares(pairs: NDArray[np.int64], left: Floats, right: Floats, residu
         blocks.append(block.ravel())
         indices.append([np.broadcast_to(each, block.shape).ravel() for each in (rows, cols)])
     places: NDArray[np.int64] = np.concatenate(indices, axis=1)
-    jacobian = csc_matrix((np.concatenate(blocks), places))[:, 3:]
-    solved = splu(csc_matrix(jacobian.T @ jacobian)).solve(-(jacobian.T @ residual.ravel()))
+    jacobian = scipy.sparse.csc_matrix((np.concatenate(blocks), places))[:, 3:]
+    solved = scipy.sparse.linalg.splu(scipy.sparse.csc_matrix(jacobian.T @ jacobian)).solve(
+        -(jacobian.T @ residual.ravel())
+    )
     return np.asarray(solved, np.float64).reshape(-1, 3)
