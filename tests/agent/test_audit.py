@@ -16,6 +16,7 @@ from vedette.agent.audit import EVERY, WAITS
 from vedette.agent.effects import Send
 from vedette.agent.messages import MOST_ANSWERED, Account, Audit, Proof
 from vedette.agent.scrutiny import IDLE_ROUNDS
+from vedette.problem import Coverage
 
 WORTH = np.arange(1.0, 13.0)
 STAMP = (1, 7)
@@ -120,12 +121,12 @@ def judged(*accounts: Account) -> tuple[Agent, list[Proof]]:
     made = robot(1, (0, 2))
     auditor = made.rounds.scrutiny.auditor
     assert auditor is not None
-    for teller in (0, 2):
+    for teller in (0, 2, 3):
         auditor.standing.notary.admit(teller, notary(teller).certificate)
     auditor.want(0.0)
     auditor.decided(claimed(heard={0: NOTHING, 2: ALL}), (0, 2), 0.0)
     for each in accounts:
-        hears(made, each.robot, each, 0.5)
+        hears(made, 0 if each.robot == 0 else 2, each, 0.5)
     auditor.tick(2.0 * WAITS)
     assert made.proofs is not None
     told = said(made.proofs.tick((0, 2), 2.0 * WAITS))
@@ -176,3 +177,38 @@ def test_an_account_in_anothers_name_counts_for_nothing() -> None:
     judge, proofs = judged(forged)
     assert proofs == []
     assert judge.dropped == 1
+
+
+def test_links_that_make_no_tree_are_followed_once_a_robot_and_catch_nobody() -> None:
+    """By one account of a thousand links to itself and to a leaf behind it, a judge added up for minutes."""
+    made = robot(1, (0, 2))
+    packed = made.mission.codec.encode(NOTHING)
+    loops = tuple((k, 0, packed) for k in (2, 3) for _ in range(500))
+    combined, combine = list[int](), Coverage.combine
+
+    def counted(self: Coverage, a: Float, b: Float) -> Float:
+        combined.append(1)
+        return combine(self, a, b)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Coverage, "combine", counted)
+        judge, proofs = judged(
+            account(0, made, claimed(k1=NOTHING)),
+            account(2, made, claimed(k1=SOME), links=loops, told=()),
+            account(3, made, claimed(heard={2: NOTHING})),
+        )
+    assert proofs == []
+    assert len(combined) < 20
+    assert judge.rounds.distrusted == frozenset()
+
+
+def test_an_account_in_a_robots_own_name_keeps_it_from_giving_none() -> None:
+    """Who said it first kept the robot's own from the audit, and so all sums behind it from being checked."""
+    made = robot(1, (0, 2))
+    auditor = made.rounds.scrutiny.auditor
+    assert auditor is not None
+    auditor.decided(claimed(), (0, 2), 0.0)
+    assert hears(made, 2, structs.replace(account(2, made, claimed(own=SOME)), robot=1)) == []
+    answers = said(hears(made, 0, Audit(*STAMP)))
+    assert [each.robot for each in answers if isinstance(each, Account)] == [1, 1]
+    assert all(each.impact == made.mission.codec.encode(NOTHING) for each in answers[1:])

@@ -79,7 +79,12 @@ class Auditor:
         return structs.replace(account, signature=self.standing.notary.sign(*words_of(account)))
 
     def hear(self, sender: int, account: Account, neighbours: tuple[int, ...]) -> list[Effect]:
-        """Keep an account and hand it on; ValueError if it is not by whom it says."""
+        """Keep an account and hand it on; ValueError if it is not by whom it says.
+
+        Of itself this robot hears nothing from others: what they say first would stand in its own one's way.
+        """
+        if account.robot == self.robot != sender:
+            return []
         stamp = account.epoch, account.sequence
         held = self._accounts.get(stamp, {})
         known = held.get(account.robot)
@@ -170,12 +175,17 @@ class _Part:
     accounts: Mapping[int, Account]
     impacts: Mapping[int, Any]
     depth: int = 0  # links, the first one included
+    met: set[int] = field(default_factory=set)  # robots: on a tree each is come by once
 
     def sum(self, robot: int, towards: int, away: int = 1) -> Any | None:
-        """Return the impact of all from a robot on, as it says it; None: not all have given account."""
+        """Return the impact of all from a robot on, as it says it.
+
+        None: not all have given account, or the links that they tell of make no tree.
+        """
         self.depth = max(self.depth, away)
-        if robot not in self.impacts or away > len(self.accounts):
+        if robot not in self.impacts or robot in self.met:
             return None
+        self.met.add(robot)
         total = self.impacts[robot]
         for k, halvings, _ in self.accounts[robot].links:
             if k == towards:
