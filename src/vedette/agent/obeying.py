@@ -8,6 +8,7 @@ from vedette.agent import orders
 from vedette.agent.effects import Effect, Send, TrafficKind
 from vedette.agent.messages import Orders, encode
 from vedette.agent.mission import Heeding
+from vedette.agent.orders import Given
 from vedette.agent.state import Agent
 
 
@@ -15,18 +16,21 @@ def take(agent: Agent, told: Iterable[bytes], sender: int | None) -> list[Effect
     """Take orders, of a neighbour or of the operator (None); what is news goes on to all other neighbours.
 
     Raises:
-        ValueError: one is malformed, or not signed as it should be.
+        ValueError: one is malformed, or not signed as it should be; then none is taken, since one that is
+            held already would be no news when it comes again, and neither heeded nor passed on.
     """
-    news = []
-    for data in told:
-        given = orders.decode(data)
-        agent.check_order(given)
-        if agent.orders.take(given):
-            news.append(data)
+    checked = [(_checked(agent, data), data) for data in told]
+    news = [data for given, data in checked if agent.orders.take(given)]
     if not news:
         return []
     heed(agent)
     return _say(agent, news, [k for k in agent.rounds.tree.neighbours if k != sender])
+
+
+def _checked(agent: Agent, data: bytes) -> Given:
+    given = orders.decode(data)
+    agent.check_order(given)
+    return given
 
 
 def heed(agent: Agent) -> None:
