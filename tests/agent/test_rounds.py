@@ -14,9 +14,11 @@ from tests.support.agent_team import Post, Team, nested_kind, toy, toy_agent, to
 from vedette import Tree, negotiate
 from vedette.agent import Pace, messages
 from vedette.agent.effects import TrafficKind
-from vedette.agent.events import Message, Stuck
+from vedette.agent.events import JobDone, Message, Stuck
 from vedette.agent.patience import patience
-from vedette.negotiation import Chooser
+from vedette.agent.round import MAX_FORKS
+from vedette.negotiation import Chooser, RoundOutcome, encode
+from vedette.negotiation.messages import Stop
 from vedette.problem import Coverage
 
 INTERVAL = 1.0  # least time between rounds [s]
@@ -346,3 +348,29 @@ def test_who_plans_on_beats_freezes_nothing_by_a_clock_that_is_far_from_its_own(
     assert agent.dropped == (0 if taken else 1)
     assert (len(toy(agent).frozen_at) == 1) == taken
     assert (fingerprint(agent, frozenset({"dropped", "dropped_of"})) != before) == taken
+
+
+def test_a_round_of_more_robots_than_the_team_has_is_not_frozen() -> None:
+    """So many more could have claimed to see something."""
+    team, _, _ = toy_team(Tree.chain(2))
+    team.agents[1].rounds.admitted = 2
+    team.tell(1, Message(0, messages.encode(messages.Begin(1, 5, 1))))
+    for robots, frozen in ((3, 0), (2, 1)):
+        team.tell(1, Message(0, messages.encode(messages.Freeze(1, 5, 0, 0, robots))))
+        assert len(toy(team.agents[1]).frozen_at) == frozen
+    assert team.agents[1].dropped == 1
+
+
+def test_what_is_told_of_a_rounds_sweeps_and_worth_keeps_a_robots_own_figures_in_range() -> None:
+    team, _, _ = toy_team(Tree.chain(2))
+    told = Stop(RoundOutcome(1e100, 1e-300, 2**53, True))
+    for sequence in (5, 6):
+        team.tell(1, Message(0, messages.encode(messages.Begin(1, sequence, 1))))
+        team.tell(1, Message(0, messages.encode(messages.Freeze(1, sequence, 0, 0, 2))))
+        team.tell(1, JobDone((1, sequence)))
+        data = encode(told, toy(team.agents[1]).codec)
+        team.tell(1, Message(0, messages.encode(messages.Negotiate(1, sequence, data))))
+    rounds = team.agents[1].rounds
+    assert rounds.decisions == 2
+    assert rounds.sweeps <= 2 * MAX_FORKS
+    assert rounds.bound_ratios == [1.0, 1.0]

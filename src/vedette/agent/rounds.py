@@ -24,7 +24,7 @@ from vedette.agent.opinion import Opinion
 from vedette.agent.pace import Pace
 from vedette.agent.participant import RoundParticipant
 from vedette.agent.patience import TeamPatience
-from vedette.agent.round import Round, say, send_news
+from vedette.agent.round import MAX_FORKS, Round, say, send_news
 from vedette.agent.scrutiny import Scrutiny
 from vedette.agent.silence import Slowness
 from vedette.number import many
@@ -246,9 +246,9 @@ class Rounds:
         self.mission.strategy = round_.participant.strategy
         self.impact = round_.participant.impact
         self.decisions += 1
-        self.sweeps += outcome.sweeps
+        self.sweeps += min(outcome.sweeps, MAX_FORKS)  # it is what somebody has told
         if outcome.bound is not None and outcome.bound > 0:
-            self.bound_ratios.append(outcome.value / outcome.bound)
+            self.bound_ratios.append(max(min(outcome.value / outcome.bound, 1.0), -1.0))
         self.blocked &= not round_.blocked  # taken into account
         lonely = not round_.tree.neighbours and self.tree.parent is not None
         took_part = not lonely and round_.replied
@@ -318,10 +318,7 @@ class Rounds:
             ValueError: it speaks for more robots than there can be.
         """
         round_ = self._of(message.epoch, message.sequence)
-        if message.robots > self.admitted:
-            raise ValueError(
-                f"flushed: {many(message.robots, 'robot')}; the team has {self.admitted} at most"
-            )
+        self._check_robots(message)
         if round_ is None:
             return []
         self._attendance.flushed(sender, now - self._began)
@@ -331,17 +328,25 @@ class Rounds:
         """Hear that everything known has arrived.
 
         Raises:
-            ValueError: a child has not been heard. Or the clocks do not agree where rounds keep to their
-                beats: such a mission predicts what it knows to the root's time, step by step, and would not
-                come to an end.
+            ValueError: a child has not been heard, or it is of more robots than can be. Or the clocks do
+                not agree where rounds keep to their beats: such a mission predicts what it knows to the
+                root's time, step by step, and would not come to an end.
         """
         round_ = self._of(message.epoch, message.sequence)
+        self._check_robots(message)
         if round_ is None:
             return []
         apart = message.t0 / 1000.0 - now
         if self.pace.beat and abs(apart) > CLOCKS_APART:
             raise ValueError(f"freeze: the root's clock is {apart:.1f} s from this robot's")
         return round_.freeze(message, now)
+
+    def _check_robots(self, message: Flushed | Freeze) -> None:
+        """Raise ValueError for more robots than there can be: so many more could claim to see something."""
+        if message.robots > self.admitted:
+            raise ValueError(
+                f"round of {many(message.robots, 'robot')}; the team has {self.admitted} at most"
+            )
 
     @property
     def frozen(self) -> Any | None:

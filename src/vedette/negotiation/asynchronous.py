@@ -17,6 +17,8 @@ from vedette.problem.bound import tightest
 from vedette.problem.objective import ImpactT
 from vedette.problem.reach import Reach
 
+MOST_SAID = 4  # offers, or news, for every change that there can be
+
 
 class AsyncNode(Generic[ImpactT]):
     """Replies as soon as news come; changes travel to the root as offers, and count when they are taken.
@@ -143,6 +145,8 @@ class AsyncNode(Generic[ImpactT]):
             self._claims.check_size(sender, offer.size)
             if offer.mu is not None:
                 self._claims.admit(offer.mu, self._claims.platforms[sender])
+                child.offers += 1
+                self._check_length(sender, child.offers, self._claims.platforms[sender])
         child.heard, child.slack = offer.heard, offer.slack
         child.changes, child.capped = offer.changes, offer.capped
         child.quiet = offer.quiet and offer.mu is None and offer.heard == child.told and not child.due
@@ -155,6 +159,7 @@ class AsyncNode(Generic[ImpactT]):
             raise InputError(f"message Tidings from {sender} is out of turn; drop it")
         if self._claims is not None:
             self._claims.admit(news.mu, self._claims.platforms[sender])
+            self._check_length(sender, news.serial, 1 + sum(self._claims.platforms.values()))
         self._beyond, self._heard = news.mu, news.serial
         self._owes, self._said_quiet, self._ask = True, False, True
         self._tell_all()
@@ -169,6 +174,11 @@ class AsyncNode(Generic[ImpactT]):
             self._children[k].answer(offer.serial, taken=False)
         if pending.own:
             self._own.adopt(self._present[0])
+
+    def _check_length(self, sender: int, said: int, platforms: int) -> None:
+        """Raise ``InputError`` if somebody goes on and on: each change is offered, and answered, once."""
+        if said > MOST_SAID * (self._max_changes + 2) * platforms:
+            raise InputError(f"{sender} has changed the team {said} times, and does not end; drop it")
 
     def _tell_all(self) -> None:
         """Note that there are news for all children."""

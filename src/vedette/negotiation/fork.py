@@ -72,6 +72,7 @@ class ForkNode(RootedNode[ImpactT]):
             case Joined() if self._forked:
                 return self._note_joined(sender, message)
             case Fork() if sender == self._parent and self._gathered:
+                self._check_length(self.sweeps, self._max_sweeps)
                 self._links.receive(sender, message.mu)
                 return self._sweep(keep=message.keep)
             case Settled() if sender == self._parent and self._gathered:
@@ -179,6 +180,8 @@ class ForkNode(RootedNode[ImpactT]):
         self._check_size(child, joined.size)
         if joined.size > self._branches[child].size:
             raise InputError(f"{child} joins with more platforms than it had; drop it")
+        if joined.moved > self._branches[child].size:
+            raise InputError(f"{child} says that more platforms have moved than it had; drop it")
         self._links.admit(child, joined.mu)
         self._joined[child] = joined
         return self._join()

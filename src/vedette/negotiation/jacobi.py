@@ -84,6 +84,7 @@ class JacobiNode(RootedNode[ImpactT]):
                 self._reports[sender] = message
                 return self._gather()
             case Down(mu=mu) if sender == self._parent:
+                self._check_length(len(self._strategies) - 1, self._max_sweeps)
                 if self._remove is None:
                     self._links.receive(sender, mu)
                 return self._next_iterate(message)

@@ -10,12 +10,13 @@ import msgspec
 
 from vedette import wire
 from vedette.errors import InputError
+from vedette.problem.bound import MOST_VALUE
 from vedette.problem.objective import Codec, ImpactT
 
 Count = Annotated[int, msgspec.Meta(ge=0, le=2**53)]
 Size = Annotated[int, msgspec.Meta(ge=1, le=2**53)]  # of a part of the tree: somebody is in it
-Value = Annotated[float, msgspec.Meta(ge=-1e100, le=1e100)]  # sums of so many stay finite; never NaN
-Most = Annotated[float, msgspec.Meta(ge=-1e100)]  # infinite where nothing is known; never NaN
+Value = Annotated[float, msgspec.Meta(ge=-MOST_VALUE, le=MOST_VALUE)]  # sums of them are finite; never NaN
+Most = Annotated[float, msgspec.Meta(ge=-MOST_VALUE)]  # infinite where nothing is known; never NaN
 
 
 class RoundOutcome(msgspec.Struct, frozen=True, array_like=True):

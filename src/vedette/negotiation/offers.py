@@ -17,6 +17,7 @@ class Child(Generic[ImpactT]):
 
     branch: Branch[ImpactT] | None = None  # None: it has not been heard of
     offer: Offer[ImpactT] | None = None  # that has been neither passed on nor refused
+    offers: int = 0  # that it has made
     answered: int = 0  # serial of its last offer that was taken or refused
     taken: bool = True
     told: int = 0  # serial of the last news to it

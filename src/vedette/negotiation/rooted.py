@@ -74,6 +74,11 @@ class RootedNode(ABC, Generic[ImpactT]):
     def _go_without(self, child: int) -> list[Outgoing[ImpactT]]:
         """Go on without a child that has just been cut."""
 
+    def _check_length(self, sweeps: int, most: int) -> None:
+        """Raise ``InputError`` if the parent begins another sweep after the last that there can be."""
+        if sweeps >= most:
+            raise InputError(f"the round has had {sweeps} sweeps, and does not end; drop it")
+
     def _check_size(self, child: int, size: int) -> None:
         """Raise ``InputError`` if a child speaks for more platforms than can be behind it."""
         if self._claims is not None:

@@ -212,11 +212,15 @@ class TokenNode(RootedNode[ImpactT]):
         return [Outgoing(onwards, Token(mu, tally))]
 
     def _outcome(self, tally: Tally) -> RoundOutcome | None:
-        """Return how the round ends: all are content, or the value is optimal, or it took too long."""
+        """Return how the round ends: all are content, or the value is optimal, or it took too long.
+
+        Own turns count too: somebody may count the team's anew for ever.
+        """
         content = tally.quiet >= tally.size
         everybody = tally.turns >= tally.size  # has chosen
         optimal = everybody and attains(tally.value, tally.ceiling, self._epsilon)
-        if not (content or optimal or tally.turns >= self._max_sweeps * tally.size):
+        long = tally.turns >= self._max_sweeps * tally.size or len(self.turns) > self._max_sweeps
+        if not (content or optimal or long):
             return None
         above = tally.value + tally.slack if content else math.inf
         return RoundOutcome(

@@ -12,6 +12,8 @@ from vedette.problem.door import check_belief, check_choice, check_own, check_pr
 from vedette.problem.objective import BeliefT, ImpactT, Objective
 from vedette.problem.trial import Trial
 
+MOST_VALUE = 1e100  # that platforms tell each other
+
 
 def slack(
     objective: Objective[BeliefT, ImpactT], belief: BeliefT, base: ImpactT, own: Sequence[ImpactT]
@@ -73,6 +75,6 @@ def attains(value: float, most: float, epsilon: float) -> bool:
 
 
 def tightest(value: float, *bounds: float) -> float | None:
-    """Return the smallest finite bound, not below ``value`` by rounding; ``None`` if there is none."""
+    """Return the smallest bound, not below ``value`` by rounding; ``None`` if none can be told of."""
     least = min(bounds)
-    return max(value, least) if math.isfinite(least) else None
+    return max(value, least) if least <= MOST_VALUE else None
