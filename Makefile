@@ -82,8 +82,8 @@ missions: ready-dev ## Run the table of missions beside the yardsticks (long)
 figures: ready-dev ## Run the missions that the documents quote; record their figures and pictures
 	@$(PY) -m bench.figures $(if $(wildcard $(MAPS)),--maps $(MAPS)) $(ARGS)
 
-theatre: ready-dev ## Play what may befall a team, and write the page that shows it into docs
-	@PYTHONPATH=. $(PY) tools/theatre.py docs/theatre.html
+theatre: ready-dev ## Play what may befall a team, and write the page that shows it into docs; ARGS=--kept: the page alone
+	@PYTHONPATH=. $(PY) tools/theatre.py docs/theatre.html $(ARGS)
 
 schemas: ready-dev ## Write the schema of every JSON that is written into docs/schemas
 	@PYTHONPATH=. $(PY) tools/schemas.py docs/schemas

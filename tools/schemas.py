@@ -18,10 +18,12 @@ from bench.compare import CompareReport
 from bench.criteria import BenchReport
 from bench.crowds import CrowdResult
 from bench.decomposition import Shares
+from bench.forecast import ForeseenResult
 from bench.frames.trial import Trial
 from bench.large.cases import LargeResult
 from bench.latency import LatencyReport
 from bench.monitoring import FieldRun
+from bench.priority import ErrandResult
 from bench.scale.report import ScaleReport
 from bench.stonesoup.__main__ import StoneSoupReport
 from vedette.net.results import RobotSummary, TracksFound
@@ -62,6 +64,8 @@ KINDS: Mapping[str, type] = {
     "bench-large": LargeResult,
     "bench-monitoring": FieldRun,
     "bench-frames": Trial,
+    "bench-forecast": ForeseenResult,
+    "bench-priority": ErrandResult,
 }
 
 

@@ -1,4 +1,7 @@
-"""Play what may befall a team, and write the page that shows it: ``theatre.py docs/theatre.html``."""
+"""Play what may befall a team, and write the page that shows it: ``theatre.py docs/theatre.html``.
+
+With ``--kept`` after it the page is today's, and what it plays stays as it is.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +22,7 @@ from vedette.sim.faults import Schedule
 from vedette.sim.worlds import office
 from vedette.team import PlatformSpec
 from vedette.window.explore import Shower
-from vedette.window.export import Show, export_page
+from vedette.window.export import Show, export_page, page_with, records_in
 from vedette.window.hub import Hub
 from vedette.window.picture import picture
 
@@ -83,11 +86,14 @@ def liar() -> Show:
     return Show(name, hub.history, hub.events(0)[1])
 
 
-def main(path: Path) -> None:
+def main(path: Path, *, kept: bool) -> None:
     """Write the page."""
-    export_page([*map(storm, STORMS), liar()], path)
+    if kept:
+        path.write_text(page_with(records_in(path.read_text(encoding="utf-8"))), encoding="utf-8")
+    else:
+        export_page([*map(storm, STORMS), liar()], path)
     print(f"{path}: {path.stat().st_size / 1e3:.0f} kB")
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]))
+    main(Path(sys.argv[1]), kept="--kept" in sys.argv[2:])

@@ -20,7 +20,7 @@ def summary(outcome: Outcome, left_out: tuple[LeftOut, ...] = ()) -> ExploreSumm
         completed=outcome.completed, outcome=outcome, lost=(), left=(), seed=1, robots=1, planner="tours",
         scheme="token", fusion="replicated", world="hall", radio=None, faults=None, time_s=60.0,
         t50_s=20.0, t90_s=50.0, t95_s=None, t99_s=None, auc_s=30.0, coverage=0.92, known_m2=120.0,
-        rate_m2_s=2.0, frontiers=3, beyond=0, no_go_m2=0.0, cut_off_m2=0.0, turned_back=(),
+        rate_m2_s=2.0, frontiers=3, beyond=0, no_go_m2=0.0, cut_off_m2=0.0, expected=None, turned_back=(),
         map_errors=0, map_error_share=0.0,
         pose_error_m={"robot-1": 0.0},
         path_m={"robot-1": 12.0}, overlap=0.0, collisions=0, min_clearance_m=0.2, rounds=9, sweeps=9,

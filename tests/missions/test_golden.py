@@ -40,6 +40,7 @@ GOLDEN: dict[str, Any] = {
     "beyond": 0,
     "no_go_m2": 0.0,
     "cut_off_m2": 0.0,
+    "expected": None,
     "turned_back": [],
     "map_errors": 0,
     "map_error_share": 0.0,

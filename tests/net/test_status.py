@@ -11,6 +11,7 @@ from rich.console import Console
 
 from tests.fuzz.decoders import conditions
 from tests.support.schemas import valid
+from vedette.missions.explore.expected import Expected, Span
 from vedette.net.report import Condition
 from vedette.net.status import status_table, team_status
 
@@ -74,6 +75,16 @@ def test_in_json_robots_count_from_1_wherever_they_are_named() -> None:
     assert robots["robot-1"]["neighbours"] == [2, 3]
     assert robots["robot-1"]["root"] == 1
     assert [link["robot"] for link in robots["robot-1"]["links"]] == [2]
+
+
+def test_what_is_expected_of_an_exploration_is_told_by_who_knows_most() -> None:
+    slow, soon = (
+        Expected(Span(90.0, 100.0, 120.0), Span(end, end + 10.0, end + 30.0)) for end in (300.0, 200.0)
+    )
+    first = replace(FIRST, known_m2=20.0, expected=slow, time=70.0, began=10.0)
+    rows = said({0: first, 1: replace(SECOND, known_m2=90.0, expected=soon, time=70.0, began=10.0)})
+    assert "expected after 60 s: 90 % known 100 s (90 to 120); end 210 s (200 to 230)" in rows
+    assert not any(line.startswith("expected") for line in said({0: FIRST}))
 
 
 def test_of_ground_whose_size_nobody_knows_no_share_is_told_but_how_much_how_fast_and_what_is_left() -> None:

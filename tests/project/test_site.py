@@ -41,6 +41,14 @@ def test_the_readme_is_the_front_page_and_every_document_has_a_page(site: Path) 
         assert re.sub(r"\W", "", heading) == re.sub(r"\W", "", title)
 
 
+def test_the_first_picture_is_a_page_that_plays(site: Path) -> None:
+    front = (site / "index.html").read_text(encoding="utf-8").partition("<h1>")[2]
+    first = re.search(r"<(img|iframe)[^>]* src=\"([^\"]+)\"", front)
+    assert first is not None
+    assert first[1] == "iframe"
+    assert (site / first[2]).read_bytes() == (ROOT / "docs" / "theatre.html").read_bytes()
+
+
 def test_every_module_is_in_the_reference_with_its_own_words_and_its_fields_comments(site: Path) -> None:
     pages = {path.stem: path.read_text(encoding="utf-8") for path in (site / "api").glob("*.html")}
     for folder in (ROOT / "src" / "vedette", ROOT / "reproduction" / "vedette_reproduction"):

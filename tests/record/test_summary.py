@@ -26,6 +26,7 @@ def _summary(**changes: object) -> ExploreSummary:
         "time_s": 0.1 + 0.2, "t50_s": 10.0,
         "t90_s": 20.0, "t95_s": 25.0, "t99_s": None, "auc_s": 12.3456789, "coverage": 0.999,
         "known_m2": 95.5, "rate_m2_s": 0.75, "frontiers": 2, "beyond": 0, "no_go_m2": 0.0, "cut_off_m2": 0.0,
+        "expected": None,
         "turned_back": (),
         "map_errors": 4,
         "map_error_share": 1e-5, "pose_error_m": {"robot-1": 0.0, "robot-2": 0.25},

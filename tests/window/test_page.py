@@ -9,12 +9,13 @@ from typing import Any
 
 import pytest
 
+from tests.support.places import ROOT
 from tests.support.windows import SCENE, needs_chromium, shown, snapshot
 from vedette.agent.orders import End, LookThere, NoGo, Order, Pause, Priority, Recall, Resume, Stay
 from vedette.record import palette
 from vedette.record.explore.log import Ahead
 from vedette.record.explore.summary import LeftOut
-from vedette.window.export import Show, export_page
+from vedette.window.export import Show, export_page, page_with, records_in
 from vedette.window.hub import Hub
 from vedette.window.picture import Beside, picture
 from vedette.window.server import WindowServer
@@ -166,8 +167,15 @@ def test_a_record_is_scrubbed_and_played(page: Any) -> None:
             219,
             222,
         ]
+        hub.note("robots wait", 3.0)
+        hub.note("robots hear nothing", 6.0)
+        page.evaluate("$('bar').value = 4; $('bar').oninput()")
+        until(page, "$('clock').textContent === '4.0 s'")
+        assert "robots wait" in page.inner_text("#log")
+        assert "robots hear nothing" not in page.inner_text("#log")
         page.click("#play")
         until(page, "parseFloat($('clock').textContent) >= 8")
+        assert "robots hear nothing" in page.inner_text("#log")
         page.click("#play")
 
 
@@ -190,6 +198,26 @@ def test_an_exported_page_plays_by_itself(page: Any, tmp_path: Path) -> None:
     assert "nothing" not in page.inner_text("#log")
     page.select_option("#shows", label="another")
     until(page, "$('name').textContent === 'another'")
+
+
+def test_the_theatre_in_the_docs_is_todays_page_and_plays_what_befalls_teams(page: Any) -> None:
+    path = ROOT / "docs" / "theatre.html"
+    written = path.read_text(encoding="utf-8")
+    assert page_with(records_in(written)) == written, "`make theatre ARGS=--kept` renews it"
+    page.goto(f"file://{path}")
+    until(page, "parseFloat($('clock').textContent) >= 3")
+    scenes = page.inner_text("#shows").splitlines()
+    assert [
+        word for word in ("cut in two", "crashes", "meet and part", "lies") if word in " ".join(scenes)
+    ] == [
+        "cut in two",
+        "crashes",
+        "meet and part",
+        "lies",
+    ]
+    for scene in scenes:
+        page.select_option("#shows", label=scene.strip())
+        until(page, f"$('name').textContent === {scene.strip()!r} && parseFloat($('clock').textContent) >= 2")
 
 
 ORDERS: list[tuple[str, str, Order]] = [

@@ -22,6 +22,7 @@ ROOT = HERE.parents[1]
 PACKAGES = ("vedette", "vedette_reproduction")
 COMPILED = "vedette._kernels"
 LINK = re.compile(r"\]\(([^):#]+)")  # to a place in the repository
+PLAYED = re.compile(r"\[!\[([^]]*)\]\([^)]*\)\]\(([^)]*\.html)\)")  # a picture of a page that plays by itself
 NAVIGATION = {  # what the sidebar shows under a page: caption -> pages, a pattern for those not named before
     "README.md": {
         "How it works": ["docs/concepts", "docs/theory", "docs/*"],
@@ -45,6 +46,8 @@ def main(site: Path) -> int:
     status = build_main([*options, "-c", str(HERE), "-d", str(pages / ".doctrees"), str(pages), str(site)])
     if status == 0:
         shutil.copyfile(site / "README.html", site / "index.html")
+        for played in (ROOT / "docs").rglob("*.html"):
+            shutil.copyfile(played, site / played.relative_to(ROOT))
     return status
 
 
@@ -62,6 +65,7 @@ def copy_documents(pages: Path) -> None:
                 linked.parent.mkdir(parents=True, exist_ok=True)
                 shutil.copy2(source, linked)
         tree = NAVIGATION.get(path.relative_to(pages).as_posix(), {})
+        text = PLAYED.sub(r'<iframe class="played" src="\2" title="\1"></iframe>', text)
         text = re.sub(r"\]\(([^):]*/)\)", r"](\1README.md)", text)
         path.write_text(text + "".join(map(toctree, tree, tree.values())), encoding="utf-8")
 

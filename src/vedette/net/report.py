@@ -10,6 +10,7 @@ from msgspec import Meta
 
 from vedette import wire
 from vedette.agent.orders import MOST_ORDERS, Order
+from vedette.missions.explore.expected import Expected
 
 MOST_BYTES = 1 << 24
 Count = Annotated[int, Meta(ge=0, le=2**53)]
@@ -107,6 +108,9 @@ class Condition(msgspec.Struct, frozen=True, array_like=True, tag=2):
     signs: bool = False  # what its evidence says, so that others need not believe it
     out: Annotated[tuple[Count, ...], Meta(max_length=1024)] = ()  # robots that it does not believe
     alerts: Annotated[tuple[Sentence, ...], Meta(max_length=16)] = ()  # of its own computer: a full disk
+    expected: Expected | None = (
+        None  # how an exploration goes on, from ``began`` on; None: nobody can say yet
+    )
 
 
 class Report(msgspec.Struct, frozen=True, array_like=True, tag=3):

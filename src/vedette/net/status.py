@@ -16,6 +16,7 @@ from vedette.net.names import robot_name
 from vedette.net.report import Condition, LinkReport, read_condition
 from vedette.net.transport import Operator
 from vedette.number import many
+from vedette.record.explore.told import outlook
 from vedette.record.summary import Figures
 
 ANSWER = 0.5  # for which an agent may think about its answer [s]
@@ -94,8 +95,19 @@ def status_table(told: Mapping[int, Condition | None]) -> RenderableType:
         for said in answered
         for each in said.complaints
     )
+    ahead = (Text(line) for line in _ahead(answered))
     alerts = (Text(f"{robot_name(said.robot)}: {line}") for said in answered for line in said.alerts)
-    return Group(agents, Text(""), links, *complaints, *alerts, Text(_verdict(told)))
+    return Group(agents, Text(""), links, *complaints, *alerts, *ahead, Text(_verdict(told)))
+
+
+def _ahead(answered: Sequence[Condition]) -> list[str]:
+    """Say what is expected of an exploration, by who knows most."""
+    told = max(answered, key=lambda said: said.known_m2 or 0.0, default=None)
+    if told is None or told.expected is None:
+        return []
+    lasted = told.time - (told.began or 0.0)
+    spans = (f"{name} {value}" for name, value in outlook(told.expected, lasted))
+    return [f"expected after {lasted:.0f} s: {'; '.join(spans)}"]
 
 
 def _row(said: Condition, digest: int) -> list[str]:

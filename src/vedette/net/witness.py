@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from vedette.agent import NetworkedAgent
 from vedette.agent.body import Body
 from vedette.fusion.standing import Signed
+from vedette.missions.explore.expected import Expected, Forecaster, Progress
 from vedette.net import report as wire
 from vedette.net.report import (
     FARTHEST,
@@ -67,6 +68,7 @@ class Witness:
     malformed: int = 0  # of what is told of bodies
     status: bytes = b""  # the latest condition, for any thread
     _known: Known | None = None  # of the latest report
+    _forecaster: Forecaster = field(default_factory=Forecaster)
     _rounds: list[float] = field(default_factory=list)  # that this robot began [s]
     _round_began: float | None = None
     _decisions: int = 0
@@ -164,9 +166,17 @@ class Witness:
             beyond=0 if known is None else known.beyond,
             mission=self.mission,
             orders=tuple(OrderReport(each.counter, each.operator, each.order) for each in agent.orders.all),
+            expected=self._expected(mission_time, counted.travelled, overlay.place.size),
             signs=agent.signed is not None,
             out=_out(agent.signed),
         )
+
+    def _expected(self, mission_time: float, way: float, team: int) -> Expected | None:
+        """Return what is expected of an exploration, by what this robot knows and how far it has come [m]."""
+        if self._known is None or self._began is None:
+            return None
+        t, known = mission_time - self._began, self._known
+        return self._forecaster.add(Progress(t, known.area, known.frontiers, way, team))
 
 
 def _out(signed: Signed | None) -> tuple[int, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import re
 import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,6 +19,7 @@ from vedette.window.hub import Entry
 from vedette.window.picture import changes
 
 MARK = "const RECORDS = null;"
+PLAYED = re.compile(r"^const RECORDS = (\[.*\]);$", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -43,9 +45,22 @@ def export_page(shows: Sequence[Show], path: Path) -> None:
         }
         for show in shows
     ]
-    page = files("vedette.window").joinpath("page.html").read_text(encoding="utf-8")
     told = msgspec.json.encode(records).decode().replace("<", "\\u003c")  # no word ends the script
-    write_text(path, page.replace(MARK, f"const RECORDS = {told};", 1))
+    write_text(path, page_with(told))
+
+
+def page_with(records: str) -> str:
+    """Return the page with what it plays in it, as JSON."""
+    page = files("vedette.window").joinpath("page.html").read_text(encoding="utf-8")
+    return page.replace(MARK, f"const RECORDS = {records};", 1)
+
+
+def records_in(page: str) -> str:
+    """Return what a page plays, as JSON; ValueError if it plays nothing."""
+    found = PLAYED.search(page)
+    if found is None:
+        raise ValueError("a page that plays nothing")
+    return found[1]
 
 
 def _time(entry: Entry) -> float:

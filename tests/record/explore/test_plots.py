@@ -41,6 +41,7 @@ def _summary(log: ExploreLog, **changes: object) -> ExploreSummary:
         "apart_s": 0.0, "time_s": float(log.times[-1]),
         "t50_s": 5.0, "t90_s": 12.0, "t95_s": 15.0, "t99_s": None, "auc_s": 12.0, "coverage": 0.98,
         "known_m2": 90.0, "rate_m2_s": 3.0, "frontiers": 2, "beyond": 0, "no_go_m2": 0.0, "cut_off_m2": 0.0,
+        "expected": None,
         "turned_back": (),
         "map_errors": 0, "map_error_share": 0.0, "pose_error_m": None,
         "path_m": dict.fromkeys(names, 1.0), "overlap": 0.2,

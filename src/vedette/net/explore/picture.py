@@ -99,6 +99,7 @@ def picture_of(
             for spot in left_out([Leftover(*leaves) for leaves in each.left_out], name)
         ),
         known_m2=float(np.count_nonzero(classes != UNKNOWN)) * frame.resolution**2,
+        expected=max(told, key=lambda each: each.known_m2 or 0.0).expected if told else None,
         frontiers=max((each.frontiers for each in told if each.frontiers is not None), default=None),
     )
     return scene, snapshot

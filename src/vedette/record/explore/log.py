@@ -15,6 +15,7 @@ from vedette.agent.orders import Order
 from vedette.domains.mapping.belief import planning_factor
 from vedette.maps import GridFrame
 from vedette.maps.world import World
+from vedette.missions.explore.expected import Expected, Progress
 from vedette.record.explore.summary import LeftOut
 from vedette.record.links import Link, parts
 from vedette.record.log import MissionScene, Sink, VehicleSample
@@ -77,6 +78,14 @@ class ExploreSnapshot:
     known_m2: float = 0.0  # that the living robots know
     frontiers: int | None = None  # where to go on, as of the latest round; None: there has been none
     left_out: tuple[LeftOut, ...] = ()  # where robots do not go on, and why
+    expected: Expected | None = None  # of its further course; None: it is too early to say, or all is over
+
+    @property
+    def progress(self) -> Progress:
+        """How far it has come, as the living robots know it themselves."""
+        living = [robot for robot in self.robots if robot.alive]
+        way = sum(robot.driven for robot in living) / max(len(living), 1)
+        return Progress(self.t, self.known_m2, self.frontiers, way, len(living))
 
     @property
     def rate_m2_s(self) -> float:

@@ -22,6 +22,7 @@ from vedette.maps.bounds import Extent
 from vedette.maps.laid import under
 from vedette.maps.lattice import Lattice
 from vedette.maps.world import World
+from vedette.missions.explore.expected import Forecaster
 from vedette.missions.explore.options import ExploreOptions
 from vedette.outcome import Outcome
 from vedette.record.explore.log import ExploreLog, ExploreScene, ExploreSnapshot, RobotSample
@@ -78,6 +79,7 @@ class ExploreObserver:
         self.period = LOOK_PERIOD if world.frame.size <= LARGE else LOOK_PERIOD_IF_LARGE  # of looking [s]
         scene = ExploreScene.of(world, [spec.name for spec in specs])
         self.log = ExploreLog(scene, sinks, curves_only=curves_only)
+        self._forecaster = Forecaster()
         self.apart_s = 0.0  # time during which the living robots were not all on one tree
         self._apart = False  # since the last look
         self._views: tuple[RobotView, ...] = ()  # of the last look
@@ -112,7 +114,8 @@ class ExploreObserver:
         self._views = tuple(views)
         self._apart = len(parts([view.sample.alive for view in views], links)) > 1
         if log and now > self._logged:
-            self.log.add(self._snapshot(now, classes, known, share, links))
+            snapshot = self._snapshot(now, classes, known, share, links)
+            self.log.add(replace(snapshot, expected=self._forecaster.add(snapshot.progress)))
             self._logged = now
 
     def _heed(self, robots: Sequence[RobotSample]) -> None:
@@ -206,6 +209,7 @@ class ExploreObserver:
             min_clearance_m=min(each.min_clearance_m for each in team),
             apart_s=self.apart_s,
             maps=by_map(views),
+            expected=None if outcome.completed else self._forecaster.expected,
             left_out=self._left_out(),
             **vars(self._setting),
             **vars(TeamFigures.of(self.log.scene.vehicles, team, samples)),

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from vedette.errors import InputError
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
+from vedette.missions.explore.expected import Forecaster
 from vedette.record.explore.details import RobotDetails, Spots, read
 from vedette.record.explore.log import ExploreScene, ExploreSnapshot, RobotSample
 from vedette.record.explore.markers import links_in
@@ -90,6 +91,7 @@ def read_snapshots(path: Path, scene: ExploreScene) -> Iterator[ExploreSnapshot]
     classes: NDArray[np.uint8] = np.zeros(scene.frame.shape, np.uint8)
     impact: NDArray[np.float32] | None = None
     left_out: Spots = ()
+    forecaster = Forecaster()
     for moment in moments(path):
         messages = moment.messages
         try:
@@ -105,7 +107,9 @@ def read_snapshots(path: Path, scene: ExploreScene) -> Iterator[ExploreSnapshot]
             impact = _grid(messages["/team_impact"]).astype(np.float32) / np.float32(100.0)
         if "/tf" in messages:
             team = [robot.sample() for robot in robots.values()]
-            yield replace(_snapshot(moment, team, classes, impact), left_out=left_out)
+            snapshot = _snapshot(moment, team, classes, impact)
+            expected = forecaster.add(snapshot.progress)
+            yield replace(snapshot, left_out=left_out, expected=expected)
 
 
 def _snapshot(

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from vedette.domains.mapping.leftovers import Why
+from vedette.missions.explore.expected import Expected
 from vedette.record.summary import MissionSummary, Traffic
 
 
@@ -60,3 +61,4 @@ class ExploreSummary(MissionSummary):
     bytes: Mapping[str, Traffic]
     maps: tuple[tuple[str, ...], ...]  # who lives, by the map that they hold: of one group, all hold one
     left_out: tuple[LeftOut, ...]
+    expected: Expected | None  # how it would have gone on; None: it ended by itself, or too early to say
