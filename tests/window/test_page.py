@@ -254,6 +254,39 @@ def test_each_order_is_given_by_a_click_or_a_key_after_one_question(page: Any) -
         assert len(given) == len(ORDERS)
 
 
+def test_the_keyboard_alone_selects_looks_back_fits_and_takes_up_tools(page: Any) -> None:
+    hub = shown(range(30), lambda order: "taken")
+    with WindowServer(hub) as window:
+        page.goto(window.address)
+        see(page, hub, "#state", "live")
+        page.keyboard.press("2")
+        see(page, hub, "#whom", "mule")
+        page.keyboard.press("Escape")
+        see(page, hub, "#whom", "the team")
+        page.keyboard.press("l")
+        assert page.inner_text("#hint") == "Click where to look."
+        page.keyboard.press("Escape")
+        assert page.inner_text("#hint") == ""
+        page.focus("#map")
+        page.evaluate("view.fitted = false; view.scale *= 3")
+        page.keyboard.press("f")
+        assert page.evaluate("view.fitted")
+        page.keyboard.press("Space")
+        see(page, hub, "#state", "looking back")
+        until(page, "parseFloat($('clock').textContent) >= 2")
+        page.keyboard.press("Space")
+        assert page.inner_text("#play") == "Play"
+        page.keyboard.press("0")
+        see(page, hub, "#state", "live")
+        page.focus("tr.robot")
+        page.keyboard.press("Enter")
+        see(page, hub, "#whom", "scout")
+        page.keyboard.press("p")
+        assert "for scout?" in page.inner_text("#question")
+        page.keyboard.press("Escape")
+        assert not page.is_visible("#question")
+
+
 def test_places_and_areas_are_drawn_by_clicks(page: Any) -> None:
     given: list[Order] = []
     hub = shown(range(5), lambda order: given.append(order) or "taken by scout")
