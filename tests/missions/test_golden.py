@@ -40,7 +40,6 @@ GOLDEN: dict[str, Any] = {
     "beyond": 0,
     "no_go_m2": 0.0,
     "cut_off_m2": 0.0,
-    "expected": None,
     "turned_back": [],
     "map_errors": 0,
     "map_error_share": 0.0,
@@ -67,6 +66,7 @@ GOLDEN: dict[str, Any] = {
         {"x": 0.65, "y": 1.15, "unknown_cells": 76, "why": "unseeable", "by": "robot-1"},
         {"x": 9.65, "y": 1.35, "unknown_cells": 69, "why": "unseeable", "by": "robot-2"},
     ],
+    "expected": None,
 }
 
 APPROXIMATE = 1e-3  # relative: other machines may round the last bits otherwise
