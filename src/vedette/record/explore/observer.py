@@ -122,7 +122,7 @@ class ExploreObserver:
         """Count on nothing any more that some living robot has heard that nobody may go to, or is cut off."""
         orders = (order for robot in robots if robot.alive for order in robot.orders)
         no_go = tuple(dict.fromkeys(Area(order.corners) for order in orders if isinstance(order, NoGo)))
-        if no_go != self._reference.no_go:
+        if no_go != self._reference.no_go and any(robot.alive for robot in robots):
             places = {i: (robot.x, robot.y) for i, robot in enumerate(robots) if robot.alive}
             self._reference = replace(self._reference, no_go=no_go, places=places)
 
