@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from vedette.domains.mapping.leftovers import Leftover
 from vedette.net.explore.content import MapContent, read_content, sample_of
-from vedette.net.explore.grounds import Grounds
+from vedette.net.explore.reported import ReportedMaps
 from vedette.net.gather import links_among, vehicle_name
 from vedette.net.names import robot_name
 from vedette.net.report import Condition, Report
@@ -26,7 +26,7 @@ class ExploreOnlooker:
 
     team: str  # its name
     names: Sequence[str] = ()  # of its robots, as far as the operator gave them any
-    grounds: Grounds = field(default_factory=Grounds)
+    maps: ReportedMaps = field(default_factory=ReportedMaps)
 
     def numbers(self, reports: Mapping[int, Report]) -> Sequence[int]:
         """Return those that have been heard."""
@@ -40,7 +40,7 @@ class ExploreOnlooker:
         self, reports: Mapping[int, Report], states: Mapping[int, str]
     ) -> tuple[ExploreScene, ExploreSnapshot]:
         """Return the map that they hold, where they are and where they go."""
-        return picture_of(self.team, reports, states, self.name, self.grounds)
+        return picture_of(self.team, reports, states, self.name, self.maps)
 
     def draw(self, scene: ExploreScene, snapshot: ExploreSnapshot, beside: Beside) -> Picture:
         """Return it as the page shows it."""
@@ -56,7 +56,7 @@ def picture_of(
     reports: Mapping[int, Report],
     states: Mapping[int, str],
     name: Callable[[int], str] = robot_name,
-    grounds: Grounds | None = None,
+    maps: ReportedMaps | None = None,
 ) -> tuple[ExploreScene, ExploreSnapshot]:
     """Return what robots report, together: the map that they hold, where they are, what they believe.
 
@@ -65,13 +65,13 @@ def picture_of(
         reports: by robot, its latest.
         states: words that take the place of robots' own.
         name: of a robot, by its index.
-        grounds: what lays their maps together, of earlier pictures; None: there were none.
+        maps: what lays their maps together, of earlier pictures; None: there were none.
 
     Raises:
         ValueError: a report is malformed.
     """
     contents = [read_content(report.content) for report in reports.values()]
-    ground = (grounds or Grounds()).of(contents)
+    ground = (maps or ReportedMaps()).of(contents)
     names = tuple(map(name, reports))
     scene = ExploreScene(name=team, vehicles=names, frame=ground.frame, planning=ground.planning)
     told = [report.condition for report in reports.values()]

@@ -8,7 +8,7 @@ from msgspec import structs
 
 from vedette.maps import FREE, OCCUPIED, GridFrame
 from vedette.net.explore.content import MapContent, content, read_content
-from vedette.net.explore.grounds import SHARE, Grounds
+from vedette.net.explore.reported import SHARE, ReportedMaps
 
 FRAME = GridFrame(0.1, 20, 30)
 COST = 0.1  # of laying maps together [s]
@@ -36,11 +36,11 @@ class Ticking:
 
 def test_maps_are_laid_together_as_often_as_a_share_of_a_core_allows_and_not_for_nothing() -> None:
     time = Ticking()
-    grounds = Grounds(lambda: time.now, time.spent)
+    maps = ReportedMaps(lambda: time.now, time.spent)
     laid = set[int]()
     for tick in range(100):
         time.now = 0.1 * tick
-        laid.add(id(ground := grounds.of([told(10 + tick), told(5)])))
+        laid.add(id(ground := maps.of([told(10 + tick), told(5)])))
         if tick == 0:
             first = ground
     assert time.used / 2.0 <= SHARE * 10.0 + 2 * COST  # read before and after
@@ -49,15 +49,15 @@ def test_maps_are_laid_together_as_often_as_a_share_of_a_core_allows_and_not_for
     before = time.used
     latest = [told(109), told(5)]
     time.now = 100.0
-    assert grounds.of(latest).known_m2 == pytest.approx(1.10)
+    assert maps.of(latest).known_m2 == pytest.approx(1.10)
     time.now = 200.0
-    grounds.of(latest)
+    maps.of(latest)
     assert time.used == pytest.approx(before + 2 * COST)  # nothing was new
 
 
 def test_a_malformed_map_is_told_and_the_next_whole_one_is_shown() -> None:
-    grounds = Grounds()
+    maps = ReportedMaps()
     broken = structs.replace(told(10), classes=b"nothing")
     with pytest.raises(ValueError, match="not deflated"):
-        grounds.of([broken])
-    assert grounds.of([told(10)]).known_m2 == pytest.approx(0.11)
+        maps.of([broken])
+    assert maps.of([told(10)]).known_m2 == pytest.approx(0.11)

@@ -20,7 +20,7 @@ SHARE = 0.05  # of a core, at most, goes into laying maps together
 
 
 @dataclass(frozen=True, eq=False)
-class Ground:
+class ReportedMap:
     """What robots know together, and mean to see."""
 
     frame: GridFrame  # the least that holds all their maps
@@ -29,7 +29,7 @@ class Ground:
     impact: NDArray[np.float32]  # (r, c) how likely their strategies show each planning cell
 
     @classmethod
-    def of(cls, maps: Sequence[MapContent]) -> Ground:
+    def of(cls, maps: Sequence[MapContent]) -> ReportedMap:
         """Lay robots' maps on each other; ValueError: one is malformed."""
         frame, classes = _together(maps)
         planning = frame.coarse(planning_factor(frame.resolution))
@@ -42,22 +42,22 @@ class Ground:
 
 
 @dataclass
-class Grounds:
+class ReportedMaps:
     """Lays together what is new; where that takes long, what it laid before has to do for a while."""
 
     clock: Callable[[], float] = time.monotonic  # [s]
     spent: Callable[[], float] = time.thread_time  # CPU time of this thread [s]
-    _latest: Ground | None = None
+    _latest: ReportedMap | None = None
     _of: tuple[tuple[bytes, bytes | None], ...] = ()  # the maps and impacts that it is of
     _due: float = -1e9  # when it may be laid anew [s]
 
-    def of(self, maps: Sequence[MapContent]) -> Ground:
+    def of(self, maps: Sequence[MapContent]) -> ReportedMap:
         """Return what robots' maps are together; ValueError: one is malformed."""
         told = tuple((each.classes, each.impact) for each in maps)
         now = self.clock()
         if self._latest is None or (told != self._of and now >= self._due):
             began = self.spent()
-            self._latest, self._of = Ground.of(maps), told
+            self._latest, self._of = ReportedMap.of(maps), told
             self._due = now + (self.spent() - began) / SHARE
         return self._latest
 
