@@ -55,4 +55,5 @@ def test_how_far_apart_two_are_is_told_for_a_place_and_by_the_smaller_angle() ->
     shift, turn = Transform(0, 0, TURN - 100).apart(Transform(0, 0, 100), 10.0, 0.0)
     assert turn == pytest.approx(math.tau * 200 / TURN)
     assert shift == pytest.approx(2 * 10.0 * math.sin(turn / 2), rel=1e-3)
-    assert np.allclose(Transform(1000, 0, TURN // 4).places(np.array([[2.0, 0.0]])), [[1.0, 2.0]])
+    places = Transform(1000, 0, TURN // 4).places(np.array([[2.0, 0.0]]))
+    np.testing.assert_allclose(places, [[1.0, 2.0]], atol=1e-12)
