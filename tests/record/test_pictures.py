@@ -33,6 +33,7 @@ from vedette.record.search.detection import detection_png
 from vedette.record.search.log import SearchLog, SearchSample, SearchScene, SearchSnapshot
 from vedette.record.search.panel import colours, scale
 from vedette.record.search.stages import pdf_png
+from vedette.record.search.summary import ended_how
 from vedette.record.track.entropy import entropy_png
 from vedette.record.track.log import TrackLog, TrackSample, TrackScene, TrackSnapshot
 from vedette.record.track.panel import draw
@@ -215,7 +216,7 @@ def _check_labels(axes: Axes, log: TrackLog) -> None:
 @pytest.mark.parametrize("alarms", [False, True])
 @pytest.mark.parametrize(("count", "long"), TEAMS)
 def test_a_search(drawn: list[Figure], count: int, long: bool, alarms: bool) -> None:
-    pdf_png(searched(count, long), summary(count, long), "pdf.png")
+    pdf_png(searched(count, long), ended_how(vars(summary(count, long))), "pdf.png")
     times = np.linspace(0.0, 60.0, 31)
     low = 0.1 * times / 60.0  # curves that lie where a legend used to
     curves = Curves(times, low * 2, low, {"negotiated": low, "none": low / 2}, low)

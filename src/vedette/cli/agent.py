@@ -21,6 +21,7 @@ from vedette.fusion.standing import signed_by
 from vedette.interrupt import ENDINGS
 from vedette.net.config import AgentConfig, load_config
 from vedette.net.keeping import Keeper, folder_of_a_start
+from vedette.net.onlookers import onlooker_of
 from vedette.net.process import AgentProcess
 from vedette.net.start import agent_process
 from vedette.ros2.settings import Ros2Settings
@@ -87,7 +88,9 @@ def agent(
     with process.transport, ExitStack() as kept:
         if out is not None:
             results = kept.enter_context(folder_of_a_start(out))
-            process.keeper = Keeper(results, config.team, config.mission, _say)
+            flies = config.flies is not None
+            onlooker = onlooker_of(config, folder, config.robot - 1) if flies else None
+            process.keeper = Keeper(results, config.team, config.mission, _say, onlooker)
         process.run()
     _tell(f"robot {config.robot}: stopped")
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TypeVar
 
 import numpy as np
@@ -62,3 +62,13 @@ def _matching(
     to, under = slice(int(where[0]), int(where[-1]) + 1), under[where]
     first, end = int(under[0]), int(under[-1]) + 1
     return to, slice(first, end) if onto.resolution == frame.resolution else under
+
+
+def around(frames: Sequence[GridFrame]) -> GridFrame:
+    """Return the least grid that holds several of one resolution."""
+    resolution = frames[0].resolution
+    extents = np.array([frame.extent for frame in frames])
+    x, y = float(extents[:, 0].min()), float(extents[:, 2].min())
+    rows = round((float(extents[:, 3].max()) - y) / resolution)
+    cols = round((float(extents[:, 1].max()) - x) / resolution)
+    return GridFrame(resolution, rows, cols, x, y)

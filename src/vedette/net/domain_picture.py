@@ -13,30 +13,33 @@ from vedette.missions.flights import FlightCase
 from vedette.net.domain import AnyDomain
 from vedette.net.gather import UNHEARD, now_of, sample_of, vehicle_name
 from vedette.net.report import Report
-from vedette.record.log import Sink, VehicleSample
-from vedette.record.mcap import Medium
+from vedette.record.log import VehicleSample
+from vedette.record.mcap import McapFile, Medium, Place
 from vedette.window.picture import Beside, Picture
 
 
 class DomainOnlooker:
     """``vedette.net.feed.Onlooker``: what is known is what the first vehicle that is heard tells."""
 
-    def __init__(self, domain: AnyDomain, case: FlightCase) -> None:
-        """Look at a team of a domain."""
+    def __init__(self, domain: AnyDomain, case: FlightCase, only: int | None = None) -> None:
+        """Look at a team of a domain; ``only``: at one vehicle, by its index."""
         from vedette.window.declared import pictures  # who looks at none does not wait for SciPy
 
-        self._domain, self._case, self._scene = domain, case, domain.scene(case)
+        scene = domain.scene(case)
+        self._domain, self._case, self._names = domain, case, scene.vehicles
+        self._scene = scene if only is None else scene.only(only)
+        self._shown = range(len(scene.vehicles)) if only is None else [only]
         self._decoder: msgspec.msgpack.Decoder[Any] = msgspec.msgpack.Decoder(domain.content)
         self._draw = pictures(self._scene)
         self._told: tuple[bytes, Any] | None = None  # what was told last, and what it comes to
 
     def numbers(self, reports: Mapping[int, Report]) -> Sequence[int]:
         """Return all of the scenario."""
-        return range(1, len(self._scene.vehicles) + 1)
+        return [i + 1 for i in self._shown]
 
     def name(self, robot: int) -> str:
         """Return the scenario's word for a vehicle."""
-        return vehicle_name(self._scene.vehicles, robot)
+        return vehicle_name(self._names, robot)
 
     def see(self, reports: Mapping[int, Report], states: Mapping[int, str]) -> tuple[Any, Any]:
         """Return where vehicles are, and what is known; that is worked out anew when it has changed."""
@@ -47,18 +50,19 @@ class DomainOnlooker:
             self._domain.check(content, self._case)
             self._told = packed, self._domain.known(content, self._case)
         vehicles = []
-        for i, vehicle in enumerate(self._case.scenario.vehicles):
+        for i in self._shown:
             if i in reports:
                 vehicles.append(sample_of(reports[i].condition, states.get(i)))
             else:
-                vehicles.append(VehicleSample(*vehicle.pose, UNHEARD, True, np.empty((0, 2))))
+                vehicles.append(
+                    VehicleSample(*self._case.scenario.vehicles[i].pose, UNHEARD, True, np.empty((0, 2)))
+                )
         return self._scene, self._domain.seen(now_of(reports), vehicles, self._told[1])
 
     def draw(self, scene: Any, snapshot: Any, beside: Beside) -> Picture:
         """Return it as the page shows it."""
         return self._draw(snapshot, beside)
 
-    def recorder(self, medium: Medium, scene: Any) -> Sink[Any]:
+    def recorder(self, place: Place | Medium, scene: Any) -> McapFile[Any]:
         """Return what tells it in messages."""
-        sink: Sink[Any] = self._domain.recorder(medium, scene).__enter__()
-        return sink
+        return self._domain.recorder(place, scene)

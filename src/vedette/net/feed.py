@@ -15,8 +15,8 @@ from vedette.net.giving import Giving
 from vedette.net.hearing import Hearing
 from vedette.net.report import Report
 from vedette.net.transport import Operator
-from vedette.record.log import LEFT, Sink
-from vedette.record.mcap import Medium
+from vedette.record.log import LEFT
+from vedette.record.mcap import McapFile, Medium, Place
 from vedette.window.foxglove import FoxgloveServer
 from vedette.window.hub import Hub
 from vedette.window.picture import Beside, Picture, ordered
@@ -46,8 +46,8 @@ class Onlooker(Protocol[SceneT, SnapshotT]):
     def draw(self, scene: SceneT, snapshot: SnapshotT, beside: Beside) -> Picture:
         """Return it as the page shows it."""
 
-    def recorder(self, medium: Medium, scene: SceneT) -> Sink[SnapshotT]:
-        """Return what tells it in messages."""
+    def recorder(self, place: Place | Medium, scene: SceneT) -> McapFile[Any]:
+        """Return what tells it in messages, in a file or to a medium: a ``Sink`` too."""
 
 
 class TeamFeed:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
+from math import inf
 from pathlib import Path
+from typing import Any
 
 from vedette.agent.state import State
 from vedette.errors import InputError, InputWarning
 from vedette.net.explore import content as maps
+from vedette.net.feed import Onlooker
 from vedette.net.gather import path_of
 from vedette.net.names import robot_name
 from vedette.net.report import MOST_WORDS, Report
@@ -17,6 +20,7 @@ from vedette.outcome import Outcome
 from vedette.record.files import new_directory
 from vedette.record.folder import OutputFolder
 from vedette.record.log import LEFT, VehicleSample
+from vedette.record.mcap import McapFile
 from vedette.record.robot import RobotRecorder
 from vedette.record.space import short_of_space
 
@@ -30,10 +34,27 @@ class Keeper:
     A folder that cannot be written to is told of once, and the mission goes on; it is tried again each time.
     """
 
-    def __init__(self, folder: OutputFolder, team: str, mission: str, say: Callable[[str], None]) -> None:
-        """Keep in a folder that is this start's alone; ``say`` tells whoever watches the process."""
+    def __init__(
+        self,
+        folder: OutputFolder,
+        team: str,
+        mission: str,
+        say: Callable[[str], None],
+        onlooker: Onlooker[Any, Any] | None = None,
+    ) -> None:
+        """Keep in a folder that is this start's alone.
+
+        Args:
+            folder: of the results.
+            team: its name.
+            mission: what the robot does.
+            say: tells whoever watches the process.
+            onlooker: makes what is recorded of a vehicle's reports; None: the robot explores.
+        """
         self._folder, self._team, self._mission, self._say = folder, team, mission, say
-        self._record: RobotRecorder | None = None
+        self._onlooker = onlooker
+        self._record: McapFile[Any] | None = None
+        self._recorded = -inf  # the mission's time of what was recorded last [s]
         self._due: float | None = None  # when to write next [s]
         self._ended: Outcome | None = None  # of the mission, for this robot
         self._failed = ""  # why nothing can be written
@@ -65,7 +86,9 @@ class Keeper:
 
     def _add(self, report: Report, with_map: bool) -> None:
         condition = report.condition
-        if self._record is None:
+        if self._onlooker is not None:
+            return self._add_flight(report, self._onlooker)
+        if not isinstance(self._record, RobotRecorder):
             name, facts = robot_name(condition.robot), {"team": self._team, "mission": self._mission}
             self._record = RobotRecorder(lambda: self._folder / RECORD, name, facts)
         at = condition.x, condition.y, condition.heading
@@ -75,6 +98,15 @@ class Keeper:
             seen = maps.read_content(report.content)
             if seen.rows and seen.cols:
                 self._record.add_map(t, maps.frame_of(seen), maps.classes_of(seen))
+
+    def _add_flight(self, report: Report, onlooker: Onlooker[Any, Any]) -> None:
+        """Add what a vehicle tells, unless time stands still."""
+        scene, snapshot = onlooker.see({report.condition.robot: report}, {})
+        if self._record is None:
+            self._record = onlooker.recorder(lambda: self._folder / RECORD, scene)
+        if snapshot.t > self._recorded:
+            self._recorded = snapshot.t
+            self._record.update(snapshot)
 
     def _write(self, report: Report, last: bool) -> None:
         outcome = self._ended or (Outcome.INTERRUPTED if last else None)

@@ -16,8 +16,10 @@ from vedette.net.simulated import domain_of
 from vedette.net.track.picture import TrackOnlooker
 
 
-def onlooker_of(config: AgentConfig, folder: Path) -> Onlooker[Any, Any]:
+def onlooker_of(config: AgentConfig, folder: Path, only: int | None = None) -> Onlooker[Any, Any]:
     """Return who looks at a robot's team; ``folder``: what paths in its file are relative to.
+
+    ``only``: at one vehicle alone, by its index.
 
     Raises:
         InputError: its scenario cannot be used.
@@ -25,11 +27,11 @@ def onlooker_of(config: AgentConfig, folder: Path) -> Onlooker[Any, Any]:
     scenario = None if config.scenario is None else folder / config.scenario
     if config.domain is not None:
         domain = domain_of(config.domain.name)
-        return DomainOnlooker(domain, domain.case(scenario))
+        return DomainOnlooker(domain, domain.case(scenario), only)
     if config.search is not None:
-        return SearchOnlooker(default_case() if scenario is None else read_case(scenario))
+        return SearchOnlooker(default_case() if scenario is None else read_case(scenario), only)
     if config.track is not None:
         if scenario is None:
-            return TrackOnlooker(default_scenario(), config.mission)
-        return TrackOnlooker(read_scenario(scenario), scenario.stem)
+            return TrackOnlooker(default_scenario(), config.mission, only)
+        return TrackOnlooker(read_scenario(scenario), scenario.stem, only)
     return ExploreOnlooker(config.team)

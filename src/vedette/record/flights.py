@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from typing import Any, Generic, TypeVar
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar, Generic, Self, TypeVar
 
 import numpy as np
 
@@ -22,6 +22,13 @@ class FlightScene(MissionScene):
 
     ranges: tuple[float, ...]  # of the vehicles' sensors [m]
     dt: float  # step [s]
+
+    each: ClassVar[tuple[str, ...]] = ("vehicles", "ranges")  # fields that have something of each vehicle
+
+    def only(self, vehicle: int) -> Self:
+        """Return the scene with one vehicle alone, by its index."""
+        few: dict[str, Any] = {name: (getattr(self, name)[vehicle],) for name in self.each}
+        return replace(self, **few)
 
 
 @dataclass(frozen=True, eq=False)

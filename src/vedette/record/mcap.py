@@ -62,6 +62,10 @@ class McapFile(Generic[RosT]):
         self._writer.start(profile="ros2", library="vedette")
         self._writer.add_metadata("vedette", {"frame": FRAME_ID} | dict(facts))
 
+    def update(self, snapshot: Any) -> None:
+        """Write one snapshot, of the kind of mission that the file is of."""
+        raise TypeError(f"{type(self).__name__} takes no snapshots")
+
     def close(self) -> None:
         """Write what is left and the index, and move the file into place; a second call does nothing."""
         if not self._closed:

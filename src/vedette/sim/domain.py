@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any, ClassVar, Generic, TypeVar
 
@@ -18,7 +17,7 @@ from vedette.record.display import Display
 from vedette.record.flights import FlightObserver, FlightScene, FlightSnapshot
 from vedette.record.folder import OutputFolder
 from vedette.record.log import Sink, VehicleSample
-from vedette.record.mcap import Medium, Place
+from vedette.record.mcap import McapFile, Medium, Place
 from vedette.record.summary import Setting
 from vedette.sim.domains import DomainEntry
 from vedette.sim.network import Spawn
@@ -109,7 +108,7 @@ class Domain(ABC, Generic[DomainCaseT, ContentT, SceneT, SnapshotT, ReportT]):
         """Return the live view."""
 
     @abstractmethod
-    def recorder(self, place: Place | Medium, scene: SceneT) -> AbstractContextManager[Sink[SnapshotT]]:
+    def recorder(self, place: Place | Medium, scene: SceneT) -> McapFile[Any]:
         """Open the run record, or speak to a medium."""
 
     @abstractmethod

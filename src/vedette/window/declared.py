@@ -1,9 +1,9 @@
-"""Missions of declared domains in the window: a field as it is taken to be, or who moves on plain ground."""
+"""Missions of vehicles in the window, by their scene: of declared domains, fields or who moves where, too."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import singledispatch
+from functools import partial, singledispatch
 from math import isfinite
 
 import numpy as np
@@ -13,7 +13,9 @@ from vedette.maps import FREE, OCCUPIED
 from vedette.record.flights import FlightScene
 from vedette.record.monitor.log import MonitorScene, MonitorSnapshot
 from vedette.record.own.observer import OwnScene, OwnSnapshot
-from vedette.window.flights import named, plain_ground
+from vedette.record.search.log import SearchScene
+from vedette.record.track.log import TrackScene
+from vedette.window.flights import named, plain_ground, search_picture, track_picture
 from vedette.window.picture import NOTHING, SHADES, Beside, Picture, drawn
 
 
@@ -25,6 +27,16 @@ def pictures(scene: FlightScene) -> Callable[..., Picture]:
         TypeError: nothing is known of such missions' ground.
     """
     raise TypeError(f"no picture of {type(scene).__name__}")
+
+
+@pictures.register
+def _(scene: TrackScene) -> Callable[..., Picture]:
+    return partial(track_picture, scene)
+
+
+@pictures.register
+def _(scene: SearchScene) -> Callable[..., Picture]:
+    return partial(search_picture, scene)
 
 
 @pictures.register

@@ -11,7 +11,7 @@ import msgspec
 from vedette.agent.orders import Order
 from vedette.errors import InputError
 from vedette.record.log import Sink
-from vedette.record.mcap import Medium
+from vedette.record.mcap import Medium, Place
 from vedette.scenario import as_scenario
 
 ORDER, CLICKED = "/order", "/clicked_point"  # topics that Foxglove may publish on
@@ -30,7 +30,7 @@ class FoxgloveServer:
         self,
         name: str,
         give: Callable[[Order], str] | None,
-        recorder: Callable[[Medium, Any], Sink[Any]],
+        recorder: Callable[[Place | Medium, Any], Sink[Any]],
         port: int = PORT,
     ) -> None:
         """Prepare to serve on this computer alone.

@@ -15,8 +15,7 @@ from vedette.net.results import lasted
 from vedette.record.explore.log import ExploreScene, ExploreSnapshot, RobotSample
 from vedette.record.explore.mcap import ExploreMcapWriter
 from vedette.record.explore.views import left_out
-from vedette.record.log import Sink
-from vedette.record.mcap import Medium
+from vedette.record.mcap import Medium, Place
 from vedette.window.picture import Beside, Picture, picture
 
 
@@ -46,9 +45,9 @@ class ExploreOnlooker:
         """Return it as the page shows it."""
         return picture(scene, snapshot, beside)
 
-    def recorder(self, medium: Medium, scene: ExploreScene) -> Sink[ExploreSnapshot]:
+    def recorder(self, place: Place | Medium, scene: ExploreScene) -> ExploreMcapWriter:
         """Return what tells it in messages."""
-        return ExploreMcapWriter(medium, scene)
+        return ExploreMcapWriter(place, scene)
 
 
 def picture_of(

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from vedette.domains.mapping.belief import planning_factor
 from vedette.domains.mapping.impact import MapImpactCodec, cells_missed, moved
 from vedette.maps import UNKNOWN, GridFrame
-from vedette.maps.laid import part_laid
+from vedette.maps.laid import around, part_laid
 from vedette.net.explore.content import MOST_CELLS, MapContent, classes_of, frame_of
 
 NOWHERE = GridFrame(1.0, 1, 1)
@@ -67,7 +67,9 @@ def _together(maps: Sequence[MapContent]) -> tuple[GridFrame, NDArray[np.uint8]]
     parts = [(frame_of(each), classes_of(each)) for each in maps if each.rows and each.cols]
     if not parts:
         return NOWHERE, np.zeros(NOWHERE.shape, np.uint8)
-    frame = _around([part for part, _ in parts])
+    frame = around([part for part, _ in parts])
+    if frame.size > MOST_CELLS:
+        raise ValueError(f"reports of maps that lie {max(frame.shape) * frame.resolution:.0f} m apart")
     whole = np.zeros(frame.shape, np.uint8)
     for part, classes in parts:
         there, under = part_laid(classes, part, frame)
@@ -91,14 +93,3 @@ def _impact(maps: Sequence[MapContent], planning: GridFrame) -> NDArray[np.float
         cells, missed = cells_missed(moved(MapImpactCodec(own.size).decode(each.impact), own, planning))
         miss[cells] *= missed
     return (1.0 - miss).reshape(planning.shape)
-
-
-def _around(frames: Sequence[GridFrame]) -> GridFrame:
-    resolution = frames[0].resolution
-    extents = np.array([frame.extent for frame in frames])
-    x, y = float(extents[:, 0].min()), float(extents[:, 2].min())
-    rows = round((float(extents[:, 3].max()) - y) / resolution)
-    cols = round((float(extents[:, 1].max()) - x) / resolution)
-    if rows * cols > MOST_CELLS:
-        raise ValueError(f"reports of maps that lie {cols * resolution:.0f} m apart")
-    return GridFrame(resolution, rows, cols, x, y)

@@ -12,8 +12,7 @@ from vedette.missions.search.case import SearchCase
 from vedette.net.gather import UNHEARD, now_of, vehicle_name
 from vedette.net.report import Report
 from vedette.net.search.content import view_of
-from vedette.record.log import Sink
-from vedette.record.mcap import Medium
+from vedette.record.mcap import Medium, Place
 from vedette.record.search.log import SearchSample, SearchScene, SearchSnapshot
 from vedette.record.search.mcap import SearchMcapWriter
 from vedette.record.search.observer import first_declared
@@ -24,17 +23,20 @@ from vedette.window.picture import Beside, Picture
 class SearchOnlooker:
     """``vedette.net.feed.Onlooker``: the pdf is that of the first vehicle that is heard."""
 
-    def __init__(self, case: SearchCase) -> None:
-        """Look at a team that searches."""
-        self._case, self._scene = case, SearchScene.of(case, case.scenario.duration)
+    def __init__(self, case: SearchCase, only: int | None = None) -> None:
+        """Look at a team that searches; ``only``: at one vehicle, by its index."""
+        scene = SearchScene.of(case, case.scenario.duration)
+        self._case, self._names = case, scene.vehicles
+        self._scene = scene if only is None else scene.only(only)
+        self._shown = range(len(scene.vehicles)) if only is None else [only]
 
     def numbers(self, reports: Mapping[int, Report]) -> Sequence[int]:
         """Return all of the scenario."""
-        return range(1, len(self._scene.vehicles) + 1)
+        return [i + 1 for i in self._shown]
 
     def name(self, robot: int) -> str:
         """Return the scenario's word for a vehicle."""
-        return vehicle_name(self._scene.vehicles, robot)
+        return vehicle_name(self._names, robot)
 
     def see(
         self, reports: Mapping[int, Report], states: Mapping[int, str]
@@ -47,9 +49,11 @@ class SearchOnlooker:
         known = views[next((robot for robot in views if robot not in states), next(iter(views)))].pdf
         assert known is not None
         samples = []
-        for i, vehicle in enumerate(self._case.scenario.vehicles):
+        for i in self._shown:
             if i not in views:
-                samples.append(SearchSample(*vehicle.pose, UNHEARD, True, np.empty((0, 2)), None))
+                samples.append(
+                    SearchSample(*self._case.scenario.vehicles[i].pose, UNHEARD, True, np.empty((0, 2)), None)
+                )
             elif i in states:
                 samples.append(replace(views[i].sample, state=states[i], alive=False))
             else:
@@ -71,6 +75,6 @@ class SearchOnlooker:
         """Return it as the page shows it."""
         return search_picture(scene, snapshot, beside)
 
-    def recorder(self, medium: Medium, scene: SearchScene) -> Sink[SearchSnapshot]:
+    def recorder(self, place: Place | Medium, scene: SearchScene) -> SearchMcapWriter:
         """Return what tells it in messages."""
-        return SearchMcapWriter(medium, scene)
+        return SearchMcapWriter(place, scene)

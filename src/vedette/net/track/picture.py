@@ -14,8 +14,7 @@ from vedette.missions.track.scenario import TrackScenario
 from vedette.net.gather import UNHEARD, now_of, vehicle_name
 from vedette.net.report import Report
 from vedette.net.track.content import view_of
-from vedette.record.log import Sink
-from vedette.record.mcap import Medium
+from vedette.record.mcap import Medium, Place
 from vedette.record.track.log import TrackSample, TrackScene, TrackSnapshot
 from vedette.record.track.mcap import TrackMcapWriter
 from vedette.window.flights import track_picture
@@ -25,18 +24,20 @@ from vedette.window.picture import Beside, Picture
 class TrackOnlooker:
     """``vedette.net.feed.Onlooker``: the tracks are those of the first vehicle that is heard."""
 
-    def __init__(self, scenario: TrackScenario, name: str) -> None:
-        """Look at a team that follows the targets of a scenario."""
+    def __init__(self, scenario: TrackScenario, name: str, only: int | None = None) -> None:
+        """Look at a team that follows the targets of a scenario; ``only``: at one vehicle, by its index."""
         self._scenario, self._prior = scenario, scenario.prior()
-        self._scene = TrackScene.of(scenario, name)
+        scene = TrackScene.of(scenario, name)
+        self._scene, self._names = scene if only is None else scene.only(only), scene.vehicles
+        self._shown = range(len(scene.vehicles)) if only is None else [only]
 
     def numbers(self, reports: Mapping[int, Report]) -> Sequence[int]:
         """Return all of the scenario."""
-        return range(1, len(self._scene.vehicles) + 1)
+        return [i + 1 for i in self._shown]
 
     def name(self, robot: int) -> str:
         """Return the scenario's word for a vehicle."""
-        return vehicle_name(self._scene.vehicles, robot)
+        return vehicle_name(self._names, robot)
 
     def see(
         self, reports: Mapping[int, Report], states: Mapping[int, str]
@@ -50,9 +51,11 @@ class TrackOnlooker:
         known = views[holder].tracks
         known = predict(known, max(0, step_of(t, known.dt) - known.k0))
         samples = []
-        for i, vehicle in enumerate(self._scenario.vehicles):
+        for i in self._shown:
             if i not in views:
-                samples.append(TrackSample(*vehicle.pose, UNHEARD, True, np.empty((0, 2)), ()))
+                samples.append(
+                    TrackSample(*self._scenario.vehicles[i].pose, UNHEARD, True, np.empty((0, 2)), ())
+                )
             elif i in states:
                 samples.append(replace(views[i].sample, state=states[i], alive=False))
             else:
@@ -60,7 +63,7 @@ class TrackOnlooker:
         snapshot = TrackSnapshot(
             t=t,
             vehicles=tuple(samples),
-            holder=holder,
+            holder=list(self._shown).index(holder),
             truth=np.full_like(known.means, nan),
             means=known.means,
             covariances=known.covariances,
@@ -74,6 +77,6 @@ class TrackOnlooker:
         """Return it as the page shows it."""
         return track_picture(scene, snapshot, beside)
 
-    def recorder(self, medium: Medium, scene: TrackScene) -> Sink[TrackSnapshot]:
+    def recorder(self, place: Place | Medium, scene: TrackScene) -> TrackMcapWriter:
         """Return what tells it in messages."""
-        return TrackMcapWriter(medium, scene)
+        return TrackMcapWriter(place, scene)

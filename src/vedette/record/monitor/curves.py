@@ -14,7 +14,6 @@ from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save, tidy
 from vedette.record.lettering import shortened
 from vedette.record.monitor.log import MonitorLog
-from vedette.record.monitor.observer import MonitorReport
 from vedette.record.signs import FAINT, INK
 
 _STYLES: dict[str, dict[str, Any]] = {  # a line differs in more than its colour
@@ -36,10 +35,8 @@ _MEANING = {
 _SIZE = 9.6, 6.2  # [inch]
 
 
-def curves_png(report: MonitorReport, path: Path | str) -> None:
-    """Draw all curves that there are."""
-    summary = report.summary
-    logs = {summary.coordination: report.log} | dict(report.others)
+def curves_png(logs: Mapping[str, MonitorLog], seed: int, path: Path | str) -> None:
+    """Draw all curves that there are, by coordination."""
     with picture():
         figure = Figure(figsize=_SIZE, dpi=DPI)
         grid = figure.add_gridspec(
@@ -55,7 +52,7 @@ def curves_png(report: MonitorReport, path: Path | str) -> None:
                     axes.set_xlabel("way of a vehicle, in the mean [m]" if column else "time [s]")
                 else:
                     axes.tick_params(labelbottom=False)
-        _head(figure, report, logs)
+        _head(figure, seed, logs)
         save(figure, path)
 
 
@@ -70,11 +67,11 @@ def _draw(axes: Axes, logs: Mapping[str, MonitorLog], of: str, column: int) -> N
         axes.set_ylim(bottom=0.0)
 
 
-def _head(figure: Figure, report: MonitorReport, logs: Mapping[str, MonitorLog]) -> None:
-    scene = report.log.scene
+def _head(figure: Figure, seed: int, logs: Mapping[str, MonitorLog]) -> None:
+    scene = next(iter(logs.values())).scene
     title = shortened(f"{scene.name}: {many(len(scene.vehicles), 'vehicle')}", _SIZE[0] - 2.0, 12, True)
     figure.text(0.085, 0.955, title, fontsize=12, fontweight="bold")
-    figure.text(0.98, 0.955, f"seed {report.summary.seed}", ha="right", color=FAINT)
+    figure.text(0.98, 0.955, f"seed {seed}", ha="right", color=FAINT)
     handles, labels = figure.axes[0].get_legend_handles_labels()
     order = sorted(range(len(labels)), key=lambda k: list(_MEANING.values()).index(labels[k]), reverse=True)
     figure.legend(

@@ -26,6 +26,8 @@ class MonitorScene(FlightScene):
     blocked: NDArray[np.bool_]  # (R, C) where robots on the ground must not go
     ages: bool  # the field is nothing but how long ago a place was looked at
 
+    each = ("vehicles", "ranges", "sides")
+
     @classmethod
     def of(cls, case: MonitorCase) -> MonitorScene:
         """Return the scene of a case."""

@@ -7,6 +7,7 @@ import numpy as np
 from vedette.record.mcap import McapFile, Medium, Place, stamp_of
 from vedette.record.monitor.log import MonitorScene, MonitorSnapshot
 from vedette.record.ros import RosMessages, ros_names
+from vedette.record.scenes import facts_of_scene
 
 
 class MonitorMcapWriter(McapFile[RosMessages]):
@@ -17,7 +18,7 @@ class MonitorMcapWriter(McapFile[RosMessages]):
         self._frame, self._names = scene.frame, ros_names(scene.vehicles)
         pairs = zip(scene.vehicles, self._names, strict=True)
         facts = {"scenario": scene.name} | {f"vehicle {name}": ros for name, ros in pairs}
-        super().__init__(place, RosMessages(), facts)
+        super().__init__(place, RosMessages(), facts | facts_of_scene("monitor", scene))
 
     def update(self, snapshot: MonitorSnapshot) -> None:
         """Write one snapshot."""

@@ -13,6 +13,7 @@ def write_outputs(report: MonitorReport, folder: OutputFolder, animate: bool = F
     """Write figures and pictures; ``animate``: a GIF as well."""
     write_figures(report.summary, report.timing, folder)
     field_png(report, folder / "field.png")
-    curves_png(report, folder / "curves.png")
+    logs = {report.summary.coordination: report.log, **report.others}
+    curves_png(logs, report.summary.seed, folder / "curves.png")
     if animate:
-        monitor_gif(report, folder / "mission.gif")
+        monitor_gif(report.log, folder / "mission.gif")

@@ -62,9 +62,27 @@ def field_png(report: MonitorReport, path: Path | str) -> None:
         save(figure, path)
 
 
-def monitor_gif(report: MonitorReport, path: Path | str, frames: int = 150) -> None:
+def stages_png(log: MonitorLog, path: Path | str) -> None:
+    """Draw what the field was taken to be at the first, a middle and the last moment it was worked out."""
+    known = [snapshot for snapshot in log.snapshots if snapshot.mean is not None]
+    stages = [known[i] for i in evenly(len(known), 3)]
+    means = [np.asarray(stage.mean) for stage in stages]
+    low, high = min(float(mean.min()) for mean in means), max(float(mean.max()) for mean in means)
+    norm, layout = Normalize(low, high if high > low else low + 1.0), _layout(log)
+    with picture():
+        figure = layout.figure()
+        for corner, stage, mean in zip(layout.corners, stages, means, strict=False):
+            axes = layout.add(figure, *corner, *layout.panel)
+            _draw(axes, log, stage, mean, "viridis", norm)
+            axes.set_title(f"taken to be, {stage.t:.0f} s", fontsize=10, loc="left", pad=5)
+            _ramp(figure, layout, corner, "viridis", norm)
+        layout.head(figure, f"{log.scene.name}: {many(len(log.scene.vehicles), 'vehicle')}", "as recorded")
+        _legend(figure, layout, log)
+        save(figure, path)
+
+
+def monitor_gif(log: MonitorLog, path: Path | str, frames: int = 150) -> None:
     """Write at most ``frames`` of the moments at which the field was worked out as a film."""
-    log = report.log
     stages = [log.measured[i] for i in evenly(len(log.measured), frames)]
     means = [stage.mean for stage in stages if stage.mean is not None]
     low, high = min(float(mean.min()) for mean in means), max(float(mean.max()) for mean in means)

@@ -12,6 +12,7 @@ from vedette.record.display import Display
 from vedette.record.mcap import McapFile, Medium, Place, stamp_of
 from vedette.record.own.observer import OwnScene, OwnSnapshot
 from vedette.record.ros import RosMessages, ros_names
+from vedette.record.scenes import facts_of_scene
 from vedette.record.view import Size, TeamTable, arranged, explained, figure, flowing, states
 
 _GROUND = Style(color="grey82", bgcolor="grey11")
@@ -53,7 +54,7 @@ class OwnMcapWriter(McapFile[RosMessages]):
         self._names = ros_names(scene.vehicles)
         pairs = zip(scene.vehicles, self._names, strict=True)
         facts = {"scenario": scene.name} | {f"vehicle {name}": ros for name, ros in pairs}
-        super().__init__(place, RosMessages(), facts)
+        super().__init__(place, RosMessages(), facts | facts_of_scene("own", scene))
 
     def update(self, snapshot: OwnSnapshot) -> None:
         """Write one snapshot."""

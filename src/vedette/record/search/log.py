@@ -26,6 +26,8 @@ class SearchScene(FlightScene):
     duration: float  # [s]
     false_alarms: bool  # so that a report of the target is not yet its finding
 
+    each = ("vehicles", "ranges", "widths")
+
     @property
     def detection(self) -> str:
         """What the probability of detection is called: that some look has reported the target, truly."""

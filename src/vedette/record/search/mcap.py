@@ -8,6 +8,7 @@ import numpy as np
 
 from vedette.record.mcap import McapFile, Medium, Place, stamp_of
 from vedette.record.ros import RosMessages, ros_names
+from vedette.record.scenes import facts_of_scene
 from vedette.record.search.log import SearchScene, SearchSnapshot
 
 _GRID_PERIOD = 4.0  # of writing the pdf [s]
@@ -24,7 +25,7 @@ class SearchMcapWriter(McapFile[RosMessages]):
         self._unwritten: SearchSnapshot | None = None  # the last one, if its pdf is not in the file
         pairs = zip(scene.vehicles, self._names, strict=True)
         facts = {"scenario": scene.name} | {f"vehicle {name}": ros for name, ros in pairs}
-        super().__init__(place, RosMessages(), facts)
+        super().__init__(place, RosMessages(), facts | facts_of_scene("search", scene))
 
     def update(self, snapshot: SearchSnapshot) -> None:
         """Write one snapshot."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from vedette.record.folder import OutputFolder
 from vedette.record.search.observer import SearchReport
+from vedette.record.search.summary import ended_how
 from vedette.record.summary import write_figures
 
 
@@ -15,7 +16,7 @@ def write_outputs(report: SearchReport, folder: OutputFolder, animate: bool = Fa
     from vedette.record.search.stages import pdf_png
 
     write_figures(report.summary, report.timing, folder)
-    pdf_png(report.log, report.summary, folder / "pdf.png")
+    pdf_png(report.log, ended_how(vars(report.summary)), folder / "pdf.png")
     detection_png(report.curves, report.summary, folder / "detection.png")
     if animate:
         search_gif(report.log, folder / "mission.gif")

@@ -16,7 +16,6 @@ from vedette.record.key import LINE, Key, badges, with_fate
 from vedette.record.panels import MARGIN, TITLE, Panels
 from vedette.record.search.log import SearchLog
 from vedette.record.search.panel import TRUTH, colours, draw, scale
-from vedette.record.search.summary import SearchSummary
 from vedette.record.signs import DASHES, FAINT, INK, explain, scale_bar
 
 _GAP, _TOP = 0.16, 0.74  # between panels, over them [inch]
@@ -24,15 +23,18 @@ _LEAST = 8.0  # width of the figure, for the signs in one line [inch]
 _RAMP = 1.3  # width of the colour scale [inch]
 
 
-def pdf_png(log: SearchLog, summary: SearchSummary, path: Path | str) -> None:
-    """Draw pdf, vehicles, ways and plans at stages of a log that is not empty; the target in the last."""
+def pdf_png(log: SearchLog, how: str, path: Path | str) -> None:
+    """Draw pdf, vehicles, ways and plans at stages of a log that is not empty; the target in the last.
+
+    ``how``: it ended, for the title.
+    """
     stages = log.stages()
     layout, norm = _layout(log, len(stages)), scale(log)
     with picture():
         figure = layout.figure()
         for corner, stage in zip(layout.corners, stages, strict=True):
             draw(layout.add(figure, *corner, *layout.panel), log, stage, norm, stage is stages[-1])
-        _heading(figure, layout, log, summary)
+        layout.head(figure, f"{log.scene.name}: {many(len(log.scene.vehicles), 'vehicle')}", how)
         frame = log.scene.frame
         scale_bar(figure, MARGIN, layout.lowest - 0.18, frame.cols * frame.resolution, layout.panel[0])
         _legend(figure, layout, log, norm)
@@ -58,15 +60,6 @@ def _layout(log: SearchLog, count: int) -> Panels:
 
 def _team(log: SearchLog, width: float) -> Key:
     return Key.of(with_fate(log.scene.vehicles, log.snapshots[-1].vehicles), width - 2 * MARGIN)
-
-
-def _heading(figure: Figure, layout: Panels, log: SearchLog, summary: SearchSummary) -> None:
-    """Write over the panels whose search this is and how it ended."""
-    ended = summary.outcome.said
-    if summary.found_by is not None:
-        ended = f"found by {summary.found_by} after {summary.found_s:.0f} s"
-    title = f"{log.scene.name}: {many(len(log.scene.vehicles), 'vehicle')}"
-    layout.head(figure, title, f"{summary.coordination}, {ended}")
 
 
 def _legend(figure: Figure, layout: Panels, log: SearchLog, norm: PowerNorm) -> None:

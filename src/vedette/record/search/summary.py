@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +34,14 @@ class SearchQuality:
             t90_s=_passed(times, detection, 0.9),
             mean_time_s=mean_time_to_detection(detection[1:], float(times[-1]) / max(1, len(times) - 1)),
         )
+
+
+def ended_how(figures: Mapping[str, Any]) -> str:
+    """Return how a search ended, by the fields of its summary, or of one vehicle's."""
+    ended = str(figures["outcome"] or "so far").replace("_", " ")
+    if figures.get("found_by") is not None:
+        ended = f"found by {figures['found_by']} after {figures['found_s']:.0f} s"
+    return f"{figures['coordination']}, {ended}" if "coordination" in figures else ended
 
 
 @dataclass(frozen=True)

@@ -23,6 +23,8 @@ class TrackScene(FlightScene):
     targets: tuple[str, ...]
     moving: tuple[bool, ...]  # whether each target has a velocity
 
+    each = ("vehicles", "ranges", "views", "sensors")
+
     @classmethod
     def of(cls, scenario: TrackScenario, name: str) -> TrackScene:
         """Return the scene of a scenario."""

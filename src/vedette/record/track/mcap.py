@@ -10,6 +10,7 @@ import numpy as np
 from vedette.record.log import Floats
 from vedette.record.mcap import McapFile, Medium, Place, stamp_of
 from vedette.record.ros import RosMessages, ros_names
+from vedette.record.scenes import facts_of_scene
 from vedette.record.track.log import TrackScene, TrackSnapshot
 
 
@@ -39,9 +40,12 @@ class TrackMcapWriter(McapFile[TrackMessages]):
     def __init__(self, place: Place | Medium, scene: TrackScene) -> None:
         """Open the file."""
         self._vehicles, self._targets = ros_names(scene.vehicles), ros_names(scene.targets)
+        self._seen: dict[str, tuple[int, ...]] = {}
         pairs = [("vehicle", scene.vehicles, self._vehicles), ("target", scene.targets, self._targets)]
         named = {f"{k} {a}": b for k, names, ros in pairs for a, b in zip(names, ros, strict=True)}
-        super().__init__(place, TrackMessages(), {"scenario": scene.name} | named)
+        super().__init__(
+            place, TrackMessages(), {"scenario": scene.name} | named | facts_of_scene("track", scene)
+        )
 
     def update(self, snapshot: TrackSnapshot) -> None:
         """Write one snapshot."""
@@ -50,6 +54,9 @@ class TrackMcapWriter(McapFile[TrackMessages]):
         self._write_frames(stamp, vehicles)
         for name, vehicle in vehicles:
             self._write_flight(stamp, name, vehicle)
+            if self._seen.get(name, ()) != vehicle.seen:
+                self._seen[name] = vehicle.seen
+                self._write(f"/{name}/seen", stamp, self._ros.text(" ".join(map(str, vehicle.seen))))
         for t, name in enumerate(self._targets):
             mean, covariance = snapshot.means[t], snapshot.covariances[t]
             track = self._ros.pose_with_covariance(stamp, mean, covariance)

@@ -35,6 +35,7 @@ def window(log: TrackLog) -> Box:
     """Return the box that holds the area, everybody's way and the targets', with a margin."""
     last = log.snapshots[-1].t
     ways = np.concatenate([log.trails(last).reshape(-1, 2), log.truths(last).reshape(-1, 2)])
+    ways = ways[np.isfinite(ways).all(axis=1)]  # where nobody knows the targets' true ways
     x0, y0, x1, y1 = log.scene.area
     low, high = np.minimum(ways.min(axis=0), (x0, y0)), np.maximum(ways.max(axis=0), (x1, y1))
     margin = _MARGIN * float((high - low).max())

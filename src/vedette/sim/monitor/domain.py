@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import AbstractContextManager
 from functools import partial
 from math import nan
 from pathlib import Path
@@ -25,7 +24,7 @@ from vedette.outcome import Outcome
 from vedette.record.display import Display
 from vedette.record.folder import OutputFolder
 from vedette.record.log import Sink, VehicleSample
-from vedette.record.mcap import Medium, Place
+from vedette.record.mcap import McapFile, Medium, Place
 from vedette.record.monitor.live import monitor_display
 from vedette.record.monitor.log import MonitorScene, MonitorSnapshot
 from vedette.record.monitor.mcap import MonitorMcapWriter
@@ -111,9 +110,7 @@ class Monitor(Domain[MonitorCase, FieldContent, MonitorScene, MonitorSnapshot, M
         """Return the live view."""
         return monitor_display(scene, quiet)
 
-    def recorder(
-        self, place: Place | Medium, scene: MonitorScene
-    ) -> AbstractContextManager[Sink[MonitorSnapshot]]:
+    def recorder(self, place: Place | Medium, scene: MonitorScene) -> McapFile[Any]:
         """Open the run record."""
         return MonitorMcapWriter(place, scene)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any, cast
 
@@ -21,7 +20,7 @@ from vedette.outcome import Outcome
 from vedette.record.display import Display
 from vedette.record.folder import OutputFolder
 from vedette.record.log import Sink, VehicleSample
-from vedette.record.mcap import Medium, Place
+from vedette.record.mcap import McapFile, Medium, Place
 from vedette.record.own.live import OwnMcapWriter, own_display
 from vedette.record.own.observer import (
     OwnContent,
@@ -98,7 +97,7 @@ class OwnDomain(Domain[OwnCase, OwnContent, OwnScene, OwnSnapshot, OwnReport]):
         """Return the live view."""
         return own_display(scene, quiet)
 
-    def recorder(self, place: Place | Medium, scene: OwnScene) -> AbstractContextManager[Sink[OwnSnapshot]]:
+    def recorder(self, place: Place | Medium, scene: OwnScene) -> McapFile[Any]:
         """Open the run record."""
         return OwnMcapWriter(place, scene)
 
@@ -108,9 +107,9 @@ class OwnDomain(Domain[OwnCase, OwnContent, OwnScene, OwnSnapshot, OwnReport]):
 
         write_figures(report.summary, report.timing, folder)
         ways_png(report, folder / "ways.png")
-        curves_png(report, folder / "curves.png")
+        curves_png({**report.others, report.summary.coordination: report.log}, folder / "curves.png")
         if animate:
-            film(report, folder / "mission.gif")
+            film(report.log, report.image, folder / "mission.gif")
 
     def closing(self, summary: OwnSummary, folder: Path) -> list[str]:
         """Say how it went."""
