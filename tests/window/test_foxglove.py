@@ -17,7 +17,7 @@ from tests.support.windows import FRAME, SCENE, snapshot
 from vedette.agent.orders import LookThere, Order, Pause
 from vedette.errors import InputError
 from vedette.record.explore.mcap import ExploreMcapWriter
-from vedette.window.foxglove import CLICKED, ORDER, FoxgloveServer, order_in
+from vedette.window.foxglove import CLICKED, ORDER, TOKEN, FoxgloveServer, order_in
 
 pytest.importorskip("foxglove")
 STORE = get_typestore(Stores.ROS2_HUMBLE)
@@ -65,20 +65,31 @@ def test_the_map_comes_as_a_ros_message_and_an_order_goes_back() -> None:
             grid = STORE.deserialize_cdr(data_of(client, 7), chosen["schemaName"])
             assert (grid.info.height, grid.info.width) == FRAME.shape
             assert np.count_nonzero(np.asarray(grid.data) == 0) == 3 * (FRAME.rows - 1)
-            advertise = [{"id": 1, "topic": ORDER, "encoding": "json", "schemaName": "std_msgs/msg/String"}]
+            advertise = [
+                {"id": k, "topic": topic, "encoding": "json", "schemaName": "std_msgs/msg/String"}
+                for k, topic in ((1, ORDER), (2, TOKEN))
+            ]
             client.send(json.dumps({"op": "advertise", "channels": advertise}))
-            for text in (
-                b'{"data": "{\\"order\\": \\"pause\\", \\"robot\\": 2}"}',
-                b'{"order": "explode"}',
-                b"[",
-            ):
-                client.send(struct.pack("<BI", 1, 1) + text)
+            pause = b'{"data": "{\\"order\\": \\"pause\\", \\"robot\\": 2}"}'
+            token = json.dumps({"data": server.token}).encode()
+            told_in_turn = (
+                (1, pause, "refused: publish the token"),
+                (2, b'{"data": "guessed"}', "refused: the token is wrong"),
+                (2, b"[]", "refused: "),
+                (1, pause, "refused: publish the token"),
+                (2, token, "the token is right"),
+                (1, pause, "taken by scout"),
+                (1, b'{"order": "explode"}', "refused: "),
+                (1, b"[", "refused: "),
+            )
+            for channel, text, _ in told_in_turn:
+                client.send(struct.pack("<BI", 1, channel) + text)
             end = time.monotonic() + 10.0
-            while len(server.answers) < 3 and time.monotonic() < end:
+            while len(server.answers) < len(told_in_turn) and time.monotonic() < end:
                 time.sleep(0.02)
     assert given == [Pause(robot=2)]
-    assert server.answers[0] == "taken by scout"
-    assert all(answer.startswith("refused: ") for answer in server.answers[1:])
+    for answer, (*_, words) in zip(server.answers, told_in_turn, strict=True):
+        assert answer.startswith(words)
 
 
 def test_a_clicked_point_is_a_place_to_look_at() -> None:

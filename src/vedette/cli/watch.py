@@ -19,7 +19,7 @@ from vedette.net.transport import Operator
 from vedette.run.mission import RECORD
 from vedette.window.explore import recorded
 from vedette.window.export import Show, export_page
-from vedette.window.foxglove import LOOPBACK, FoxgloveServer
+from vedette.window.foxglove import LOOPBACK, TOKEN, FoxgloveServer
 from vedette.window.hub import Hub
 
 
@@ -70,7 +70,11 @@ def watch(
             if foxglove is not None:
                 server = FoxgloveServer(access.team, feed.give, onlooker.recorder, foxglove)
                 served = more.enter_context(server)
-                click.echo(f"Foxglove connects to ws://{LOOPBACK}:{served.port}", err=True)
+                click.echo(
+                    f"Foxglove connects to ws://{LOOPBACK}:{served.port}; to give orders publish on {TOKEN} "
+                    f'{{"data": "{served.token}"}}',
+                    err=True,
+                )
             feed.follow(hub, ended, served)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import secrets
 from collections.abc import Callable
 from types import TracebackType
 from typing import Any, Self, cast
@@ -14,7 +15,7 @@ from vedette.record.log import Sink
 from vedette.record.mcap import Medium, Place
 from vedette.scenario import as_scenario
 
-ORDER, CLICKED = "/order", "/clicked_point"  # topics that Foxglove may publish on
+ORDER, CLICKED, TOKEN = "/order", "/clicked_point", "/token"  # topics that Foxglove may publish on
 MOST = 4096  # bytes of what it publishes
 LOOPBACK, PORT = "127.0.0.1", 8765
 
@@ -50,6 +51,8 @@ class FoxgloveServer:
             raise InputError("foxglove-sdk is missing: pip install 'vedette[foxglove]'") from None
         self._sdk, self._name, self._give, self._port = foxglove, name, give, port
         self._recorder = recorder
+        self.token = secrets.token_urlsafe(18)
+        self._trusted = set[int]()  # clients that have told the token
         self._channels: list[Any] = []
         self._by_topic: dict[str, int] = {}
         self._schemas: list[Any] = []
@@ -123,16 +126,33 @@ class FoxgloveServer:
         self._topics.pop((client.id, client_channel_id), None)
 
     def on_message_data(self, client: Any, client_channel_id: int, data: bytes) -> None:
-        """Take an order that a client publishes; one that makes no sense is answered, and changes nothing."""
+        """Take an order that a client publishes; one that makes no sense is answered, and changes nothing.
+
+        The SDK neither asks who connects nor tells whence: a page in this computer's browser can. So orders
+        count of clients alone that have told the token, which stands where the window's address does.
+        """
         topic = self._topics.get((client.id, client_channel_id))
-        if self._give is None or topic not in (ORDER, CLICKED) or len(data) > MOST:
+        if self._give is None or topic not in (ORDER, CLICKED, TOKEN) or len(data) > MOST:
             return
         try:
-            answer = self._give(order_in(topic, data))
+            if topic == TOKEN:
+                answer = self._trust(client.id, data)
+            elif client.id not in self._trusted:
+                answer = f"refused: publish the token on {TOKEN} first, as a std_msgs/String"
+            else:
+                answer = self._give(order_in(topic, data))
         except (InputError, ValueError, TypeError, KeyError) as error:
             answer = f"refused: {error}"
         self.answers.append(answer)
         self._server.publish_status(answer, self._sdk.StatusLevel.Info)
+
+    def _trust(self, client: int, data: bytes) -> str:
+        """Take a client's word for the token."""
+        told = msgspec.json.decode(data)["data"]
+        if not secrets.compare_digest(str(told).encode(), self.token.encode()):
+            return "refused: the token is wrong"
+        self._trusted.add(client)
+        return "the token is right: orders are taken"
 
     def on_subscribe(self, client: Any, channel: Any) -> None:
         """Send the map anew to whoever begins to look."""
