@@ -37,8 +37,8 @@ from vedette.record.folder import OutputFolder
 from vedette.record.monitor.log import MonitorScene
 from vedette.run import DomainMission, Search, Track
 from vedette.sim.domains import domain_of
-from vedette.window.explore import recorded
 from vedette.window.flights import search_picture, track_picture
+from vedette.window.recorded import recorded
 
 OWN = "vedette.missions.own.skeleton:Skeleton"
 TIMES = RoundTimes(0.02, 0.03)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import click
 
@@ -13,13 +13,12 @@ from vedette.errors import InputError
 from vedette.record.explore.log import ExploreLog
 from vedette.record.explore.read import read_scene, read_snapshots
 from vedette.record.explore.summary import ExploreSummary
-from vedette.record.flown import scene_of
 from vedette.record.folder import OutputFolder
-from vedette.record.redrawn import Draw, flight_pictures
 from vedette.run.mission import RECORD
 from vedette.run.saved import read_figures, read_summary
 
 FILM = "mission.gif"
+Draw: TypeAlias = Callable[[Path], None]  # writes a picture there
 
 
 @click.command()
@@ -33,6 +32,9 @@ def plot(run: Path, out: Path | None, force: bool, animate: bool) -> None:
     Pictures that lack what is not recorded, as the truth of a field or the other ways of coordination, are
     called NAME-recorded.png. Exit status: 0 drawn, 2 bad input.
     """
+    from vedette.record.flown import scene_of  # takes a second to import, as drawing does
+    from vedette.record.redrawn import flight_pictures
+
     figures, record = read_figures(run), run / RECORD
     flown = scene_of(record)
     draws = _exploration(run, record, figures) if flown is None else flight_pictures(record, flown, figures)

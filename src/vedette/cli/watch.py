@@ -17,7 +17,6 @@ from vedette.net.feed import TeamFeed
 from vedette.net.onlookers import onlooker_of
 from vedette.net.transport import Operator
 from vedette.run.mission import RECORD
-from vedette.window.explore import recorded
 from vedette.window.export import Show, export_page
 from vedette.window.foxglove import LOOPBACK, TOKEN, FoxgloveServer
 from vedette.window.hub import Hub
@@ -47,6 +46,8 @@ def watch(
     The address that is printed has a token in it, without which nothing is shown. Of a team whose agents
     listen where the CONFIG.yaml files say, the page gives orders. Exit status: 0, or 2 for bad input.
     """
+    from vedette.window.recorded import recorded  # who asks for help does not wait for it
+
     record = _record(sources)
     if export is not None:
         if record is None:

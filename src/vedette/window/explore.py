@@ -1,19 +1,15 @@
-"""Missions in the operator's window: a sink that shows what it is given, no faster than asked; a record."""
+"""Missions in the operator's window: a sink that shows what it is given, no faster than asked."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
 from math import inf
-from pathlib import Path
 from typing import Generic, TypeVar
 
-from vedette.record.explore.read import read_scene, read_snapshots
-from vedette.record.flown import scene_of, snapshots_of
 from vedette.record.log import Timed
-from vedette.window.declared import pictures
 from vedette.window.hub import Hub
-from vedette.window.picture import Picture, picture
+from vedette.window.picture import Picture
 
 SnapshotT = TypeVar("SnapshotT", bound=Timed)
 
@@ -48,22 +44,3 @@ class Shower(Generic[SnapshotT]):
         if (early := self._began + snapshot.t / self._pace - now) > 0.0:
             self._sleep(early)
         self._hub.show(self._draw(snapshot))
-
-
-def recorded(path: Path) -> Hub:
-    """Return a hub with all that a mission's record holds.
-
-    Raises:
-        InputError: it cannot be read, or is of no mission that can be shown.
-    """
-    flown = scene_of(path)
-    if flown is not None:
-        hub, draw = Hub(flown.name, live=False), pictures(flown)
-        for snapshot in snapshots_of(path, flown):
-            hub.show(draw(snapshot))
-        return hub
-    scene = read_scene(path)
-    hub = Hub(scene.name, live=False)
-    for each in read_snapshots(path, scene):
-        hub.show(picture(scene, each))
-    return hub
