@@ -11,6 +11,8 @@ import pytest
 
 from tests.support.notaries import certified
 from vedette.fusion import ReplicatedEvidence
+from vedette.fusion.contributors import MOST_STARTS
+from vedette.fusion.link import MOST_STREAMS, Greeting, Payload
 from vedette.fusion.particulars import Capabilities, Particulars, encode
 from vedette.fusion.signed import SignedEvidence
 from vedette.fusion.snapshots import Delta
@@ -258,3 +260,59 @@ def test_a_revoked_robot_is_nobodys_errand_any_more(clock: Clock) -> None:
     exchange({i: team[i] for i in (1, 2)}, [(1, 2)])
     assert team[2].contributors() == 2
     assert not team[2].complaints
+
+
+def starts_of(liar: int, boots: range, clock: Clock) -> list[SignedEvidence]:
+    """Many processes of one robot, each with something to tell."""
+    made = [holder(liar, clock, boot) for boot in boots]
+    for each in made:
+        saw(each, np.full(SHAPE, -20))
+    return made
+
+
+def test_a_robot_of_more_starts_than_there_can_be_is_out_for_all_and_keeps_nobodys_evidence_back(
+    clock: Clock,
+) -> None:
+    """Its neighbour once passed on more of them than others took, who took nothing of that neighbour then."""
+    rng = np.random.default_rng(5)
+    team = {i: holder(i, clock) for i in range(3)}
+    for i in team:
+        saw(team[i], random_grid(rng))
+    for each in starts_of(3, range(1, 2 * MOST_STARTS + 10), clock):
+        each.set_neighbours([0])
+        team[0].set_neighbours([1, 3])
+        greeting = team[0].outgoing(3, 0.0)
+        assert greeting is not None
+        each.receive(0, greeting, 0.0)
+        payload = each.outgoing(0, 0.0)
+        assert payload is not None
+        team[0].receive(3, payload, 0.0)
+    exchange(team, [(0, 1), (1, 2)])
+    assert [evidence.out for evidence in team.values()] == [{3}] * 3
+    assert len({evidence.digest for evidence in team.values()}) == 1
+    assert all("started" in evidence.complaints[3] for evidence in team.values())
+    assert {key for key in team[2]._contributors.known() if key[0] < 3} == {(0, 1), (1, 1), (2, 1)}
+    assert len(team[0]._contributors.copies) <= 3 + 2 * MOST_STARTS
+
+
+def test_versions_that_a_robot_has_signed_keep_nobody_from_who_passes_them_on(clock: Clock) -> None:
+    """Who raised its own step by step was known to those that were there, and they to no newcomer."""
+    team = {i: holder(i, clock) for i in range(3)}
+    for i in team:
+        saw(team[i], np.full(SHAPE, -20 if i else 20))
+    for k in range(4):
+        team[2]._contributors.own.overtake((1 << 62) + k * (1 << 32))
+        clock.now += 2.0
+        saw(team[2], np.full(SHAPE, -20 + 40 * (k % 2)))
+        exchange({i: team[i] for i in (1, 2)}, [(1, 2)], rounds=3)
+    exchange({i: team[i] for i in (0, 1)}, [(0, 1)])
+    assert team[0]._contributors.known() == team[1]._contributors.known()
+    assert team[0].contributors() == 3
+
+
+def test_no_payload_tells_of_more_versions_than_anybody_can_hold(clock: Clock) -> None:
+    evidence = holder(0, clock)
+    evidence.set_neighbours([1])
+    have = {(1, boot): 1 for boot in range(MOST_STREAMS + 1)}
+    with pytest.raises(ValueError, match="out of range"):
+        evidence.receive(1, evidence._codec.encode(Payload(1, Greeting(-1, True), have)), 0.0)

@@ -12,6 +12,7 @@ from msgspec import structs
 from tests.support.notaries import certified
 from vedette.fusion import link
 from vedette.fusion.contradictions import Histories
+from vedette.fusion.contributors import MOST_STARTS
 from vedette.fusion.proofs import check_histories
 from vedette.fusion.steps import ReplicatedSteps, SignedSteps, Sparse, SparseIntegers, sealed
 from vedette.fusion.steps.sealed import SealedEntries
@@ -179,3 +180,20 @@ def test_a_robot_that_starts_anew_gets_its_own_earlier_evidence_back() -> None:
     exchange({0: again, 1: team[1]}, start=100.0)
     assert totals(team[1], 2) == totals(again, 2)
     assert team[1].contributors() == 2
+
+
+def test_nothing_counts_of_a_robot_of_more_starts_than_there_can_be() -> None:
+    team = chain(3)
+    team[0].publish(0, element(5))
+    for boot in range(1, MOST_STARTS + 3):
+        liar = robot(3, boot)
+        liar.set_neighbours([2])
+        team[2].set_neighbours([1, 3])
+        liar.publish(0, element(100, 4))
+        pass_on({2: team[2], 3: liar}, 2, 3, 0.0)
+        pass_on({2: team[2], 3: liar}, 3, 2, 0.0)
+    exchange(team)
+    assert [each.out for each in team.values()] == [{3}] * 3
+    assert all(ELEMENTS.dense(each.total(0))[3:5].tolist() == [5, 0] for each in team.values())
+    assert len({each.digest for each in team.values()}) == 1
+    assert all("started" in each.complaints[3] for each in team.values())

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette import wire
-from vedette.fusion.link import MOST_SECTIONS, Greeting, Key, Payload
+from vedette.fusion.link import MOST_SECTIONS, MOST_STREAMS, Greeting, Key, Payload
 from vedette.fusion.packing import MapPacking, PackedBody
 from vedette.fusion.planes import from_planes, planes
 from vedette.fusion.seals import MOST_CERTIFICATE, SIGNATURE_BYTES, Seal
@@ -76,7 +76,7 @@ class EvidenceCodec(Generic[ValueT]):
             raise ValueError(f"fusion payload: unknown format byte {flags}")
         own = head.number()
         greeting = Greeting(head.number() - 1, bool(flags & _WANTS)) if flags & _GREETING else None
-        have = {head.key(own): head.number() for _ in range(head.number())}
+        have = {head.key(own): head.number() for _ in range(head.number(MOST_STREAMS + 1))}
         if not flags & _BODY:
             if head.rest():
                 raise ValueError("fusion payload: bytes are left over")

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Sequence
 from functools import partial
 from typing import Any, Generic, Protocol, TypeVar
 
 from vedette.fusion.link import Boots, EvidenceLink, Key, NewsT, Payload, check_boot
 
 MOST_CONTRIBUTORS = 1024
-MOST_STARTS = 64  # of one robot, that others than itself tell of
+MOST_STARTS = 64  # of one robot; where they are signed, whoever makes more is not believed
 HALF, STEP = 1 << 62, 1 << 32  # a version may be raised to the one, and beyond it by the other, at once
 
 News_co = TypeVar("News_co", covariant=True)
@@ -118,15 +119,12 @@ class Contributors(Generic[CopyT, NewsT]):
         Raises ValueError, and changes nothing, if the payload claims what cannot be.
         """
         keys = {key for key, _ in payload.sections}
-        self._check_versions(payload)
         if len(keys) < len(payload.sections):
             raise ValueError("fusion payload: two sections of one stream")
         if len(self.copies) + len(keys - self.copies.keys()) > MOST_CONTRIBUTORS:
             raise ValueError(f"fusion payload: more than {MOST_CONTRIBUTORS} contributors")
-        for robot, _ in keys - self.copies.keys():
-            starts = sum(robot == other for other, _ in self.copies)
-            if robot != neighbour and starts >= MOST_STARTS:
-                raise ValueError(f"fusion payload: more than {MOST_STARTS} starts of robot {robot}")
+        if self._sealing is None:
+            self._check_told(neighbour, payload)
         told = payload.told_of(self.key)
         if self._sealing is None and told > self.own.version and now >= self._overtook + self._resend_after:
             self.own.overtake(told)
@@ -139,14 +137,49 @@ class Contributors(Generic[CopyT, NewsT]):
         copies = {key: self.copies.get(key) or self._blank() for key, _ in news}
         sealing = self._sealing
         if sealing is not None:
-            news = [(key, more) for key, more in news if sealing.admits(neighbour, key, copies[key], more)]
+            room = self._with_room(copies)
+            news = [
+                (key, more)
+                for key, more in news
+                if key in room and sealing.admits(neighbour, key, copies[key], more)
+            ]
         self.copies |= {key: copies[key] for key, _ in news}
         return news
 
-    def _check_versions(self, payload: Payload[NewsT]) -> None:
-        """Raise ValueError for versions from which a contributor could not go on for long."""
+    def _check_told(self, neighbour: int, payload: Payload[NewsT]) -> None:
+        """Raise ValueError for names, and versions, that anybody may have made up for others to carry.
+
+        Not where names are signed: who passes on what its maker has signed is not at fault, and all else that
+        it tells would be lost with it.
+        """
         held = self.known()
         told = [*payload.have.items(), *((key, news.version) for key, news in payload.sections)]
         for key, version in told:
             if version > max(held.get(key, 0), HALF) + STEP:
                 raise ValueError(f"fusion payload: version {version} is far beyond any that there can be")
+        starts = Counter(robot for robot, _ in self.copies)
+        for key, _ in payload.sections:
+            if key not in self.copies and key[0] != neighbour and starts[key[0]] >= MOST_STARTS:
+                raise ValueError(f"fusion payload: more than {MOST_STARTS} starts of robot {key[0]}")
+
+    @property
+    def restless(self) -> frozenset[int]:
+        """Robots of which there are more starts than there can be: the same for all who hold them."""
+        starts = Counter(robot for robot, _ in self.copies)
+        return frozenset(robot for robot, number in starts.items() if number > MOST_STARTS)
+
+    @property
+    def complaints(self) -> dict[int, str]:
+        """What is wrong with whom, by robot."""
+        return dict.fromkeys(
+            self.restless, f"it has started more than {MOST_STARTS} times: nothing of it counts"
+        )
+
+    def _with_room(self, keys: Iterable[Key]) -> set[Key]:
+        """Return those of which there is room for what they tell: twice as many starts show enough."""
+        starts, room = Counter(robot for robot, _ in self.copies), set[Key]()
+        for key in keys:
+            starts[key[0]] += key not in self.copies
+            if key in self.copies or starts[key[0]] <= 2 * MOST_STARTS:
+                room.add(key)
+        return room

@@ -109,7 +109,7 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
     def complaints(self) -> dict[int, str]:
         """What is wrong with whom, by robot."""
         alone = "its evidence contradicts that of two others or more: the map and the plans leave it out"
-        return dict.fromkeys(self.out, alone) | self.standing.said
+        return dict.fromkeys(self.out, alone) | self._contributors.complaints | self.standing.said
 
     def heed(self) -> None:
         """Take up that somebody has gone."""
@@ -211,7 +211,7 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
         # nobody alone makes it late: the time that two robots have told, at least
         now = sorted(said.values())[-2] if len(said) > 1 else 0
         times = {key: copy.times for key, copy in copies.items()}
-        gone = frozenset(self.standing.gone)
+        gone = frozenset(self.standing.gone) | self._contributors.restless
         self.out = gone | self._overruled(self._trust.out(times, now, gone))
         self.unsettled = self.out != gone | self._overruled(self._trust.out(times, now + STANDS, gone))
 

@@ -55,7 +55,7 @@ class SignedSteps(SharedLogs[E, SealedLog, SealedEntries]):
     @property
     def complaints(self) -> dict[int, str]:
         """What is wrong with whom, by robot."""
-        return self.standing.said
+        return self._contributors.complaints | self.standing.said
 
     @property
     def digest(self) -> int:
@@ -64,7 +64,7 @@ class SignedSteps(SharedLogs[E, SealedLog, SealedEntries]):
 
     def heed(self) -> None:
         """Take what somebody has signed who is gone out of the totals."""
-        before, self.out = self.out, frozenset(self.standing.gone)
+        before, self.out = self.out, frozenset(self.standing.gone) | self._contributors.restless
         for (robot, _), log in self._contributors.copies.items():
             if robot in self.out - before:
                 for step, data, _ in unpack(log.data(0, log.version), self._elements.most_bytes):
@@ -83,6 +83,8 @@ class SignedSteps(SharedLogs[E, SealedLog, SealedEntries]):
 
     def _taken(self, key: Key, news: SealedEntries) -> None:
         self._contributors.copies[key].put_seal(news.seal)
+        if key[0] not in self.out and key[0] in self._contributors.restless:
+            self.heed()
 
     def _encode(self, payload: Payload[SealedEntries]) -> bytes:
         sections = [(key, entries.packed()) for key, entries in payload.sections]
