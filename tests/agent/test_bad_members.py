@@ -10,7 +10,7 @@ from tests.support.mutants import CASES, mutants_of
 SEEDS = 4
 ALL, BATCH = 124, 10
 MUTANTS = 40
-TWO_HUNG, WORTH_TOLD = 100223, 100308  # seeds
+TWO_HUNG, WORTH_TOLD = 100223, 13614  # seeds
 
 
 @pytest.mark.parametrize("mode", MODES)

@@ -17,7 +17,7 @@ import numpy as np
 from tests.support import misbehaving
 from tests.support.faulty_team import FaultyTeam, Plan
 from tests.support.faulty_world import FRAME, Sites, check
-from tests.support.mutants import Mutant, mutants_of
+from tests.support.mutants import BEACONS, FROM_ABOVE, FROM_BELOW, SCHEMES, Mutant, mutants_of
 from tests.support.overlay_network import random_graph
 from vedette.agent import Agent, NetworkedAgent
 from vedette.outcome import Outcome
@@ -30,6 +30,9 @@ MODES: Mapping[str, Make] = {
     "slow": lambda rng: partial(misbehaving.Slow, takes=misbehaving.delay_of(rng)),
     "hung": lambda rng: partial(misbehaving.Slow, takes=misbehaving.NEVER),
     "mute": lambda rng: misbehaving.Mute,
+    "fickle": lambda rng: misbehaving.Fickle,
+    "endless": lambda rng: misbehaving.Endless,
+    "reborn": lambda rng: misbehaving.Reborn,
     "truncating": lambda rng: misbehaving.Truncating,
     "wrong map": lambda rng: misbehaving.Disagreeing,
     "echo": lambda rng: misbehaving.Echoing,
@@ -39,18 +42,33 @@ MODES: Mapping[str, Make] = {
 }
 
 
-LIES = frozenset({"truncating", "mates", "mutant"})  # the others cannot tell what is so
+LIES = frozenset({"truncating", "endless", "mates", "mutant"})  # the others cannot tell what is so
 
 
 class BadTeam(FaultyTeam):
     """A team some of whose members misbehave; the laws are for the others."""
 
     def __init__(
-        self, plan: Plan, bad: Mapping[int, Program], suffers: bool, forged: bool, trace: bool = False
+        self,
+        plan: Plan,
+        bad: Mapping[int, Program],
+        suffers: bool,
+        forged: bool,
+        beacons: bool = False,
+        trace: bool = False,
     ) -> None:
-        """Bring the team to life; ``bad``: the programs of those that misbehave."""
-        self.bad, self.suffers, self.forged = bad, suffers, forged
+        """Bring the team to life; ``bad``: the programs of those that misbehave.
+
+        ``beacons``: all say where they are, which costs time, and matters here for what is said then alone.
+        """
+        self.bad, self.suffers, self.forged, self.beacons = bad, suffers, forged, beacons
         super().__init__(plan, trace)
+
+    def _spawn(self, robot: int, boot: int) -> Agent:
+        agent = super()._spawn(robot, boot)
+        if self.beacons:
+            agent.due["beacon"] = 0.0
+        return agent
 
     def _program(self, i: int, agent: Agent, now: float, lease: float) -> NetworkedAgent:
         if i in self.bad:
@@ -78,17 +96,25 @@ def plan_of(mode: str, seed: int) -> tuple[Plan, dict[int, Program]]:
     plan = replace(Plan.of(seed), edges=edges, sites=sites, places=places, lease=3.0, faults=Schedule(()))
     if mode == "mutant":
         (case,) = mutants_of([seed])
-        bad = bad[:1]
+        scheme = str(rng.choice(SCHEMES.get(case.message, (plan.scheme,))))
+        plan, bad = replace(plan, scheme=scheme), [_sayer(case.message, n, bad[0])]
         others = [i for i in range(n) if i not in bad]
         return plan, {bad[0]: partial(Mutant, case=case, another=int(rng.choice(others)))}
     return plan, {i: misbehaving.Dead if mode == "dead" else MODES[mode](rng) for i in bad}
 
 
+def _sayer(message: str, robots: int, else_: int) -> int:
+    """Return a member that has cause to say such messages: the highest number becomes the root."""
+    if message in FROM_ABOVE:
+        return robots - 1
+    return else_ % (robots - 1) if message in FROM_BELOW else else_
+
+
 def play(mode: str, seed: int, trace: bool = False) -> BadTeam:
     """Play one team to its end; a failure names the command that replays it."""
     plan, bad = plan_of(mode, seed)
-    forged = mode == "mutant" and mutants_of([seed])[0].message == "Evidence"
-    team = BadTeam(plan, bad, mode in LIES, forged, trace)
+    about = mutants_of([seed])[0].message if mode == "mutant" else ""
+    team = BadTeam(plan, bad, mode in LIES, about == "Evidence", about in BEACONS, trace)
     try:
         outcome = team.run(lambda: None)
         check(outcome is Outcome.COMPLETE, "the mission does not end", outcome)

@@ -17,9 +17,11 @@ from vedette.agent.effects import Job, Send, TrafficKind
 from vedette.agent.events import Event, JobDone
 from vedette.agent.messages import Beacon, Negotiate
 from vedette.agent.networked import BEACON, HELLO, Output
+from vedette.negotiation.messages import Joined, Settled, Stop, Token
 
 NEVER = float("inf")
-EPOCH, ECHO = 4, -1  # fields of a hello
+BOOT, EPOCH, ECHO = 1, 4, -1  # fields of a hello
+LIFE = 20  # hellos
 BEACONS_EVERY, BEACONS_AT_ONCE = 0.1, 40  # [s]
 SECOND_AFTER = 5.0  # is a robot's second process started [s]
 ROUNDS = 3  # that a member whose process ends has taken part in
@@ -121,6 +123,31 @@ class Mute(NetworkedAgent):
         return [] if send.traffic is TrafficKind.NEGOTIATION else super()._say(send, now)
 
 
+class Fickle(NetworkedAgent):
+    """Takes part in every other round."""
+
+    def _say(self, send: Send, now: float) -> list[Output]:
+        return [] if getattr(messages.decode(send.payload), "sequence", 0) % 2 else super()._say(send, now)
+
+
+class Endless(NetworkedAgent):
+    """Counts each round anew, and lets none come to its end by its word."""
+
+    def _say(self, send: Send, now: float) -> list[Output]:
+        message = messages.decode(send.payload)
+        if isinstance(message, Negotiate):
+            said = msgspec.msgpack.decode(message.data)
+            if said[0] in (Stop.__struct_config__.tag, Settled.__struct_config__.tag):
+                return []
+            if said[0] == Token.__struct_config__.tag:
+                said[2][:2] = 0, 0  # turns, quiet
+            if said[0] == Joined.__struct_config__.tag:
+                said[6] = 1  # moved
+            changed = msgspec.structs.replace(message, data=msgspec.msgpack.encode(said))
+            send = replace(send, payload=messages.encode(changed))
+        return super()._say(send, now)
+
+
 class Ending(NetworkedAgent):
     """Ends its own process by a signal in the middle of a round, when it has decided a few times."""
 
@@ -158,6 +185,18 @@ class Hailing(NetworkedAgent, ABC):
     @abstractmethod
     def _change(self, hello: list[Any]) -> None:
         """Change a hello in place."""
+
+
+class Reborn(Hailing):
+    """Says every few seconds that it has just started."""
+
+    def __init__(self, agent: Agent, now: float, **how: Any) -> None:
+        super().__init__(agent, now, **how)
+        self._said = 0
+
+    def _change(self, hello: list[Any]) -> None:
+        self._said += 1
+        hello[BOOT] += self._said // LIFE
 
 
 class Echoing(Hailing):

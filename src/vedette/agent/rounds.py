@@ -42,6 +42,7 @@ class Decision:
     value: float  # of the team's choice: as this robot sees it, if it sees all of it
     approximate: bool  # its belief was not the root's, or it decided without the team or its own say
     blocked: bool  # this robot planned with its mates in the way
+    alone: bool = False  # nobody else had part in the round, though there are others
 
 
 @dataclass
@@ -262,7 +263,8 @@ class Rounds:
         self._end(now)
         self.team_impact = round_.team_seen
         value = self._opinion.of(outcome.value, self._seen(round_, round_.participant))
-        self.decided(Decision(now, value, round_.approximate or not took_part, round_.blocked))
+        approximate = round_.approximate or not took_part
+        self.decided(Decision(now, value, approximate, round_.blocked, lonely))
         if lonely:
             return effects
         self._wanted |= not took_part

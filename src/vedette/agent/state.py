@@ -160,9 +160,10 @@ class Agent:
         return self.behaviour.ending
 
     def _decided(self, decision: Decision) -> None:
-        exact = not decision.approximate and not decision.blocked
-        quiet = exact and self.mission.nothing_left(decision.value, decision.time)
-        self.quiet = self.quiet + 1 if quiet else 0
+        """Count rounds with nothing to gain; one alone with nothing to gain says nothing of the team's."""
+        exact = decision.alone or not decision.approximate
+        quiet = exact and not decision.blocked and self.mission.nothing_left(decision.value, decision.time)
+        self.quiet = self.quiet + (not decision.alone) if quiet else 0
         self.news = True
 
     def is_due(self, what: str, period: float, now: float) -> bool:
