@@ -28,6 +28,7 @@ from vedette.sim.worlds.by_name import generated
 from vedette.team import PlatformSpec
 
 ROBOTS = 3
+SIZE = 20.0, 15.0  # of the offices [m]
 LEVEL = 0.9  # of what can be seen of the quarter, and of the rest
 EARLIER, LATER = 0.80, 1.05  # asked of the median ratios to the mission without the order
 
@@ -101,7 +102,7 @@ def farthest_quarter(world: World, starts: NDArray[np.float64]) -> tuple[tuple[f
 
 def run_errand(case: Errand, commit: str) -> ErrandResult:
     """Run one mission to its end."""
-    world = generated("office", case.seed)
+    world = generated("office", case.seed, *SIZE)
     specs = [PlatformSpec(name=f"robot-{number}") for number in range(1, ROBOTS + 1)]
     plain = prepare(world, specs, ExploreSetup(seed=case.seed))
     quarter = Priority(area="quarter", corners=farthest_quarter(world, plain.starts))

@@ -104,6 +104,8 @@ def test_where_90_percent_are_known_already_nobody_tells_when_they_will_be() -> 
         ("end", "60 s (50 to 70)"),
     ]
     assert dict(outlook(expected, 29.0))["90 % known"] == "20 s (10 to 30)"
+    assert dict(outlook(expected, 29.0, 0.89))["90 % known"] == "29 s (29 to 30)"  # not yet, that is certain
+    assert dict(outlook(expected, 12.0, 0.91))["90 % known"] == "passed"
 
 
 @pytest.mark.slow

@@ -131,7 +131,7 @@ def freeze(
         turn > 0.0 and mean_promise(crop, frame.resolution, frontiers, counts, unknown, factor) < turn
     )
     areas = frontier_areas(window, cells, starts, hidden, return_price)
-    areas += pull(window, crop, (cells, starts), priorities)
+    areas += pull(window, crop, (cells, starts), priorities, factor)
     if gathering and areas.any():
         local += LN2 / frame.resolution**2 * spread_behind(crop, cells, starts, areas, factor)
     first = (rows.start // factor, cols.start // factor)

@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from vedette.missions.explore.expected import Expected, Span
 from vedette.record.explore.log import ExploreSnapshot
 
+KNOWN_SHARE = 0.9
+
 
 def caption(snapshot: ExploreSnapshot) -> str:
     """Return what stands over a picture of a snapshot."""
@@ -15,18 +17,24 @@ def caption(snapshot: ExploreSnapshot) -> str:
     return f"{snapshot.t:.0f} s    {known}"
 
 
-def outlook(expected: Expected, now: float) -> Iterator[tuple[str, str]]:
-    """Yield what is expected at a time [s], name and value: four in five come to lie in each span."""
+def outlook(expected: Expected, now: float, share: float | None = None) -> Iterator[tuple[str, str]]:
+    """Yield what is expected at a time [s], name and value: four in five come to lie in each span.
+
+    ``share``: of the ground that is known, where somebody knows how much there is.
+    """
     known, ended = expected.known, expected.ended
-    yield (
-        "90 % known",
-        "passed, most likely" if known.high < now else f"{known.middle:.0f} s ({_span(known)})",
-    )
-    yield "end", f"{ended.middle:.0f} s ({_span(ended)})"
+    if share is not None and share < KNOWN_SHARE:
+        yield "90 % known", _span(known, now)
+    elif share is None and known.high >= now:
+        yield "90 % known", _span(known, 0.0)
+    else:
+        yield "90 % known", "passed, most likely" if share is None else "passed"
+    yield "end", _span(ended, now)
 
 
-def _span(span: Span) -> str:
-    return f"{span.low:.0f} to {span.high:.0f}"
+def _span(span: Span, least: float) -> str:
+    low, middle, high = (max(each, least) for each in (span.low, span.middle, span.high))
+    return f"{middle:.0f} s ({low:.0f} to {high:.0f})"
 
 
 def progress(snapshot: ExploreSnapshot) -> Iterator[tuple[str, str]]:
@@ -40,4 +48,4 @@ def progress(snapshot: ExploreSnapshot) -> Iterator[tuple[str, str]]:
         if snapshot.frontiers is not None:
             yield "frontiers left", str(snapshot.frontiers)
     if snapshot.expected is not None:
-        yield from outlook(snapshot.expected, snapshot.t)
+        yield from outlook(snapshot.expected, snapshot.t, snapshot.coverage)
