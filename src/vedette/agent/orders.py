@@ -103,7 +103,7 @@ class Priority(_OfArea, frozen=True, kw_only=True, tag="priority"):
     """What is in there is worth more."""
 
     corners: Corners
-    factor: Annotated[float, Meta(ge=1.0, le=100.0)] = 5.0
+    factor: Annotated[float, Meta(ge=1.0, le=100.0)] = 3.0
 
 
 class Remove(_OfArea, frozen=True, kw_only=True, tag="remove"):

@@ -12,7 +12,7 @@ from vedette.domains.mapping.frontier_worth import middles
 from vedette.maps import UNKNOWN, GridFrame
 from vedette.maps.area import Area
 
-PULL = 6.0  # area that the frontiers stand for as ways to a priority area, all together, by its factor [m^2]
+PULL = 10.0  # area that the frontiers stand for as ways to a priority area, all together, by its factor [m^2]
 FADING = 3.0  # a frontier so much farther from it than another stands for 1 / e of what that does [m]
 REACHED = 0.5  # of an area's cells are known: whoever is there finds its own way
 
