@@ -15,6 +15,7 @@ from vedette.kernels.tiles import SIDE, TiledGrid, Tiling
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
 from vedette.missions.explore.evidence import CLAMP, GAIN_HIT, GAIN_MISS, NUDGE
 from vedette.missions.explore.own_map import OwnMap
+from vedette.missions.explore.passers_by import PassersBy
 from vedette.sim.odometry import Odometry, laid_at, seen_from
 from vedette.sim.pose_graph import PoseGraph
 from vedette.team import PlatformSpec
@@ -55,14 +56,18 @@ class Slam:
     _ways: list[float] = field(default_factory=list)  # driven up to each of them [m]
     _scans: list[_Kept] = field(default_factory=list)  # one from each
     _closed: float = 0.0  # way at the last closure [m]
+    _ground: GridFrame = field(init=False)  # of the map
     _drawn: TiledGrid[np.int8] = field(init=False)
+    _passers_by: PassersBy = field(init=False)  # who moves is kept out of the map
     _told: float = -AGAIN  # when the map was told last [s]
 
     def __post_init__(self) -> None:
         margin = math.ceil(AROUND / self.frame.resolution)
-        self._margin = margin
-        self._tiling = Tiling(self.frame.rows + 2 * margin, self.frame.cols + 2 * margin)
+        rows, cols = (slice(-margin, count + margin) for count in self.frame.shape)
+        self._ground = self.frame.window(rows, cols)
+        self._tiling = Tiling(*self._ground.shape)
         self._drawn = TiledGrid(self._tiling, np.int8)
+        self._passers_by = PassersBy(self._ground, self.spec.radius)
         self._odometry = Odometry(self.spec.drift, self.rng)
         self._true = self.start.copy()
         self._graph = PoseGraph(self.start[None].copy())
@@ -79,18 +84,29 @@ class Slam:
 
     def look(self, scan: Scan, now: float, arrived: bool) -> OwnMap | None:
         """Keep a scan, if it is time or the robot has just arrived, and return the map if there is news."""
+        kept = self._sifted(scan, now)
         moved = self._odometry.way >= MOVED[0] or self._odometry.turned >= MOVED[1] or not self._scans
         fresh = moved and (arrived or now >= self._told + PERIOD - 1e-9)
         if fresh:
-            self._keep(scan)
+            self._keep(kept)
         if not fresh and now < self._told + AGAIN:
             return None
         self._told = now
         return self._own_map()
 
-    def _keep(self, scan: Scan) -> None:
+    def _sifted(self, scan: Scan, now: float) -> _Kept:
+        """Return a scan without those who move before the lidar."""
+        says = ~np.isnan(scan.ranges)
+        angles, told = scan.angles[says], scan.ranges[says]
+        ranges, hits = np.minimum(told, self.spec.range), told < self.spec.range
+        x, y, heading = self.place.tolist()
+        place = x - self._ground.origin_x, y - self._ground.origin_y
+        self._passers_by.sift(self._drawn, place, angles, ranges, hits, NUDGE * self._ground.resolution, now)
+        return _Kept(angles - heading, ranges, hits)
+
+    def _keep(self, scan: _Kept) -> None:
         """Put the place of a scan on the graph, and the scan into the map."""
-        odometry, here = self._odometry, self.place
+        odometry = self._odometry
         if self._scans:
             way, turned = odometry.way, odometry.turned
             deviation = self.spec.drift * np.sqrt((way, way, way + turned))
@@ -98,9 +114,7 @@ class Slam:
         self._ways.append(odometry.way + (self._ways[-1] if self._ways else 0.0))
         odometry.reset()
         self._truths.append(self._true)
-        says = ~np.isnan(scan.ranges)
-        angles, told = scan.angles[says] - here[2], scan.ranges[says]
-        self._scans.append(_Kept(angles, np.minimum(told, self.spec.range), told < self.spec.range))
+        self._scans.append(scan)
         if self._close():
             self._draw_anew()
         else:
@@ -136,15 +150,10 @@ class Slam:
 
     # -- the map ----------------------------------------------------------------------------------------
 
-    @property
-    def _corner(self) -> tuple[float, float]:
-        beside = self._margin * self.frame.resolution
-        return self.frame.origin_x - beside, self.frame.origin_y - beside
-
     def _draw(self, number: int) -> None:
         """Lay one kept scan into the map, from where it was taken as far as is known now."""
         (x, y, heading), (angles, ranges, hits) = self._graph.places[number].tolist(), self._scans[number]
-        side, (left, low) = self.frame.resolution, self._corner
+        side, left, low = self._ground.resolution, self._ground.origin_x, self._ground.origin_y
         gains = GAIN_HIT, GAIN_MISS, CLAMP, NUDGE * side
         lidar.integrate_scan(self._drawn, side, x - left, y - low, angles + heading, ranges, hits, *gains)
 
@@ -159,5 +168,5 @@ class Slam:
         rows, cols = (slice(int(first.min()), int(first.max()) + SIDE) for first in (tops, lefts))
         odds = self._drawn.window(rows, cols)
         classes = np.select([odds > 0, odds < 0], [OCCUPIED, FREE], UNKNOWN).astype(np.uint8)
-        side, (left, low) = self.frame.resolution, self._corner
-        return OwnMap(classes, side, left + cols.start * side, low + rows.start * side, 0.0)
+        part = self._ground.window(rows, cols)
+        return OwnMap(classes, part.resolution, part.origin_x, part.origin_y, 0.0)

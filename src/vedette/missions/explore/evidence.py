@@ -19,6 +19,7 @@ from vedette.maps.disc import cells_under
 from vedette.maps.lattice import Lattice
 from vedette.missions.explore.learning import Learning
 from vedette.missions.explore.own_map import OwnMap
+from vedette.missions.explore.passers_by import PassersBy
 from vedette.team import PlatformSpec
 
 GAIN_HIT, GAIN_MISS, CLAMP = 4, 2, 20  # log-odds of one observation and of all [0.2 nats]
@@ -41,6 +42,7 @@ class OwnEvidence:
 
     lattice: Lattice  # the team's
     spec: PlatformSpec
+    passers_by: PassersBy | None = None  # keeps out what moves where mates tell no places; None: they do
     beyond: int = 0  # beams, or cells of its own map, that told of ground where there are no cells
     log_odds: TiledGrid[np.int8] = field(init=False)
     learning: Learning = field(init=False)
@@ -98,6 +100,9 @@ class OwnEvidence:
         self._leave_out(mates, (lidar_x, lidar_y), pose.deviation, angles, ranges, hits, now, scan.age)
         x, y = lidar_x - self.frame.origin_x, lidar_y - self.frame.origin_y
         nudge = self._nudge
+        if self.passers_by is not None:
+            back = self.passers_by.sift(self.log_odds, (x, y), angles, ranges, hits, nudge, now)
+            self._note(back)
         self.learning.scan(self.log_odds, angles, ranges, hits, x, y)
         beams = self.log_odds, self.frame.resolution, x, y, angles, ranges, hits
         if pose.deviation > 0.0 or pose.heading_deviation > 0.0:

@@ -257,8 +257,9 @@ class Exploring:
         return Outcome.UNREACHED if "unreached" in left else Outcome.COMPLETE
 
     def _discs(self, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float) -> list[Disc]:
-        """Mates that stand in the way: the silent ones, and for a robot that is blocked all those near it."""
-        return [
+        """Who stands in the way: silent mates, and for a robot that is blocked all those near it."""
+        passers_by = self.own.passers_by.discs(now) if blocked and self.own.passers_by is not None else []
+        return passers_by + [
             (mate.x, mate.y, mate.radius)
             for mate in mates
             if mate.silent(now) or (blocked and np.hypot(mate.x - pose.x, mate.y - pose.y) < BLOCKING)
