@@ -22,7 +22,7 @@ from vedette.maps.world import World
 from vedette.missions.explore.own_map import OwnMap
 from vedette.sim.odometry import Odometry, laid_at, seen_from
 from vedette.sim.pose_graph import PoseGraph
-from vedette.sim.slam import Slam
+from vedette.sim.slam import LOOP, Slam
 from vedette.team import PlatformSpec
 
 Floats = NDArray[np.float64]
@@ -123,7 +123,9 @@ def driven(drift: float, seed: int, rounds: float) -> Iterator[tuple[Slam, Float
     for k, place in enumerate(places):
         slam.advance(place)
         heading = float(slam.place[2])
-        ranges = cast_rays(world.solid, 0.1, *place[:2], place[2] + beams, spec.range, np.empty((0, 3)))
+        ranges = cast_rays(
+            world.solid, 0.1, place[0], place[1], place[2] + beams, spec.range, np.empty((0, 3))
+        )
         yield slam, place, slam.look(Scan(heading + beams, ranges), 0.1 * k, arrived=False)
 
 
@@ -133,7 +135,8 @@ def error(slam: Slam, place: Floats) -> float:
 
 @pytest.mark.parametrize("seed", [0, 1, 2])
 def test_closing_a_loop_puts_the_past_right(seed: int) -> None:
-    worst, after, own_map = 0.0, [], None
+    worst, own_map = 0.0, None
+    after: list[float] = []
     for slam, place, own in driven(0.02, seed, 1.3):
         own_map = own or own_map
         if slam.closures == 0:
@@ -176,11 +179,18 @@ def test_a_team_that_drifts_completes_its_mission_and_the_same_seed_gives_the_sa
     np.testing.assert_array_equal(once.classes, again.classes)
 
 
-def test_more_drift_makes_more_wrong_and_none_makes_nothing_wrong() -> None:
-    exact, much = (run(small_office(), robots(2, drift=drift))[1].summary for drift in (0.0, 0.01))
+def test_closures_halve_what_drift_makes_wrong_and_without_drift_nothing_is(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    exact = run(small_office(), robots(2))[1].summary
     assert (exact.map_errors, exact.pose_error_m) == (0, {"robot-1": 0.0, "robot-2": 0.0})
-    assert much.map_errors > 0
-    assert much.map_error_share < 0.06
+    wrong = []
+    for loop in (LOOP, math.inf):
+        monkeypatch.setattr("vedette.sim.slam.LOOP", loop)
+        played = [run(small_office(), robots(2, drift=0.01), seed=seed)[1].summary for seed in (0, 1)]
+        assert all(summary.collisions == 0 for summary in played)
+        wrong.append(sum(summary.map_error_share for summary in played))
+    assert 0.0 < wrong[0] < 0.5 * wrong[1]
 
 
 def test_honest_robots_that_drift_are_not_expelled(tmp_path: Path) -> None:

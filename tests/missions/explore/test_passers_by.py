@@ -50,7 +50,10 @@ class Watching:
     def occupied(self) -> NDArray[np.bool_]:
         """Occupied cells that are no wall, nor beside one."""
         odds = self.own.log_odds.window()
-        return (odds > 0) & ~ndimage.binary_dilation(self.world.solid, np.ones((3, 3), np.bool_))
+        marked: NDArray[np.bool_] = (odds > 0) & ~ndimage.binary_dilation(
+            self.world.solid, np.ones((3, 3), np.bool_)
+        )
+        return marked
 
 
 def walkers(seed: int, steps: int) -> Floats:
