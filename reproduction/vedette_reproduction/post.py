@@ -21,6 +21,7 @@ from vedette.negotiation import (
     node_of,
 )
 from vedette.negotiation.messages import Message
+from vedette.negotiation.multistart import MultistartNode
 from vedette.problem import Invertible, Objective
 
 Float = NDArray[np.float64]
@@ -156,7 +157,7 @@ def record(
         tuple(tuple(seat.replies) for seat in seats),
         np.array([seat.combinations for seat in seats]),
         seconds,
-        () if isinstance(first, TokenNode) else tuple(first.values),
+        () if isinstance(first, TokenNode | MultistartNode) else tuple(first.values),
     )
 
 

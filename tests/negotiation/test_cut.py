@@ -28,7 +28,17 @@ from vedette.problem import Reach
 from vedette.problem.reach import behind
 
 CELLS = 12
-KINDS = ["token", "fork", "async", "jacobi", "token, clipped", "fork, clipped", "async, clipped"]
+KINDS = [
+    "token",
+    "multistart",
+    "fork",
+    "async",
+    "jacobi",
+    "token, clipped",
+    "multistart, clipped",
+    "fork, clipped",
+    "async, clipped",
+]
 SEEDS = st.integers(0, 100_000)
 
 

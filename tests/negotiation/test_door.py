@@ -59,7 +59,7 @@ LINES: list[tuple[dict[str, Any], str]] = [
     ({"tree": [(0, 1)]}, "tree is [(0, 1)]; give a Tree, say Tree.chain(2)"),
     ({"tree": Tree.chain(3)}, "candidates has 2 lists for a tree of 3; give one each"),
     ({"scheme": "tokn"}, "unknown scheme 'tokn'; did you mean 'token'?"),
-    ({"scheme": None}, "unknown scheme None; known: token, fork, async, jacobi"),
+    ({"scheme": None}, "unknown scheme None; known: token, multistart, fork, async, jacobi"),
     ({"start": [0]}, "start has 1 for 2 platforms; give an index each"),
     ({"start": [0, 2]}, "start[1] = 2, but platform 1 has candidates 0 to 1"),
     ({"start": np.array([-1, 0])}, "start[0] = -1, but platform 0 has candidates 0 to 1"),

@@ -13,6 +13,7 @@ from vedette.negotiation import messages
 from vedette.negotiation.chooser import Chooser
 from vedette.negotiation.door import check_codec, check_round, checked_reach, listed_impacts, remover
 from vedette.negotiation.jacobi import JacobiNode
+from vedette.negotiation.multistart import MultistartNode
 from vedette.negotiation.node import Negotiator, Outgoing
 from vedette.negotiation.optimiser import Optimiser
 from vedette.negotiation.schemes import Node, node_of
@@ -76,9 +77,10 @@ def negotiate(
         candidates: ``candidates[i]`` is the list of platform i's impacts, or its ``Controls``: it then
             replies by optimising, until its control changes by less than its threshold.
         tree: who talks to whom.
-        scheme: ``token``, one after the other, never lowers the value; ``fork``, all branches of the tree
-            at once, takes back what does not go together; ``async``, whenever news comes, confirms changes
-            before they count; ``jacobi``, all at once (paper, Table 1), ends at its best iterate.
+        scheme: ``token``, one after the other, never lowers the value; ``multistart``, that twice in opposite
+            orders, ends at the better; ``fork``, all branches of the tree at once, takes back what does not
+            go together; ``async``, whenever news comes, confirms changes before they count; ``jacobi``, all
+            at once (paper, Table 1), ends at its best iterate.
         start: everybody's first candidate index, 0 for Controls, which have a start of their own; without
             it nobody with a list observes until its first reply, so that the first token sweep is the
             sequential greedy choice.
@@ -224,14 +226,23 @@ def _outwards(tree: Tree, parents: Sequence[int | None]) -> list[int]:
     return order
 
 
+def _turns(node: TokenNode[ImpactT] | MultistartNode[ImpactT], n: int) -> list[tuple[int, float]]:
+    """Return a platform's turns, each with its number and the value after it; a second round's go on."""
+    rounds = [node] if isinstance(node, TokenNode) else node.rounds
+    before = [0, *(each.finished.sweeps * n for each in rounds if each.finished is not None)]
+    return [
+        (begun + k, value) for begun, each in zip(before, rounds, strict=False) for k, value in each.turns
+    ]
+
+
 def _steps(nodes: Sequence[Node[ImpactT]]) -> list[Step]:
     """Return the values after the start, in the order in which they came about."""
     n = len(nodes)
     iterates: list[Step] = []
     turns: list[tuple[int, int, float]] = []
     for i, node in enumerate(nodes):
-        if isinstance(node, TokenNode):
-            turns.extend((k, i, value) for k, value in node.turns)
+        if isinstance(node, TokenNode | MultistartNode):
+            turns.extend((k, i, value) for k, value in _turns(node, n))
         else:  # only the root has any
             first = 0 if isinstance(node, JacobiNode) else 1  # iterate 0 is the start
             sweeps = enumerate(node.values, first)

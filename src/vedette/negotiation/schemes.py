@@ -9,13 +9,20 @@ from vedette.errors import check_word
 from vedette.negotiation.asynchronous import AsyncNode
 from vedette.negotiation.fork import ForkNode
 from vedette.negotiation.jacobi import JacobiNode
+from vedette.negotiation.multistart import MultistartNode
 from vedette.negotiation.node import Claims, Participant
 from vedette.negotiation.token import TokenNode
 from vedette.problem.objective import ImpactT
 from vedette.problem.reach import Reach
 
-Node: TypeAlias = TokenNode[ImpactT] | ForkNode[ImpactT] | AsyncNode[ImpactT] | JacobiNode[ImpactT]
-SCHEMES = ("token", "fork", "async", "jacobi")
+Node: TypeAlias = (
+    TokenNode[ImpactT]
+    | MultistartNode[ImpactT]
+    | ForkNode[ImpactT]
+    | AsyncNode[ImpactT]
+    | JacobiNode[ImpactT]
+)
+SCHEMES = ("token", "multistart", "fork", "async", "jacobi")
 
 
 def node_of(
@@ -42,8 +49,12 @@ def node_of(
             neighbours, parent, own, max_sweeps=max_sweeps, reaches=reaches, claims=claims, guard=guard
         )
     if scheme != "jacobi":
-        kind = TokenNode if scheme == "token" else ForkNode
-        return kind(
+        kinds: Mapping[str, Callable[..., Node[ImpactT]]] = {
+            "token": TokenNode,
+            "multistart": MultistartNode,
+            "fork": ForkNode,
+        }
+        return kinds[scheme](
             neighbours, parent, own, epsilon=epsilon, max_sweeps=max_sweeps, reaches=reaches, claims=claims
         )
     return JacobiNode(

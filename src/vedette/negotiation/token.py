@@ -53,6 +53,7 @@ class TokenNode(RootedNode[ImpactT]):
         """
         super().__init__(own, neighbours, parent, reaches, claims)
         self.turns: list[tuple[int, float]] = []  # own: (number in the round, team value after it)
+        self.size: int | None = None  # of the team, as of the last turn
         self._most = math.inf if claims is None else 1 + sum(claims.platforms[k] for k in neighbours)
         self._epsilon = epsilon
         self._max_sweeps = max_sweeps
@@ -112,7 +113,7 @@ class TokenNode(RootedNode[ImpactT]):
         if self._parent is not None:
             self._expected = self._parent
             return [Outgoing(self._parent, Gather(self._links.outgoing(self._parent), size, ceiling, value))]
-        return self._turn(Tally(turns=0, quiet=0, value=value, slack=0.0, size=size, ceiling=ceiling))
+        return self._come_in(Tally(turns=0, quiet=0, value=value, slack=0.0, size=size, ceiling=ceiling))
 
     def _interplay(self) -> float:
         """What own impact and children's parts of the tree are worth together, less what each part is alone.
@@ -146,7 +147,7 @@ class TokenNode(RootedNode[ImpactT]):
         if sender == self._parent:
             self._check_team(token.tally, 1 + sum(part.size for part in self._parts.values()), math.inf)
             self._links.receive(sender, token.mu)
-            return self._turn(self._less_the_lost(token.tally))
+            return self._come_in(self._less_the_lost(token.tally))
         self._note_change(sender, token)
         return self._pass_on(self._less_the_lost(token.tally), sender)
 
@@ -173,6 +174,10 @@ class TokenNode(RootedNode[ImpactT]):
             tally = self._parts.pop(child).taken_off(tally, self._own, with_it - self._team_value())
         return tally
 
+    def _come_in(self, tally: Tally) -> list[Outgoing[ImpactT]]:
+        """Do what there is to do when the token comes to this part of the tree: reply."""
+        return self._turn(tally)
+
     def _turn(self, tally: Tally) -> list[Outgoing[ImpactT]]:
         """Reply to the rest of the team (paper, eq. (30)); then stop or hand the token on."""
         others, before = self._links.others(), self._own.impact
@@ -191,18 +196,32 @@ class TokenNode(RootedNode[ImpactT]):
             slack=slack if changed else tally.slack + slack,
         )
         self.turns.append((tally.turns, tally.value))
-        self.finished = self._outcome(tally)
-        if self.finished is None:
-            return self._pass_on(tally, None)
-        return [Outgoing(k, Stop(self.finished)) for k in self._links.neighbours]
+        self.size = tally.size
+        outcome = self._outcome(tally)
+        return self._go_on(tally) if outcome is None else self._end(Stop(outcome), tally)
+
+    def _end(self, stop: Stop, tally: Tally) -> list[Outgoing[ImpactT]]:
+        """Tell everybody that the round is over."""
+        self.finished = stop.outcome
+        return [Outgoing(k, stop) for k in self._links.neighbours]
+
+    def _go_on(self, tally: Tally) -> list[Outgoing[ImpactT]]:
+        """Hand the token on after this platform's turn: to its children first."""
+        return self._pass_on(tally, None)
 
     def _pass_on(self, tally: Tally, last: int | None) -> list[Outgoing[ImpactT]]:
-        """Hand the token to the child after ``last``, else to the parent; the root begins a new sweep."""
+        """Hand the token to the child after ``last``, if there is one."""
         position = 0 if last is None else self._children.index(last) + 1
         ahead = (child for child in self._children[position:] if child in self._parts)
-        onwards = next(ahead, self._parent)
-        if onwards is None:
-            return self._turn(tally)
+        onwards = next(ahead, None)
+        return self._go_out(tally) if onwards is None else self._hand(tally, onwards)
+
+    def _go_out(self, tally: Tally) -> list[Outgoing[ImpactT]]:
+        """Hand the token to the parent when all children have had it; the root begins a new sweep."""
+        return self._come_in(tally) if self._parent is None else self._hand(tally, self._parent)
+
+    def _hand(self, tally: Tally, onwards: int) -> list[Outgoing[ImpactT]]:
+        """Give the token to a neighbour."""
         mu = self._links.outgoing(onwards)
         if onwards != self._parent:
             self._handed = tally

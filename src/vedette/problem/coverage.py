@@ -48,6 +48,10 @@ class Coverage(Objective[NDArray[np.float64], NDArray[np.float64]]):
         gains = np.array([np.vdot(left, 1.0 - k) for k in own], dtype=np.float64)
         return self.value(belief, others) + gains
 
+    def thin(self, impact: NDArray[np.float64], chance: float) -> NDArray[np.float64]:
+        """Return ``1 - p (1 - m)``: missed by a platform that is there with probability p; (V107)."""
+        return 1.0 - chance * (1.0 - impact)
+
     def wrong_belief(self, belief: NDArray[np.float64]) -> str | None:
         """Weights are finite and not negative."""
         return misfit(belief, "weights", within=(0.0, LARGEST))
