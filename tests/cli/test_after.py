@@ -12,7 +12,7 @@ import pytest
 
 from tests.support.commands import Command
 from tests.support.small_missions import small_office
-from vedette.agent.orders import Priority
+from vedette.agent.orders import Pause
 from vedette.maps import UNKNOWN, read_map
 from vedette.record.explore.details import RobotDetails, encode
 from vedette.record.explore.log import RobotSample
@@ -21,12 +21,10 @@ from vedette.run import Explore
 from vedette.sim.orders import OrderAt
 
 SHORT = 40.0  # a mission of so long leaves something to do [s]
-CORNER = Priority(area="corner", corners=((0.0, 0.0), (3.0, 0.0), (3.0, 3.0)))
 TROUBLED: dict[str, Any] = {
     "max_time": SHORT,
     "link_loss": 0.1,
     "kills": [(2, 6.0)],
-    "orders": (OrderAt(9.0, CORNER),),
 }
 
 
@@ -128,6 +126,15 @@ def test_runs_are_compared_by_what_differs(vedette: Command, run: Path, tmp_path
     assert "coverage" in vedette("compare", run, other, "--all").out
     assert vedette("compare", run, run).out == "the runs have the same figures\n"
     assert vedette("compare", run).status == 2
+
+
+def test_a_record_has_the_orders_that_robots_held(tmp_path: Path) -> None:
+    order = OrderAt(2.0, Pause(robot=2))
+    Explore(small_office(), 2, max_time=5.0, orders=(order,), record=tmp_path / "run").run()
+    record = tmp_path / "run" / "run.mcap"
+    held = [[robot.orders for robot in each.robots] for each in read_snapshots(record, read_scene(record))]
+    assert held[0] == [(), ()]
+    assert held[-1] == [(order.what,), (order.what,)]
 
 
 def test_a_mission_goes_on_from_a_map_that_was_left(vedette: Command, run: Path, tmp_path: Path) -> None:
