@@ -67,6 +67,7 @@ GOLDEN: dict[str, Any] = {
         {"x": 9.65, "y": 1.35, "unknown_cells": 69, "why": "unseeable", "by": "robot-2"},
     ],
     "expected": None,
+    "frames": None,
 }
 
 APPROXIMATE = 1e-3  # relative: other machines may round the last bits otherwise

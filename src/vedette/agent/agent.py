@@ -154,8 +154,12 @@ def _go_on(agent: Agent, pose: Pose, now: float) -> list[Effect]:
     if belief is not None:
         start = agent.behaviour.departure(agent, pose, belief)
         effects.append(agent.rounds.preparation(start, agent.mates.all(), now))
+    elif agent.framing is not None and not agent.rounds.busy and agent.awake:
+        living = {agent.robot, *(mate.robot for mate in agent.mates.heard if not mate.silent(now))}
+        job = agent.framing.errand(living, now)
+        effects += [] if job is None else [job]
     if agent.is_due("beacon", BEACON_PERIOD, now):
-        agent.relay.look(agent.mates.all(), agent.rounds.tree.neighbours, now)
+        agent.relay.look(agent.mates.heard, agent.rounds.tree.neighbours, now)
         own = beacons.tell(agent, pose)
         effects += [Send(neighbour, TrafficKind.BEACONS, own) for neighbour in agent.rounds.tree.neighbours]
     effects += agent.behaviour.look_out(agent, pose, now)

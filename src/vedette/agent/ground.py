@@ -60,7 +60,7 @@ class GroundBehaviour:
         until = agent.due.setdefault("listen", now + (GATHER if self.expected > 1 else LISTEN))
         tree = agent.rounds.tree
         alone = tree.epoch == 0  # no tree yet
-        missing = len(agent.mates.all()) < max(tree.size, self.expected) - 1
+        missing = len(agent.mates.heard) < max(tree.size, self.expected) - 1
         if (alone or missing) and now < until:
             return False
         self.listening = False

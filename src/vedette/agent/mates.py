@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import msgspec
 import numpy as np
+from msgspec import structs
 from numpy.typing import NDArray
 
 from vedette.agent.messages import Beacon
+from vedette.maps.transform import Transform
 
 MOST_MATES = 1024  # that are kept at most; each has a path of at most 500 points
 MOST_UNPROVED = 24  # beacons after one that is known to be its robot's, that are believed without proof
@@ -39,6 +42,13 @@ class Mate(msgspec.Struct, frozen=True, eq=False):
         path: NDArray[np.float64] = offsets + np.array((self.x, self.y))
         return path
 
+    def seen_from(self, there: Transform) -> Mate:
+        """Return the mate as it lies in another frame, where its own lies so."""
+        x, y = there.place(self.x, self.y)
+        ends = there.places(self.path) - (x, y)
+        ahead = tuple(np.rint(100.0 * ends).astype(int).ravel().tolist())
+        return structs.replace(self, x=x, y=y, heading=self.heading + there.radians, ahead=ahead)
+
     def silent(self, now: float) -> bool:
         """Tell whether the mate may be dead: it has not been heard for seconds."""
         return now - self.heard > SILENT
@@ -49,6 +59,7 @@ class Mates:
     """The newest beacon of every team-mate."""
 
     admitted: int = MOST_MATES  # robots of the team are numbered below it
+    framed: Callable[[int], Transform | None] | None = None  # where a robot's frame lies; None: all share one
     _newest: dict[int, tuple[int, int]] = field(default_factory=dict)  # boot and sequence
     _mates: dict[int, Mate] = field(default_factory=dict)
     _proved: dict[int, Proved] = field(default_factory=dict)
@@ -102,9 +113,17 @@ class Mates:
         """Tell whether any mate was on its way when last heard."""
         return any(len(mate.path) > 1 for mate in self._mates.values())
 
-    def all(self) -> list[Mate]:
-        """Return all team-mates ever heard, by id."""
+    @property
+    def heard(self) -> list[Mate]:
+        """All team-mates ever heard, by id, each in the frame that it reckons in."""
         return [mate for _, mate in sorted(self._mates.items())]
+
+    def all(self) -> list[Mate]:
+        """Return all team-mates ever heard, by id; not those of whose frame it is not known where it lies."""
+        if self.framed is None:
+            return self.heard
+        placed = ((mate, self.framed(mate.robot)) for mate in self.heard)
+        return [mate.seen_from(there) for mate, there in placed if there is not None]
 
 
 def _mate(beacon: Beacon, heard: float) -> Mate:

@@ -87,6 +87,23 @@ class Freeze(msgspec.Struct, frozen=True, array_like=True, tag=5):
     reach: Areas | None = None  # of all but the receiver's part of the tree; None: anywhere
 
 
+class FrameTold(msgspec.Struct, frozen=True, array_like=True):
+    """Where a contributor's frame lies on the plane of a round: turned, then moved."""
+
+    robot: Robot
+    boot: Count
+    part: Robot  # those of one part are joined
+    x: Place  # [mm]
+    y: Place
+    angle: Annotated[int, Meta(ge=0, lt=1 << 16)]  # [2^-16 of a turn]
+
+
+class FramedFreeze(Freeze, frozen=True, array_like=True, tag=14):
+    """From the root of a team that shares no frame: plan on the plane that these lie on."""
+
+    frames: Annotated[tuple[FrameTold, ...], Meta(max_length=1024)] = ()
+
+
 class Negotiate(msgspec.Struct, frozen=True, array_like=True, tag=6):
     """A negotiation message within a round."""
 
@@ -158,6 +175,7 @@ Wire: TypeAlias = (
     | Begin
     | Flushed
     | Freeze
+    | FramedFreeze
     | Negotiate
     | Audit
     | Account

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Collection, Hashable, Sequence
 from typing import Any, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.agent.effects import Route
+from vedette.agent.effects import Job, Route
 from vedette.agent.events import Pose
 from vedette.agent.flight import AnyPlan
 from vedette.agent.mates import Mate
-from vedette.agent.messages import Note
+from vedette.agent.messages import FrameTold, Note
 from vedette.agent.orders import OrderBook
 from vedette.forbidden import Forbidden
+from vedette.maps.transform import Transform
 from vedette.outcome import Outcome
 from vedette.problem import Codec, Objective, Reach
 
@@ -138,6 +139,27 @@ class Promising(Protocol[BeliefT_contra, ImpactT]):
 
     def discounted(self, impact: ImpactT, halvings: int) -> ImpactT:
         """Return an impact that is so many times half as likely."""
+
+
+@runtime_checkable
+class Framing(Protocol):
+    """A mission of robots that share no frame: each round says where everybody's lies."""
+
+    def lay_out(self) -> tuple[FrameTold, ...]:
+        """As the root: return where contributors' frames lie on the plane of a round that begins."""
+
+    def take_frames(self, told: Sequence[FrameTold]) -> bool:
+        """Be on the plane as the root says; tell whether this robot has come to the same.
+
+        Raises:
+            ValueError: it cannot be.
+        """
+
+    def in_own(self, robot: int) -> Transform | None:
+        """Return where a robot's frame lies in this one's; None: it is not known."""
+
+    def errand(self, living: Collection[int], now: float) -> Job | None:
+        """Return a job that finds out how two contributors' frames lie, if it is time for one."""
 
 
 @runtime_checkable

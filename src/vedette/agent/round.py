@@ -20,12 +20,13 @@ from vedette.agent.messages import (
     Call,
     Evidence,
     Flushed,
+    FramedFreeze,
     Freeze,
     Negotiate,
     Note,
     encode,
 )
-from vedette.agent.mission import Mission
+from vedette.agent.mission import Framing, Mission
 from vedette.agent.participant import RoundParticipant
 from vedette.agent.reaches import reaches_to_tell
 from vedette.agent.silence import Silences
@@ -168,8 +169,13 @@ class Round:
         notes = tuple(sorted(self.notes.union(self.mission.notes())))[:MOST_NOTES]
         epoch, parent = self.tree.epoch, self.tree.parent
         if parent is None:
-            t0, digest = round(1000.0 * now), self.digest
-            return self.freeze(Freeze(epoch, self.sequence, t0, digest, self.part, notes), now)
+            t0 = round(1000.0 * now)
+            if isinstance(self.mission, Framing):
+                frames = self.mission.lay_out()
+                self.mission.take_frames(frames)
+                message = FramedFreeze(epoch, self.sequence, t0, self.digest, self.part, notes, frames=frames)
+                return self.freeze(message, now)
+            return self.freeze(Freeze(epoch, self.sequence, t0, self.digest, self.part, notes), now)
         news = send_news(self.mission, parent, now)
         reach = self._told(now)[parent]
         return [*news, say(parent, Flushed(epoch, self.sequence, self.part, notes, reach))]
@@ -184,6 +190,13 @@ class Round:
             return []
         if self.waiting:
             raise ValueError(f"freeze: children {sorted(self.waiting)} have not been heard")
+        agrees = True
+        if (
+            isinstance(message, FramedFreeze)
+            and isinstance(self.mission, Framing)
+            and self.tree.parent is not None
+        ):
+            agrees = self.mission.take_frames(message.frames)
         self.heard = now
         if self.tree.parent is not None:
             self.reaches[self.tree.parent] = message.reach
@@ -194,7 +207,7 @@ class Round:
             effects.append(say(child, structs.replace(message, reach=told[child])))
         if self.scheme == "token" and self.forks and message.robots >= FORK_FROM:
             self.scheme = "fork"  # all in the round hear the same number, so all do
-        self.approximate = self.digest != message.digest
+        self.approximate = not agrees or self.digest != message.digest
         self.mission.hear_notes(message.notes)
         self.belief = self.mission.freeze(message.t0 / 1000.0)
         self.silences.begin(now)

@@ -17,7 +17,7 @@ from vedette.agent.body import Hull
 from vedette.agent.effects import Effect
 from vedette.agent.events import Arrived, Pose, Scan, Sensed, Stuck
 from vedette.agent.mates import Mates
-from vedette.agent.mission import Mission
+from vedette.agent.mission import Framing, Mission
 from vedette.agent.orders import Given, OrderBook
 from vedette.agent.pace import Pace
 from vedette.agent.proofs import Proofs
@@ -103,6 +103,7 @@ class Agent:
     relay: Relay = field(default_factory=Relay)  # of their beacons
     rounds: Rounds = field(init=False)
     proofs: Proofs | None = field(default=None, init=False)  # of lies, where robots sign
+    framing: Framing | None = field(default=None, init=False)  # where robots share no frame
     quiet: int = 0  # rounds in a row with nothing to gain for anybody
     beacons: int = 0  # sent
     due: dict[str, float] = field(default_factory=dict)  # when what is to be done next [s]
@@ -116,6 +117,9 @@ class Agent:
         self.rounds = Rounds(self.mission, self.scheme, self._decided, self.pace, forks=self.forks)
         self.rounds.scrutiny.anybody_moves = self.mates.anybody_moves
         self.rounds.mandate = lambda: self.orders.digest
+        if isinstance(self.mission, Framing):
+            self.framing = self.mission
+            self.mates.framed = self.mission.in_own
         if self.signed is not None:
             self.rounds.scrutiny.auditor = Auditor(self.robot, self.boot, self.mission, self.signed.standing)
             self.proofs = Proofs(self.mission, self.signed)

@@ -9,12 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.align.agreement import agreement, own_frames
 from vedette.align.charted import Charted
 from vedette.align.fitted import Fit, fitted
 from vedette.align.pose import FramePose
 from vedette.align.shifts import likely
-from vedette.kernels.align import CLEAR, SAME, align_counts
-from vedette.maps import UNKNOWN
 
 Floats = NDArray[np.float64]
 
@@ -22,7 +21,6 @@ LIKELY = 24  # places from the large cells that are looked at closely
 ROUGHLY, FINELY = 800, 8000  # walls used to fit a candidate, and the best of them
 DISTINCT = 0.75, math.radians(6.0)  # closer candidates are one [m, rad]
 CLASH = 5.0  # metres of wall that one metre of wall on clear ground costs
-_PLACES = 4000  # of free ground are looked at for what both know
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,41 +87,14 @@ def _distinct(found: Sequence[tuple[PossibleJoin, Fit]], at: Floats) -> list[tup
 
 def _weighed(a: Charted, b: Charted, fit: Fit) -> PossibleJoin:
     """Return a fit with what speaks for and against it."""
-    on_a = _counts(a, b, fit.pose) * b.cell
-    on_b = _counts(b, a, fit.pose.inverse()) * a.cell
-    same = float(on_a[SAME] + on_b[SAME]) / 2.0
-    against = float(on_a[CLEAR] + on_b[CLEAR]) / 2.0
-    common = _common(a, b, fit.pose)
+    agrees = agreement(a, b, fit.pose)
     least = min(len(a.free) * a.cell**2, len(b.free) * b.cell**2)
     return PossibleJoin(
-        pose=_own_frames(a, b, fit.pose),
-        score=same - CLASH * against,
-        same=same,
-        contradicted=against / (same + against) if same + against else 1.0,
-        common=common,
-        overlap=min(1.0, common / least),
+        pose=own_frames(a, b, fit.pose),
+        score=agrees.same - CLASH * agrees.against,
+        same=agrees.same,
+        contradicted=agrees.contradicted,
+        common=agrees.common,
+        overlap=min(1.0, agrees.common / least),
         covariance=fit.covariance,
     )
-
-
-def _counts(on: Charted, of: Charted, pose: FramePose) -> NDArray[np.int64]:
-    """Return how many faces of a map fall on each label of the other."""
-    x, y = ((pose.x, pose.y) - on.corner) / on.cell
-    moved = np.array([[x, y, pose.angle]])
-    counts: NDArray[np.int64] = align_counts(on.labels, on.looks_at, of.walls / on.cell, of.looks, moved)[0]
-    return counts
-
-
-def _common(a: Charted, b: Charted, pose: FramePose) -> float:
-    """Return how much ground that B has seen free A knows too, from some thousand places [m^2]."""
-    step = max(1, len(b.free) // _PLACES)
-    col, row = np.floor((pose.places(b.free[::step]) - a.corner) / a.cell).astype(np.int64).T
-    inside = (row >= 0) & (col >= 0) & (row < a.frame.rows) & (col < a.frame.cols)
-    known = np.count_nonzero(a.classes[row[inside], col[inside]] != UNKNOWN)
-    return float(known) * step * b.cell**2
-
-
-def _own_frames(a: Charted, b: Charted, between_middles: FramePose) -> FramePose:
-    """Return T_a_b between the maps' own frames."""
-    (a_x, a_y), (b_x, b_y) = a.middle.tolist(), b.middle.tolist()
-    return FramePose(a_x, a_y, 0.0).after(between_middles).after(FramePose(-b_x, -b_y, 0.0))

@@ -14,31 +14,35 @@ from vedette.fusion.tiles import FIRM
 from vedette.kernels.tiles import SIDE, TiledGrid
 from vedette.maps.bounds import Extent
 
-__all__ = ["FIRM", "SIDE", "ChannelFilter", "Fusion", "ReplicatedEvidence"]
+__all__ = ["FIRM", "SIDE", "ChannelFilter", "Fusion", "ReplicatedEvidence", "ShownMap"]
 
 
-class Fusion(Protocol):
-    """One robot's share in the team's evidence: no I/O and no clock; payloads go between neighbours.
-
-    A robot calls ``publish`` at a steady rate, then ``outgoing`` for each neighbour, and ``receive`` for each
-    payload that arrives. Payloads may be lost, repeated or reordered. A new link opens with a greeting either
-    way; evidence follows with the next ``outgoing``.
-    """
+class ShownMap(Protocol):
+    """A map of the team, as one robot knows it."""
 
     @property
     def classes(self) -> TiledGrid[np.uint8]:
-        """Team map as this robot knows it: UNKNOWN, FREE or OCCUPIED."""
+        """Of each cell: UNKNOWN, FREE or OCCUPIED."""
         ...
 
     @property
     def known(self) -> Extent:
-        """Rows and columns outside of which the team map is unknown."""
+        """Rows and columns outside of which the map is unknown."""
         ...
 
     @property
     def counts(self) -> NDArray[np.int64]:
         """``(counts_size,)`` team sum of everybody's published counts."""
         ...
+
+
+class Fusion(ShownMap, Protocol):
+    """One robot's share in the team's evidence: no I/O and no clock; payloads go between neighbours.
+
+    A robot calls ``publish`` at a steady rate, then ``outgoing`` for each neighbour, and ``receive`` for each
+    payload that arrives. Payloads may be lost, repeated or reordered. A new link opens with a greeting either
+    way; evidence follows with the next ``outgoing``.
+    """
 
     @property
     def digest(self) -> int:

@@ -14,6 +14,7 @@ from vedette.agent.orders import NoGo, Priority
 from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.planners import DEFAULT
 from vedette.domains.mapping.platform import Tour
+from vedette.errors import InputError
 from vedette.maps import GridFrame
 from vedette.maps.area import Area
 from vedette.missions.explore.old_map import read_prior
@@ -40,7 +41,7 @@ from vedette.run.result import MissionResult
 from vedette.run.saved import read_saved_map
 from vedette.sim.explore.run import ExploreRun, prepare, views
 from vedette.sim.explore.simulation import ExploreSetup, ExploreSimulation
-from vedette.sim.orders import OrderAt, check_orders
+from vedette.sim.orders import OrderAt, check_orders, check_places
 
 _Mission: TypeAlias = StepwiseMission[ExploreSnapshot, Tour, Impact, ExploreReport]
 
@@ -88,6 +89,7 @@ class Explore(_Mission):
         return_home: bool = False,
         area: Sequence[Sequence[float]] | None = None,
         unbounded: bool = False,
+        frames: str = "known",
         saved: str | Path | None = None,
         prior: str | Path | None = None,
         record: str | Path | None = None,
@@ -105,6 +107,7 @@ class Explore(_Mission):
             return_home: whether the robots drive back to their starts in the end.
             area: corners x, y [m] of the ground that is the team's; None: all of the world.
             unbounded: whether the robots are not told how far their ground goes.
+            frames: "unknown": each robot reckons in a frame of its own, and the team finds how these lie.
             saved: folder of an earlier run, whose map the team starts from: its first robot has it.
             prior: an old map of the building, a map's file, which may be out of date or wrong.
             record: a folder for the run record, ``run.mcap``.
@@ -123,7 +126,11 @@ class Explore(_Mission):
             return_home=return_home,
             area=None if area is None else Area.of(area).corners,
             unbounded=unbounded,
+            frames=frames,
         )
+        setup.options.check()
+        if frames == "unknown" and (saved or prior) is not None:
+            raise InputError("frames unknown: a saved map lies in a frame that nobody has; leave it out")
         tell_unheeded(setup.planner, len(specs), **links_of(setup))
         self.world = world_of(world, setup.seed)
         if saved is not None:
@@ -133,6 +140,7 @@ class Explore(_Mission):
             setup = replace(setup, prior=read_prior(Path(prior), lattice))
         orders = conditions.get("orders", ())
         check_orders(setup.orders, self.world, specs, order_file(orders))
+        check_places(setup.orders, frames)
         simulation = prepare(self.world, specs, setup)
         files = files_of(world, team, conditions.get("faults"), orders, prior)
         self._begin(simulation, ExploreRun, record, files)
@@ -165,6 +173,7 @@ class Explore(_Mission):
     def _check_order(self, given: OrderAt, known: Sequence[NoGo | Priority]) -> None:
         """Raise InputError for an order that makes no sense in this world."""
         check_orders([given], self.world, self.simulation.specs, "order", [each.area for each in known])
+        check_places([given], self.simulation.setup.frames)
 
     def run(self, progress: Callable[[ExploreSnapshot], object] | None = None) -> ExploreResult:
         """Explore to the end; ``progress`` is called with a snapshot every second."""

@@ -40,6 +40,16 @@ def load_orders(path: Path | str) -> tuple[OrderAt, ...]:
     return tuple(sorted((_order(each, f"{path}: orders[{i}]") for i, each in enumerate(told)), key=_time))
 
 
+def check_places(orders: Sequence[OrderAt], frames: str) -> None:
+    """Raise InputError for an order with a place, where nobody has the frame that it would be in."""
+    for each in orders:
+        about = [getattr(each.what, name, None) for name in ("at", "to", "corners")]
+        if frames == "unknown" and any(place is not None for place in about):
+            raise InputError(
+                "orders: frames unknown, so a place means nothing to the robots; give orders without one"
+            )
+
+
 def check_orders(
     orders: Sequence[OrderAt],
     world: World,

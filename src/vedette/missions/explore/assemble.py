@@ -15,11 +15,13 @@ from vedette.domains.mapping.prior import PriorMap
 from vedette.domains.mapping.sightings import BINS
 from vedette.errors import check_word
 from vedette.fusion import ChannelFilter, Fusion, ReplicatedEvidence
+from vedette.fusion.framed import FramedEvidence
 from vedette.fusion.particulars import Capabilities
 from vedette.fusion.seals import Notary
 from vedette.fusion.signed import SignedEvidence
 from vedette.maps.lattice import Lattice
 from vedette.missions.explore.exploring import Exploring
+from vedette.missions.explore.frames.exploring import FramedExploring
 from vedette.missions.explore.options import ExploreOptions
 from vedette.team import Most, PlatformSpec
 
@@ -48,6 +50,7 @@ def terms_of(lattice: Lattice, options: ExploreOptions, prior: PriorMap | None =
         **{f"objective.{name}": f"{value:g}" for name, value in objective.items()},
         "scheme": options.negotiates_by,
         "fusion": options.fusion,
+        **({} if options.frames == "known" else {"frames": options.frames}),
     }
 
 
@@ -84,11 +87,19 @@ def assemble(
         InputError: the planner or the way of fusing is unknown, or cannot serve such a team.
     """
     check_word("fusion", options.fusion, FUSIONS)
-    fusion = _fusion(lattice, options, robot, boot, most, notary)
+    options.check()
+    unknown = options.frames == "unknown"
+    fusion: Fusion
+    if unknown:
+        fusion = FramedEvidence(robot, boot, lattice.frame, 4 * BINS, robots, mark=lattice.mark)
+        explorer = FramedExploring
+    else:
+        fusion = _fusion(lattice, options, robot, boot, most, notary)
     how = planner(options.planner, robots)
     mission = explorer(lattice, spec, how, fusion, most=most, prior=prior)
     behaviour = GroundBehaviour(mission, Driver(robot, spec), options.return_home, waits_for)
-    relay = Relay(nearby(most.range, most.speed) if how.negotiates else inf)  # others plan by mates' places
+    places = how.negotiates and not unknown  # of mates tell how near they are, and nobody plans by them
+    relay = Relay(nearby(most.range, most.speed) if places else inf)
     forks = how.negotiates and how.scheme is None  # where the order of turns is no part of the planner
     agent = Agent(robot, boot, spec, behaviour, options.negotiates_by, forks=forks, relay=relay)
     if prior is not None:

@@ -43,6 +43,7 @@ class OwnEvidence:
     lattice: Lattice  # the team's
     spec: PlatformSpec
     passers_by: PassersBy | None = None  # keeps out what moves where mates tell no places; None: they do
+    askew: float = 0.0  # walls lie anywhere in the cells: so far from where they seem to [m]
     beyond: int = 0  # beams, or cells of its own map, that told of ground where there are no cells
     log_odds: TiledGrid[np.int8] = field(init=False)
     learning: Learning = field(init=False)
@@ -105,8 +106,9 @@ class OwnEvidence:
             self._note(back)
         self.learning.scan(self.log_odds, angles, ranges, hits, x, y)
         beams = self.log_odds, self.frame.resolution, x, y, angles, ranges, hits
-        if pose.deviation > 0.0 or pose.heading_deviation > 0.0:
-            margins = BLUR * np.hypot(pose.deviation, ranges * pose.heading_deviation)
+        deviation = max(pose.deviation, self.askew)
+        if deviation > 0.0 or pose.heading_deviation > 0.0:
+            margins = BLUR * np.hypot(deviation, ranges * pose.heading_deviation)
             changed = lidar.integrate_blurred_scan(*beams, margins, GAIN_HIT, GAIN_MISS, CLAMP, nudge)
         else:
             changed = lidar.integrate_scan(*beams, GAIN_HIT, GAIN_MISS, CLAMP, nudge)

@@ -31,7 +31,7 @@ from vedette.domains.mapping.prior import PriorMap
 from vedette.domains.mapping.sightings import BINS
 from vedette.domains.mapping.stops import NEARBY, VIEW_REACH, Disc, around
 from vedette.domains.mapping.views import MOST_STOPS
-from vedette.fusion import Fusion
+from vedette.fusion import Fusion, ShownMap
 from vedette.fusion.signed import SignedEvidence
 from vedette.maps import UNKNOWN, GridFrame
 from vedette.maps.area import Area
@@ -185,9 +185,15 @@ class Exploring:
     def freeze(self, t0: float) -> MapBelief:
         """Snapshot the team map for a round; tours count time from when it is frozen."""
         self._t0 = t0
-        known = self.fusion.known
-        classes = self.fusion.classes.window(*known)
-        counts = self.fusion.counts[: 4 * BINS].reshape(4, BINS).copy()
+        belief = self._frozen(self.fusion)
+        self.frontiers = len(belief.frontier_starts) - 1
+        return belief
+
+    def _frozen(self, shown: ShownMap) -> MapBelief:
+        """Snapshot a map of the team."""
+        known = shown.known
+        classes = shown.classes.window(*known)
+        counts = shown.counts[: 4 * BINS].reshape(4, BINS).copy()
         about: dict[str, Any] = {
             "reach": max(self.spec.range, NEARBY + self.frame.resolution),
             "extent": longest_frontier(self.spec.range),
@@ -201,13 +207,11 @@ class Exploring:
             "priorities": self._priorities,
             "prior": self.prior,
         }
-        belief = Frozen.once(
+        return Frozen.once(
             (classes, counts),
             (self.frame, *about.values()),
             lambda: freeze(classes, self.frame, counts=counts, **about),
         )
-        self.frontiers = len(belief.frontier_starts) - 1
-        return belief
 
     def prepare(
         self, belief: MapBelief, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from msgspec import Struct
 
-from vedette.domains.mapping.planners import DEFAULT
+from vedette.domains.mapping.planners import DEFAULT, planner
+from vedette.errors import InputError, check_word
 from vedette.maps import GridFrame
 from vedette.maps.area import Area
 from vedette.maps.lattice import Lattice
 from vedette.missions.pairs import scheme_of
+
+FRAMES = ("known", "unknown")
 
 
 class ExploreOptions(Struct, forbid_unknown_fields=True, frozen=True):
@@ -21,6 +24,23 @@ class ExploreOptions(Struct, forbid_unknown_fields=True, frozen=True):
     area: tuple[tuple[float, float], ...] | None = None  # corners, x, y [m]: all outside is nobody's ground
     unbounded: bool = False  # robots with a map of their world are not told how far it goes
     prior: str | None = None  # an old map of the building, a map's file
+    frames: str = "known"  # or "unknown": each robot's frame is its own, and the team finds how they lie
+
+    def check(self) -> None:
+        """Raise InputError for what cannot go together."""
+        check_word("frames", self.frames, FRAMES)
+        if self.frames == "known":
+            return
+        if self.fusion != "replicated":
+            raise InputError(
+                f"frames unknown: fusion {self.fusion} cannot move what it has added up into another frame; "
+                "leave it out"
+            )
+        if not planner(self.planner).negotiates:
+            raise InputError(f"frames unknown: planner {self.planner} does not negotiate; choose another")
+        if self.area is not None or self.unbounded:
+            what = "an area" if self.area is not None else "unbounded"
+            raise InputError(f"frames unknown: {what} would be in a frame that nobody has; leave it out")
 
     @property
     def negotiates_by(self) -> str:
@@ -37,6 +57,8 @@ class ExploreOptions(Struct, forbid_unknown_fields=True, frozen=True):
 
     def lattice_on(self, frame: GridFrame) -> Lattice:
         """Return the lattice of a team on a map; InputError if the area is none, or too large."""
+        if self.frames == "unknown":
+            return self.lattice(frame.resolution)
         if self.unbounded:
             x = frame.origin_x + frame.cols // 2 * frame.resolution
             return self.lattice(frame.resolution, (x, frame.origin_y + frame.rows // 2 * frame.resolution))

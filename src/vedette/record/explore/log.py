@@ -16,6 +16,7 @@ from vedette.domains.mapping.belief import planning_factor
 from vedette.maps import GridFrame
 from vedette.maps.world import World
 from vedette.missions.explore.expected import Expected, Progress
+from vedette.record.explore.frames import FramesFound
 from vedette.record.explore.summary import LeftOut
 from vedette.record.links import Link, parts
 from vedette.record.log import MissionScene, Sink, VehicleSample
@@ -86,6 +87,8 @@ class ExploreSnapshot:
         living = [robot for robot in self.robots if robot.alive]
         way = sum(robot.driven for robot in living) / max(len(living), 1)
         return Progress(self.t, self.known_m2, self.frontiers, way, len(living))
+
+    frames: FramesFound | None = None  # whose maps are joined by now; None: all share one frame
 
     @property
     def rate_m2_s(self) -> float:

@@ -25,6 +25,7 @@ from vedette.maps.world import World
 from vedette.missions.explore.expected import Forecaster
 from vedette.missions.explore.options import ExploreOptions
 from vedette.outcome import Outcome
+from vedette.record.explore.frames import FramesFound
 from vedette.record.explore.log import ExploreLog, ExploreScene, ExploreSnapshot, RobotSample
 from vedette.record.explore.score import CoverageProgress, Reference, coverage, map_errors, overlap
 from vedette.record.explore.summary import ExploreSummary, LeftOut
@@ -80,6 +81,7 @@ class ExploreObserver:
         scene = ExploreScene.of(world, [spec.name for spec in specs])
         self.log = ExploreLog(scene, sinks, curves_only=curves_only)
         self._forecaster = Forecaster()
+        self.frames: FramesFound | None = None  # as of the next look
         self.apart_s = 0.0  # time during which the living robots were not all on one tree
         self._apart = False  # since the last look
         self._views: tuple[RobotView, ...] = ()  # of the last look
@@ -147,6 +149,7 @@ class ExploreObserver:
             links=None if links is None else tuple(links),
             frontiers=frontiers_left(self._views),
             left_out=tuple(spot for view in self._views for spot in view.left_out if view.sample.alive),
+            frames=self.frames,
         )
 
     def _known_m2(self, classes: NDArray[np.uint8]) -> float:
@@ -211,6 +214,7 @@ class ExploreObserver:
             maps=by_map(views),
             expected=None if outcome.completed else self._forecaster.expected,
             left_out=self._left_out(),
+            frames=self.frames,
             **vars(self._setting),
             **vars(TeamFigures.of(self.log.scene.vehicles, team, samples)),
         )

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from vedette.domains.mapping.leftovers import Why
 from vedette.missions.explore.expected import Expected
+from vedette.record.explore.frames import FramesFound
 from vedette.record.summary import MissionSummary, Traffic
 
 
@@ -62,3 +63,4 @@ class ExploreSummary(MissionSummary):
     maps: tuple[tuple[str, ...], ...]  # who lives, by the map that they hold: of one group, all hold one
     left_out: tuple[LeftOut, ...]
     expected: Expected | None  # how it would have gone on; None: it ended by itself, or too early to say
+    frames: FramesFound | None = None  # None: all share one frame

@@ -11,10 +11,11 @@ KNOWN_SHARE = 0.9
 
 
 def caption(snapshot: ExploreSnapshot) -> str:
-    """Return what stands over a picture of a snapshot."""
+    """Return what stands over a picture of a snapshot: where frames are unknown, whose maps are joined."""
     share = snapshot.coverage
     known = f"{snapshot.known_m2:.0f} m² known" if share is None else f"{100 * share:.1f} % covered"
-    return f"{snapshot.t:.0f} s    {known}"
+    joined = "" if snapshot.frames is None else f"    maps {snapshot.frames.told}"
+    return f"{snapshot.t:.0f} s    {known}{joined}"
 
 
 def outlook(expected: Expected, now: float, share: float | None = None) -> Iterator[tuple[str, str]]:

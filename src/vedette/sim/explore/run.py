@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.domains.mapping.leftovers import Leftover
 from vedette.kernels.motion import remaining
 from vedette.maps.world import World
 from vedette.outcome import Outcome
@@ -14,7 +16,9 @@ from vedette.record.explore.log import Ahead, ExploreSnapshot, RobotSample
 from vedette.record.explore.observer import ExploreObserver, ExploreReport
 from vedette.record.explore.views import GroundFigures, RobotView, held, left_out
 from vedette.record.log import Sink
+from vedette.sim.explore.frames import FrameWatch
 from vedette.sim.explore.simulation import ExploreSetup, ExploreSimulation
+from vedette.sim.framed import FramedRobots, turned
 from vedette.sim.starts import choose_starts
 from vedette.sim.views import NOWHERE, figures, setting, state
 from vedette.sim.watched import Watched
@@ -56,17 +60,20 @@ class ExploreRun(Watched[ExploreReport]):
         self.simulation = simulation
         self._curves_only = curves_only
         self._observer = observer_of(simulation, sinks, curves_only=curves_only)
+        self._frames = FrameWatch(simulation)
         self._next_look = 0.0  # [s]
 
     def _look(self) -> None:
         now = self.simulation.now
         if now >= self._next_look - 1e-9:
+            self._observer.frames = self._frames.look()
             seen = views(self.simulation, ways=not self._curves_only)
             self._observer.look(now, seen, self.simulation.network.links())
             self._next_look += self._observer.period
 
     def _report(self, outcome: Outcome) -> ExploreReport:
         now = self.simulation.now
+        self._observer.frames = self._frames.look() or self._observer.frames
         self._observer.finish(now, views(self.simulation), self.simulation.network.links())
         return self._observer.report(outcome, self.simulation.clock.timing(now))
 
@@ -87,9 +94,9 @@ def observer_of(
     """Return an observer of a simulated mission that has not begun."""
     setup = simulation.setup
     team = simulation.world, simulation.specs, simulation.starts
-    return ExploreObserver(
-        *team, setup.options, setting(setup), sinks, simulation.lattice, curves_only=curves_only
-    )
+    shared = setup.frames == "known"
+    lattice = simulation.lattice if shared else None  # of the world, which the robots' own are laid on
+    return ExploreObserver(*team, setup.options, setting(setup), sinks, lattice, curves_only=curves_only)
 
 
 def views(simulation: ExploreSimulation, *, ways: bool = True) -> list[RobotView]:
@@ -99,11 +106,19 @@ def views(simulation: ExploreSimulation, *, ways: bool = True) -> list[RobotView
 
 def _view(simulation: ExploreSimulation, i: int, ways: bool) -> RobotView:
     mission, bodies, sample = simulation.missions[i], simulation.robots.bodies, _sample(simulation, i, ways)
+    frame = mission.frame.window(*mission.known)
+    classes, seen = held(mission.fusion.classes, mission.own.log_odds, mission.known)
+    impact = simulation.promised(i)
+    if isinstance(simulation.robots, FramedRobots):
+        back, world = simulation.robots.frames[i].inverse(), simulation.world.frame
+        classes, seen = turned(classes, frame, back, world), turned(seen, frame, back, world)
+        frame, impact = world, None
     return RobotView(
         sample,
-        mission.frame.window(*mission.known),
-        *held(mission.fusion.classes, mission.own.log_odds, mission.known),
-        simulation.promised(i),
+        frame,
+        classes,
+        seen,
+        impact,
         GroundFigures(
             **vars(figures(simulation, i, float(bodies.travelled[i]))),
             collisions=int(bodies.collisions[i]),
@@ -111,25 +126,44 @@ def _view(simulation: ExploreSimulation, i: int, ways: bool) -> RobotView:
             pose_error_m=float(simulation.robots.pose_errors[i]),
         ),
         mission.fusion.digest,
-        left_out(mission.left_out, sample.name),
+        left_out(_left_in_world(simulation, i, mission.left_out), sample.name),
         mission.frontiers,
         mission.own.beyond,
         simulation.network.agents[i].ending is Outcome.SPENT,
     )
 
 
+def _in_world(simulation: ExploreSimulation, i: int, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return points ``(n, 2)`` of a robot's own frame as they lie in the world."""
+    robots = simulation.robots
+    return robots.frames[i].places(points) if isinstance(robots, FramedRobots) else points
+
+
+def _left_in_world(simulation: ExploreSimulation, i: int, left: Sequence[Leftover]) -> list[Leftover]:
+    if not isinstance(simulation.robots, FramedRobots) or not left:
+        return list(left)
+    places = _in_world(simulation, i, np.array([(spot.x, spot.y) for spot in left])).tolist()
+    return [replace(spot, x=x, y=y) for spot, (x, y) in zip(left, places, strict=True)]
+
+
 def _sample(simulation: ExploreSimulation, i: int, ways: bool) -> RobotSample:
     x, y, heading = simulation.pose(i)
     alive = bool(simulation.robots.alive[i])
     wanted = simulation.drivers[i].wanted if alive and ways else None
-    path = NOWHERE if wanted is None else remaining(wanted.path, x, y, np.inf)
+    path = NOWHERE
+    if wanted is not None:
+        path = remaining(_in_world(simulation, i, wanted.path), x, y, np.inf)
     goal = (float(path[-1, 0]), float(path[-1, 1])) if len(path) else None
     name = simulation.specs[i].name
     stops = simulation.missions[i].ahead(simulation.now) if alive and ways else ()
+    places = _in_world(simulation, i, np.array([stop[:2] for stop in stops]).reshape(-1, 2)).tolist()
+    tour = tuple(
+        Ahead(x, y, after, reveals) for (x, y), (_, _, after, reveals) in zip(places, stops, strict=True)
+    )
     budget = simulation.missions[i].platform.budget
     return RobotSample(
         *(x, y, heading, state(simulation, i), alive, path, name, goal),
-        tour=tuple(Ahead(*stop) for stop in stops),
+        tour=tour,
         way_left=budget.left if budget.limited else None,
         orders=tuple(given.order for given in simulation.network.agents[i].orders.all),
     )

@@ -16,12 +16,14 @@ from vedette.agent.state import State
 from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.planners import DEFAULT
 from vedette.domains.mapping.prior import PriorMap
+from vedette.errors import InputError
 from vedette.maps.world import World
 from vedette.missions.explore.assemble import assemble
 from vedette.missions.explore.exploring import Exploring
 from vedette.missions.explore.options import ExploreOptions
 from vedette.missions.explore.own_map import OwnMap
 from vedette.outcome import NO_PROGRESS, Outcome
+from vedette.sim.framed import FramedRobots, frames_of
 from vedette.sim.robots import Robots
 from vedette.sim.setup import Setup
 from vedette.sim.simulation import Simulation, random_streams
@@ -37,6 +39,7 @@ class ExploreSetup(Setup):
     return_home: bool = False
     area: tuple[tuple[float, float], ...] | None = None  # corners [m], as in ``ExploreOptions``
     unbounded: bool = False
+    frames: str = "known"  # as in ``ExploreOptions``
     saved: OwnMap | None = None  # an earlier mission's map, which the first robot knows from the start
     prior: PriorMap | None = None  # an old map of the building, which all have
 
@@ -44,7 +47,7 @@ class ExploreSetup(Setup):
     def options(self) -> ExploreOptions:
         """How the team explores."""
         return ExploreOptions(
-            self.planner, self.scheme, self.fusion, self.return_home, self.area, self.unbounded
+            self.planner, self.scheme, self.fusion, self.return_home, self.area, self.unbounded, self.frames
         )
 
 
@@ -66,6 +69,11 @@ class ExploreSimulation(Simulation):
             InputError: the planner is unknown, or negotiates otherwise.
         """
         _ = setup.options.negotiates_by
+        setup.options.check()
+        if setup.frames == "unknown" and any(spec.drift for spec in specs):
+            raise InputError(
+                "frames unknown: maps of drifting robots lie in the frame that they drift from: leave drift out"
+            )
         self.lattice = setup.options.lattice_on(world.frame)
         self.setup = setup
         self.world, self.specs, self.starts = world, tuple(specs), starts
@@ -75,7 +83,10 @@ class ExploreSimulation(Simulation):
 
     def _bodies(self) -> Robots:
         """Return the robots at their starts."""
-        return Robots(self.world, self.specs, self.starts, random_streams(self.setup.seed, len(self.specs)))
+        team = self.world, self.specs, self.starts, random_streams(self.setup.seed, len(self.specs))
+        if self.setup.frames == "known":
+            return Robots(*team)
+        return FramedRobots(*team, frames_of(len(self.specs), self.setup.seed))
 
     def _explorer(self, robot: int, boot: int) -> Agent:
         specs = self.specs

@@ -1,0 +1,1 @@
+"""Exploring in a team that shares no frame: how robots' frames are found, agreed on and used."""

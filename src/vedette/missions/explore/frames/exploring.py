@@ -1,0 +1,127 @@
+"""A robot's share of exploring where none share a frame: it lives in its own, and rounds are on a plane."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, field, replace
+from typing import cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.agent.effects import Job
+from vedette.agent.events import Pose
+from vedette.agent.mates import Mate
+from vedette.agent.messages import FrameTold
+from vedette.domains.mapping.belief import MapBelief
+from vedette.fusion.frame_edges import packed
+from vedette.fusion.framed import FramedEvidence
+from vedette.maps.transform import Transform
+from vedette.missions.explore.exploring import Exploring
+from vedette.missions.explore.frames.footprints import on_plane
+from vedette.missions.explore.frames.matching import Matcher
+from vedette.missions.explore.frames.shared import SharedFrames
+
+ASKEW = 0.5  # of a cell: no frame of a robot's own has its cells along the walls
+ERRAND = -1  # epoch of a job that belongs to no round
+NUMBERED = 1 << 16  # robots; a note's number is its own times that, plus the robot in whose frame it lies
+Note = tuple[int, int, int]
+
+
+@dataclass(eq=False)
+class FramedExploring(Exploring):
+    """Explores, and finds out how the team's frames lie."""
+
+    frames: SharedFrames = field(init=False)
+    matcher: Matcher = field(init=False)
+    _local: MapBelief | None = None  # the round's belief in the robot's own frame
+    _errands: int = 0
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        evidence = cast(FramedEvidence, self.fusion)
+        self.own.askew = ASKEW * self.frame.resolution
+        reach = self.spec.range if self.most is None else self.most.range
+        self.frames = SharedFrames(evidence, self.frame, gap=2.0 * reach + 1.0)
+        self.matcher = Matcher(evidence.key[0], self.frames.charts)
+
+    # -- evidence -----------------------------------------------------------------------------------
+
+    def publish(self, now: float) -> None:
+        """Hand the own evidence to fusion, and at once what has been found of how frames lie."""
+        self.matcher.take()
+        told = [edge for edge in self.frames.evidence.edges if edge in self.matcher.found.values()]
+        if len(told) < len(self.matcher.found):
+            self._counts_due = now
+        super().publish(now)
+
+    def _own_counts(self) -> NDArray[np.int64]:
+        evidence = self.frames.evidence
+        edges = packed(self.matcher.found.values(), len(evidence.counts) - evidence.edges_from)
+        return np.concatenate((super()._own_counts(), edges))
+
+    def errand(self, living: Collection[int], now: float) -> Job | None:
+        """Return a job that finds out how two contributors' frames lie, if it is time for one."""
+        run = self.matcher.errand(self.frames.graph, living, now)
+        if run is None:
+            return None
+        self._errands += 1
+        return Job((ERRAND, self._errands), run)
+
+    # -- frames -------------------------------------------------------------------------------------
+
+    def lay_out(self) -> tuple[FrameTold, ...]:
+        """As the root: return where contributors' frames lie on the plane of a round that begins."""
+        return self.frames.lay_out()
+
+    def take_frames(self, told: Sequence[FrameTold]) -> bool:
+        """Be on the plane as the root says; tell whether this robot has come to the same."""
+        agrees = self.frames.take(told)
+        for pair, edge in list(self.matcher.found.items()):
+            joined = self.frames.graph[edge.a].anchor == self.frames.graph[edge.b].anchor
+            if not joined and edge in self.frames.evidence.edges:
+                self.matcher.drop(pair)
+        return agrees
+
+    def in_own(self, robot: int) -> Transform | None:
+        """Return where a robot's frame lies in this one's; None: it is not known."""
+        return self.frames.own(robot)
+
+    # -- planning -----------------------------------------------------------------------------------
+
+    def notes(self) -> list[Note]:
+        """Return the frontiers that this robot's visits did not change, each with whose frame it is in."""
+        own = self.frames.key[0]
+        return [(x, y, NUMBERED * unknown + own) for x, y, unknown in self._own_notes()]
+
+    def hear_notes(self, notes: Sequence[Note]) -> None:
+        """Leave alone what visits did not change of whoever is joined with this robot."""
+        moved = list[Note]()
+        for x, y, number in notes:
+            unknown, robot = divmod(number, NUMBERED)
+            there = self.frames.own(robot)
+            if there is not None:
+                at = there.place(x / 100.0, y / 100.0)
+                moved.append((round(100.0 * at[0]), round(100.0 * at[1]), unknown))
+        super().hear_notes(moved)
+
+    def freeze(self, t0: float) -> MapBelief:
+        """Snapshot the plane, which all have alike, and beside it the map in the robot's own frame."""
+        plane = self._frozen(self.frames.evidence.plane)
+        local = super().freeze(t0)
+        self._local = replace(local, layers=plane.layers, gathering=plane.gathering)
+        return plane
+
+    def prepare(
+        self, belief: MapBelief, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float
+    ) -> None:
+        """Find the stops in the robot's own frame, and what they show on the plane."""
+        assert self._local is not None
+        super().prepare(self._local, pose, mates, blocked, now)
+        there, stops = self.frames.plane.get(self.frames.key), self.platform.stops
+        if there is None:  # the root has not heard of what this robot has seen
+            self.platform.stand_by()
+            self.strategy = self.platform.carry_over(self.strategy)
+        elif stops is not None:
+            shown = on_plane(stops.footprints, self._local.planning, there)
+            self.platform.stops = replace(stops, footprints=shown)

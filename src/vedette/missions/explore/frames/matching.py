@@ -1,0 +1,140 @@
+"""Finding out by their maps how contributors lie that nothing joins yet: one pair at a time, as jobs."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Collection, Iterator
+from dataclasses import dataclass, field
+
+from vedette.align import Alignment, Charted, FramePose, align
+from vedette.align.agreement import middles, own_frames
+from vedette.align.candidates import FINELY
+from vedette.align.fitted import fitted
+from vedette.align.verdict import STEADY, JoinRule
+from vedette.fusion.frame_edges import FrameEdge
+from vedette.fusion.link import Key
+from vedette.maps.transform import Transform
+from vedette.missions.explore.frames.charts import Charts, pose_of
+from vedette.missions.explore.frames.graph import Graph
+
+RULE = JoinRule(rivalry=0.6, lead=12.0, same=15.0, common=15.0)
+VERSIONS = 3  # of both maps in a row, for which the rule has to hold, at one pose
+LEAST = 15.0  # ground that a map has before it is looked at [m^2]
+GROWN, GROWN_LITTLE = 1.2, 1.03  # more of both, before they are looked at again; after the rule has held [1]
+FITTED_AGAIN = 1.15  # more of both, before a join is fitted anew [1]
+EVERY = 2.0  # a robot looks at a pair [s]
+
+Pair = tuple[Key, Key]
+
+
+@dataclass
+class _Attempts:
+    """What came of looking at a pair."""
+
+    ground: float = 0.0  # of both, when they were looked at last [m^2]
+    held: list[FramePose] = field(default_factory=list)  # poses, since the rule holds
+
+
+@dataclass
+class Matcher:
+    """One robot's search for matches, and the edges that it has found."""
+
+    robot: int
+    charts: Charts
+    found: dict[Pair, FrameEdge] = field(default_factory=dict)
+    refused: Counter[str] = field(default_factory=Counter)  # by why
+    looked: int = 0  # at pairs
+    _attempts: dict[Pair, _Attempts] = field(default_factory=dict)
+    _done: list[Callable[[], None]] = field(default_factory=list)  # what a job has found, to be taken in
+    _due: float = 0.0
+
+    def errand(self, graph: Graph, living: Collection[int], now: float) -> Callable[[], None] | None:
+        """Return what to work out beside all else, if it is time for it."""
+        self.take()
+        if now < self._due:
+            return None
+        self._due = now + EVERY
+        for pair in self._mine(graph, living):
+            a, b = (self.charts.of(key) for key in pair)
+            if a is None or b is None or min(_ground(a), _ground(b)) < LEAST:
+                continue
+            joined = graph[pair[0]].anchor == graph[pair[1]].anchor
+            attempts = self._attempts.setdefault(pair, _Attempts())
+            grown = FITTED_AGAIN if joined else GROWN_LITTLE if attempts.held else GROWN
+            if _ground(a) + _ground(b) < grown * attempts.ground:
+                continue
+            attempts.ground = _ground(a) + _ground(b)
+            if joined:
+                return lambda a=a, b=b, pair=pair: self._refit(pair, a, b)  # type: ignore[misc]
+            return lambda a=a, b=b, pair=pair: self._look(pair, a, b)  # type: ignore[misc]
+        return None
+
+    def take(self) -> None:
+        """Take in what the latest job has found."""
+        while self._done:
+            self._done.pop(0)()
+
+    def drop(self, pair: Pair) -> None:
+        """Take an edge back that evidence has come to contradict; the pair is looked at anew."""
+        self.found.pop(pair, None)
+        self._attempts.pop(pair, None)
+        self.refused["taken back"] += 1
+
+    def _mine(self, graph: Graph, living: Collection[int]) -> Iterator[Pair]:
+        """Yield the pairs that this robot looks at: each the first living one of both, else of all."""
+        keys = sorted(graph)
+        for at, a in enumerate(keys):
+            for b in keys[at + 1 :]:
+                if graph[a].anchor == graph[b].anchor and (a, b) not in self.found:
+                    continue
+                whose = next((key[0] for key in (a, b) if key[0] in living), min(living))
+                if whose == self.robot:
+                    yield a, b
+
+    def _look(self, pair: Pair, a: Charted, b: Charted) -> None:
+        alignment = align(a, b)
+        self._done.append(lambda: self._weigh(pair, alignment, b))
+
+    def _weigh(self, pair: Pair, alignment: Alignment, b: Charted) -> None:
+        """Believe a match once the rule has held for so many versions, at one pose."""
+        attempts = self._attempts.setdefault(pair, _Attempts())
+        self.looked += 1
+        doubt = RULE.doubt(alignment)
+        if doubt is not None:
+            attempts.held.clear()
+            self.refused[_kind(doubt)] += 1
+            return
+        best = alignment.candidates[0]
+        gaps = [best.pose.apart(earlier, b.middle) for earlier in attempts.held]
+        if any(shift > STEADY[0] or turn > STEADY[1] for shift, turn in gaps):
+            attempts.held.clear()
+            self.refused["elsewhere than before"] += 1
+        attempts.held.append(best.pose)
+        if len(attempts.held) >= VERSIONS:
+            self.found[pair] = _edge(pair, best.pose, best.same)
+
+    def _refit(self, pair: Pair, a: Charted, b: Charted) -> None:
+        edge = self.found.get(pair)
+        if edge is None:
+            return
+        fit = fitted(a, b, middles(a, b, pose_of(edge.there)), FINELY)
+        better = _edge(pair, own_frames(a, b, fit.pose), fit.paired * b.cell)
+        self._done.append(lambda: self.found.update({pair: better}) if pair in self.found else None)
+
+
+def _edge(pair: Pair, pose: FramePose, same: float) -> FrameEdge:
+    return FrameEdge(*pair, Transform.of(pose.x, pose.y, pose.angle), round(100.0 * same))
+
+
+def _ground(chart: Charted) -> float:
+    """Return how much free ground a map has [m^2]."""
+    return len(chart.free) * chart.cell**2
+
+
+def _kind(doubt: str) -> str:
+    """Return a doubt without its figures."""
+    return (
+        doubt.split(":")[0]
+        if not any(c.isdigit() for c in doubt.split(":")[0])
+        else "look-alike or contradicted"
+    )

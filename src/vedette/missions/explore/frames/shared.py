@@ -1,0 +1,151 @@
+"""What one robot makes of how the team's frames lie: its own solution, and the plane that a round is on."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, field
+
+from vedette.agent.messages import FrameTold
+from vedette.fusion.framed import FramedEvidence
+from vedette.fusion.link import Key
+from vedette.kernels.tiles import SIDE, Tiling
+from vedette.maps import GridFrame
+from vedette.maps.transform import IDENTITY, Transform
+from vedette.missions.explore.frames.charts import Charts
+from vedette.missions.explore.frames.graph import Placed, solved, within
+from vedette.missions.explore.frames.layout import Box, laid_out
+
+BORNE_OUT = 8.0, 0.15  # walls in common at least [m], and contradicted at most, that an edge may count
+ALLOWED = 2.0, 0.25  # where more contradicts, and a larger share, two are not joined [m, 1]
+AGAIN = 8  # versions of both, after which it is looked at anew whether they agree
+
+Verdict = tuple[int, bool, bool]  # versions of both, whether they bear it out, whether they allow it
+
+
+@dataclass(eq=False)
+class SharedFrames:
+    """Solves the frames from what all have told, and lays them out."""
+
+    evidence: FramedEvidence
+    frame: GridFrame  # of everybody's cells
+    gap: float  # between components on the plane, at least [m]
+    charts: Charts = field(init=False)
+    graph: dict[Key, Placed] = field(default_factory=dict)
+    plane: dict[Key, Transform] = field(default_factory=dict)  # T_plane_contributor of the latest round
+    undone: int = 0  # joins that evidence has come to contradict
+    _verdicts: dict[tuple[Key, Key, Transform], Verdict] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.charts = Charts(self.evidence, self.frame)
+        self.graph = {self.key: Placed(self.key, IDENTITY)}
+
+    @property
+    def key(self) -> Key:
+        """This robot as a contributor."""
+        return self.evidence.key
+
+    @property
+    def known(self) -> list[Key]:
+        """Contributors who have seen anything, and this robot."""
+        return sorted({self.key, *(key for key, copy in self.evidence.copies.items() if copy.version)})
+
+    def solve(self) -> None:
+        """Work out anew where contributors lie, and draw those that are joined in this robot's own frame."""
+        keys = self.known
+        middles = {key: _middle(box) for key, box in self._boxes(keys).items()}
+        edges = [edge for edge in self.evidence.edges if edge.a in middles and edge.b in middles]
+        self.graph = solved(edges, keys, middles, self._bears_out, self._allows)
+        anchor, own = self.graph[self.key]
+        back = own.inverse()
+        self.evidence.place_own(
+            {key: back.after(there) for key, (other, there) in self.graph.items() if other == anchor}
+        )
+
+    def own(self, robot: int) -> Transform | None:
+        """Return where the frame of a robot's latest start lies in this one's; None: it is not known."""
+        return next(
+            (there for key, there in sorted(self.evidence.frames.items(), reverse=True) if key[0] == robot),
+            None,
+        )
+
+    def lay_out(self) -> tuple[FrameTold, ...]:
+        """As the root: return where contributors lie on the plane of a round that begins."""
+        self.solve()
+        most = self.frame.resolution * min(self.frame.shape) / 2.0
+        laid = laid_out(self.graph, self._boxes(self.known), self.gap, most)
+        return tuple(FrameTold(*each.key, each.part, *each.there) for each in laid)
+
+    def take(self, told: Sequence[FrameTold]) -> bool:
+        """Draw the plane as the root says; tell whether this robot has come to the same.
+
+        Raises:
+            ValueError: a contributor is told twice.
+        """
+        keys = [(each.robot, each.boot) for each in told]
+        if len(set(keys)) < len(keys):
+            raise ValueError("freeze: a contributor's frame is told twice")
+        self.solve()
+        self.plane = {
+            key: Transform(each.x, each.y, each.angle) for key, each in zip(keys, told, strict=True)
+        }
+        self.evidence.place_plane(self.plane)
+        parts = {key: each.part for key, each in zip(keys, told, strict=True)}
+        return self._agrees(parts)
+
+    def _agrees(self, parts: dict[Key, int]) -> bool:
+        """Tell whether the root's components are this robot's, and lie within a tolerance as it has them."""
+        boxes = self._boxes(self.known)
+        if parts.keys() != boxes.keys():
+            return False
+        first: dict[int, Key] = {}
+        anchors = dict[int, Key]()
+        for key in sorted(parts):
+            part, placed = parts[key], self.graph[key]
+            one = first.setdefault(part, key)
+            if anchors.setdefault(part, placed.anchor) != placed.anchor:
+                return False
+            told = self.plane[one].inverse().after(self.plane[key])
+            own = self.graph[one].there.inverse().after(placed.there)
+            if not within(told, own, *_middle(boxes[key])):
+                return False
+        return len(set(anchors.values())) == len(anchors)
+
+    def _boxes(self, keys: Collection[Key]) -> dict[Key, Box]:
+        """Return a box around what each has seen, in its own frame [m]."""
+        boxes: dict[Key, Box] = {}
+        tiling, cell = Tiling(*self.frame.shape), self.frame.resolution
+        for key in keys:
+            tiles = self.evidence.copies[key].known_tiles
+            if len(tiles):
+                rows, cols = tiling.corners(tiles)
+                x0, y0 = self.frame.origin_x + cols.min() * cell, self.frame.origin_y + rows.min() * cell
+                x1 = self.frame.origin_x + (cols.max() + SIDE) * cell
+                y1 = self.frame.origin_y + (rows.max() + SIDE) * cell
+                boxes[key] = float(x0), float(y0), float(x1), float(y1)
+        return boxes
+
+    def _bears_out(self, a: Key, b: Key, there: Transform) -> bool:
+        return self._verdict(a, b, there)[1]
+
+    def _allows(self, a: Key, b: Key, there: Transform) -> bool:
+        return self._verdict(a, b, there)[2]
+
+    def _verdict(self, a: Key, b: Key, there: Transform) -> Verdict:
+        """Return what the evidence of two says of where one lies on the other, looked at now and then."""
+        copies = self.evidence.copies
+        versions = copies[a].version + copies[b].version
+        known = self._verdicts.get((a, b, there))
+        if known is not None and versions < known[0] + AGAIN:
+            return known
+        found = self.charts.agreement(a, b, there)
+        if found is None:
+            verdict = versions, False, True
+        else:
+            out = found.same >= BORNE_OUT[0] and found.contradicted <= BORNE_OUT[1]
+            verdict = versions, out, found.against < ALLOWED[0] or found.contradicted <= ALLOWED[1]
+        self._verdicts[a, b, there] = verdict
+        return verdict
+
+
+def _middle(box: Box) -> tuple[float, float]:
+    return (box[0] + box[2]) / 2.0, (box[1] + box[3]) / 2.0

@@ -1,0 +1,93 @@
+"""Simulated robots that reckon each in a frame of its own, as its SLAM would."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.agent.effects import Drive, Motion, Route
+from vedette.agent.events import Event, Pose, Scan
+from vedette.align import FramePose
+from vedette.maps import GridFrame
+from vedette.maps.world import World
+from vedette.sim.robots import Robots
+from vedette.team import PlatformSpec
+
+CellT = TypeVar("CellT", np.bool_, np.uint8)
+AWAY = 20.0  # a frame's origin lies so far from the world's at most, along either axis [m]
+
+
+def frames_of(robots: int, seed: int) -> list[FramePose]:
+    """Return where each robot's frame lies in the world: ``T_world_own``, anywhere and turned by anything."""
+    rng = np.random.default_rng([seed, 19])
+    return [
+        FramePose.of(*map(float, rng.uniform((-AWAY, -AWAY, -math.pi), (AWAY, AWAY, math.pi))))
+        for _ in range(robots)
+    ]
+
+
+class FramedRobots(Robots):
+    """Robots that are told, and tell, all in frames of their own; ``pose`` alone is of the world."""
+
+    def __init__(
+        self,
+        world: World,
+        specs: Sequence[PlatformSpec],
+        starts: NDArray[np.float64],
+        noise: Sequence[np.random.Generator],
+        frames: Sequence[FramePose],
+    ) -> None:
+        super().__init__(world, specs, starts, noise)
+        self.frames = list(frames)  # T_world_own
+
+    def sense(self, i: int, now: float) -> list[Event]:
+        """Return what a robot senses, in its own frame."""
+        return [self._in_own(i, event) for event in super().sense(i, now)]
+
+    def _in_own(self, i: int, event: Event) -> Event:
+        back = self.frames[i].inverse()
+        match event:
+            case Pose():
+                own = back.after(FramePose.of(event.x, event.y, event.heading))
+                return replace(event, x=own.x, y=own.y, heading=own.angle)
+            case Scan():
+                (offset,) = np.array([event.offset]) @ back.rotation.T
+                return replace(event, angles=event.angles + back.angle, offset=tuple(offset.tolist()))
+        return event
+
+    def carry_out(self, i: int, motion: Motion, now: float) -> None:
+        """Let a robot follow a route of its own frame, or stand."""
+        if isinstance(motion, Drive) and motion.route is not None:
+            motion = Drive(self._in_world(i, motion.route))
+        super().carry_out(i, motion, now)
+
+    def _in_world(self, i: int, route: Route) -> Route:
+        """Return a route as it lies in the world, each of whose cells is as passable as what is under it."""
+        there, frame = self.frames[i], self._world.frame
+        back = there.inverse()
+        facing = None if route.facing is None else route.facing + there.angle
+        passable = turned(route.passable, route.frame, back, frame)
+        return replace(route, path=there.places(route.path), passable=passable, frame=frame, facing=facing)
+
+
+def turned(grid: NDArray[CellT], frame: GridFrame, back: FramePose, onto: GridFrame) -> NDArray[CellT]:
+    """Return ``(R, C)`` over the frame ``onto``: what a grid of another frame has under each middle, or 0.
+
+    ``back``: T_grid_onto.
+    """
+    col = onto.origin_x + (np.arange(onto.cols) + 0.5) * onto.resolution
+    row = onto.origin_y + (np.arange(onto.rows) + 0.5) * onto.resolution
+    (cos, _), (sin, _) = back.rotation
+    x = cos * col[None, :] - sin * row[:, None] + back.x
+    y = sin * col[None, :] + cos * row[:, None] + back.y
+    j = np.floor((x - frame.origin_x) / frame.resolution).astype(np.int64)
+    i = np.floor((y - frame.origin_y) / frame.resolution).astype(np.int64)
+    inside = (i >= 0) & (i < frame.rows) & (j >= 0) & (j < frame.cols)
+    out = np.zeros(onto.shape, grid.dtype)
+    out[inside] = grid[i[inside], j[inside]]
+    return out
