@@ -15,7 +15,7 @@ from vedette.maps import UNKNOWN
 _PLACES = 4000  # of free ground are looked at for what both know
 
 
-class Agreement(NamedTuple):
+class MapAgreement(NamedTuple):
     """Walls and ground of two maps, in the mean of both ways of looking at it."""
 
     same: float  # walls of each that lie on the other's [m]
@@ -29,11 +29,11 @@ class Agreement(NamedTuple):
         return self.against / seen if seen else 1.0
 
 
-def agreement(a: Charted, b: Charted, between_middles: FramePose) -> Agreement:
+def agreement(a: Charted, b: Charted, between_middles: FramePose) -> MapAgreement:
     """Return how far two maps agree where B lies on A so."""
     on_a = _counts(a, b, between_middles) * b.cell
     on_b = _counts(b, a, between_middles.inverse()) * a.cell
-    return Agreement(
+    return MapAgreement(
         same=float(on_a[SAME] + on_b[SAME]) / 2.0,
         against=float(on_a[CLEAR] + on_b[CLEAR]) / 2.0,
         common=_common(a, b, between_middles),

@@ -47,7 +47,8 @@ class ExploreSetup(Setup):
     def options(self) -> ExploreOptions:
         """How the team explores."""
         return ExploreOptions(
-            self.planner, self.scheme, self.fusion, self.return_home, self.area, self.unbounded, self.frames
+            *(self.planner, self.scheme, self.fusion, self.return_home, self.area, self.unbounded),
+            frames=self.frames,
         )
 
 
@@ -71,9 +72,7 @@ class ExploreSimulation(Simulation):
         _ = setup.options.negotiates_by
         setup.options.check()
         if setup.frames == "unknown" and any(spec.drift for spec in specs):
-            raise InputError(
-                "frames unknown: maps of drifting robots lie in the frame that they drift from: leave drift out"
-            )
+            raise InputError("frames unknown: drift moves frames as well; leave it out")
         self.lattice = setup.options.lattice_on(world.frame)
         self.setup = setup
         self.world, self.specs, self.starts = world, tuple(specs), starts

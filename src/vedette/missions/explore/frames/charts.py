@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.align import Charted, FramePose, charted
-from vedette.align.agreement import Agreement, agreement, middles
+from vedette.align.agreement import MapAgreement, agreement, middles
 from vedette.fusion.framed import FramedEvidence
 from vedette.fusion.link import Key
 from vedette.fusion.tiles import CLASSES
@@ -49,7 +49,7 @@ class Charts:
         self._kept.move_to_end(name)
         return self._kept[name]
 
-    def agreement(self, a: Key, b: Key, there: Transform) -> Agreement | None:
+    def agreement(self, a: Key, b: Key, there: Transform) -> MapAgreement | None:
         """Return how far two contributors agree where b lies in a's frame so; None: one has no chart."""
         on, of = self.of(a), self.of(b)
         if on is None or of is None:
