@@ -79,6 +79,7 @@ class ExploreSnapshot:
     known_m2: float = 0.0  # that the living robots know
     frontiers: int | None = None  # where to go on, as of the latest round; None: there has been none
     left_out: tuple[LeftOut, ...] = ()  # where robots do not go on, and why
+    frames: FramesFound | None = None  # whose maps are joined by now; None: all share one frame
     expected: Expected | None = None  # of its further course; None: it is too early to say, or all is over
 
     @property
@@ -87,8 +88,6 @@ class ExploreSnapshot:
         living = [robot for robot in self.robots if robot.alive]
         way = sum(robot.driven for robot in living) / max(len(living), 1)
         return Progress(self.t, self.known_m2, self.frontiers, way, len(living))
-
-    frames: FramesFound | None = None  # whose maps are joined by now; None: all share one frame
 
     @property
     def rate_m2_s(self) -> float:
