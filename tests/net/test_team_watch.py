@@ -82,3 +82,31 @@ def test_a_team_of_vehicles_is_on_one_page_that_ends_with_it(
         process.communicate(timeout=60.0)
     assert process.returncode in (0, 1)
     assert (out / "summary.json").exists()
+
+
+def test_orders_of_a_file_are_given_at_their_times_and_obeyed_by_processes(tmp_path: Path) -> None:
+    corners = [[130, 100], [190, 100], [190, 160], [130, 160]]
+    orders = [
+        {"at": 4, "order": "no-go", "area": "yard", "corners": corners},
+        {"at": 6, "order": "recall", "to": [150, 130]},
+        {"at": 8, "order": "recall"},
+    ]
+    (tmp_path / "orders.yaml").write_text(yaml.safe_dump({"orders": orders[:1] + orders[2:]}))
+    (tmp_path / "wrong.yaml").write_text(yaml.safe_dump({"orders": orders}))
+    (tmp_path / "scene.yaml").write_text(yaml.safe_dump(track_scenes.content(duration=60)))
+    command = [sys.executable, "-m", "vedette", "team", "track", tmp_path / "scene.yaml", "--speed", 2]
+    ran, refused = (
+        subprocess.run(
+            [*map(str, command), "--orders", str(tmp_path / file), "--out", str(tmp_path / "out"), "--json"],
+            capture_output=True, text=True, timeout=120.0, check=False,
+        )
+        for file in ("orders.yaml", "wrong.yaml")
+    )  # fmt: skip
+    assert refused.returncode == 2
+    assert "150, 130 lies in the no-go area yard" in refused.stderr
+    told = json.loads(ran.stdout)
+    assert told["outcome"] == "ordered"
+    assert ran.returncode == 0
+    assert (
+        len(re.findall(r"order (?:no-go area yard|recall): taken by vehicle-1, vehicle-2", ran.stderr)) == 2
+    )
