@@ -9,10 +9,12 @@ import numpy as np
 
 from vedette.align.candidates import Alignment, PossibleJoin, align
 from vedette.align.charted import Charted, charted
+from vedette.align.corners import beside_a_corner
 from vedette.maps import UNKNOWN
 
 THINNINGS = 3
 THINNED = 0.3  # share of the ground that a thinning takes out
+BESIDE = 10.0  # walls that both have beside the two straight lines with most of them, at least [m]
 BLOCK = 2.0  # side of what it takes out at once [m]
 STEADY = 0.3, math.radians(2.0)  # how far thinned maps may come from the whole ones' pose [m, rad]
 
@@ -64,8 +66,8 @@ class JoinVerdict:
 def judged(a: Charted, b: Charted, seed: int) -> JoinVerdict:
     """Return whether two maps that will not change can be joined.
 
-    The rule must hold for them whole, and for each of `THINNINGS` copies with parts missing, and all at about
-    one pose: what depends on a few walls is not believed.
+    The rule must hold for them whole, with more in common than a bare corner, and for each of `THINNINGS`
+    copies with parts missing, and all at about one pose: what depends on a few walls is not believed.
 
     Args:
         a: first map.
@@ -73,13 +75,20 @@ def judged(a: Charted, b: Charted, seed: int) -> JoinVerdict:
         seed: of what the copies lack.
     """
     whole = align(a, b)
-    doubt = SAVED.doubt(whole)
+    doubt = SAVED.doubt(whole) or _bare(a, b, whole.candidates[0])
     for number in range(THINNINGS):
         if doubt is not None:
             break
         rng = np.random.default_rng([seed, number])
         doubt = _doubt_of_thinned(whole.candidates[0], thinned(a, rng), thinned(b, rng))
     return JoinVerdict(whole, doubt)
+
+
+def _bare(a: Charted, b: Charted, best: PossibleJoin) -> str | None:
+    beside = beside_a_corner(a, b, best.pose)
+    if beside >= BESIDE:
+        return None
+    return f"what both have is a bare corner, as any hall has one: {beside:.0f} m of other walls"
 
 
 def _doubt_of_thinned(best: PossibleJoin, a: Charted | None, b: Charted | None) -> str | None:
