@@ -32,7 +32,6 @@ class SharedFrames:
     charts: Charts = field(init=False)
     graph: dict[Key, Placed] = field(default_factory=dict)
     plane: dict[Key, Transform] = field(default_factory=dict)  # T_plane_contributor of the latest round
-    undone: int = 0  # joins that evidence has come to contradict
     _verdicts: dict[tuple[Key, Key, Transform], Verdict] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
