@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from vedette.kernels.align import CLEAR, ELSE, NOWHERE, SAME
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
@@ -52,7 +52,7 @@ class Charted:
     @cached_property
     def faces(self) -> NDArray[np.bool_]:
         """``(R, C)``: occupied cells beside free ones; what is behind them does not count."""
-        beside = ndimage.binary_dilation(self.classes == FREE, np.ones((3, 3), np.bool_))
+        beside = scipy.ndimage.binary_dilation(self.classes == FREE, np.ones((3, 3), np.bool_))
         return np.asarray(beside & (self.classes == OCCUPIED))
 
     @cached_property
@@ -69,7 +69,7 @@ class Charted:
     def normals(self) -> Floats:
         """``(n, 2)``: unit vectors from each face to the free ground before it."""
         open_ground = (self.classes == FREE).astype(np.float32) - (self.classes == OCCUPIED)
-        smooth = ndimage.gaussian_filter(open_ground, _SMOOTH, mode="nearest", truncate=3.0)
+        smooth = scipy.ndimage.gaussian_filter(open_ground, _SMOOTH, mode="nearest", truncate=3.0)
         down, across = np.gradient(smooth) if min(smooth.shape) > 1 else (smooth * 0.0, smooth * 0.0)
         along = np.stack([across[self.faces], down[self.faces]], axis=1).astype(np.float64)
         length = np.hypot(*along.T)[:, None]
@@ -79,7 +79,7 @@ class Charted:
     @cached_property
     def _nearest(self) -> tuple[Floats, NDArray[np.int32]]:
         """How far each cell is from the next face [cells], and the face's flat cell."""
-        far, (rows, cols) = ndimage.distance_transform_edt(~self.faces, return_indices=True)
+        far, (rows, cols) = scipy.ndimage.distance_transform_edt(~self.faces, return_indices=True)
         return far, (rows * self.frame.cols + cols).astype(np.int32)
 
     @cached_property

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import fft, ndimage
 
 from vedette.align.charted import Charted
 from vedette.align.pose import FramePose
@@ -29,7 +29,7 @@ def likely(a: Charted, b: Charted, most: int) -> list[FramePose]:
     """
     both = a.side + b.side * math.sqrt(2.0) + 2.0 * SMALLEST
     cell = min(max(SMALLEST, 2.0 * a.cell, 2.0 * b.cell, both / CELLS_ALONG), LARGEST)
-    size = int(fft.next_fast_len(math.ceil(both / cell) + 4))
+    size = int(scipy.fft.next_fast_len(math.ceil(both / cell) + 4))
     turn = min(max(TURN_AT_THE_END * cell / (b.side / 2.0), LEAST_TURN), MOST_TURN)
     turns = math.ceil(math.pi / 2.0 / turn)
     angles = np.linspace(0.0, math.pi / 2.0, turns, endpoint=False)
@@ -53,7 +53,7 @@ def _torus(a: Charted, cell: float, size: int) -> tuple[NDArray[np.float32], NDA
     for mask, points in ((walls, a.walls), (free, a.free)):
         col, row = np.floor((points - a.corner) / cell).astype(int).T
         mask[row, col] = 1.0
-    beside = ndimage.maximum_filter(walls, size=3, mode="wrap")
+    beside = scipy.ndimage.maximum_filter(walls, size=3, mode="wrap")
     free[beside > 0.0] = 0.0
     return np.maximum(walls, BESIDE * beside, dtype=np.float32), free
 
