@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from tests.support import lies
 from tests.support.liars import Ending, play, without
-from tests.support.lies import MODES
+from tests.support.lies import MODES, FewerCounts, Mode
 
 BAD = sorted(MODES.keys() - {"dead", "dead between", "honest"})
 SCHEMES = ("fork", "async", "jacobi")
@@ -28,7 +29,7 @@ def is_named(ending: Ending) -> bool:
     return ending.named.get(ending.liar, float("inf")) <= NAMED_WITHIN
 
 
-@pytest.mark.parametrize("mode", ["claim", "double", "free", "mute", "notes", "poison", "slow"])
+@pytest.mark.parametrize("mode", ["claim", "counts", "double", "free", "mute", "notes", "poison", "slow"])
 def test_a_team_of_three_finishes_and_names_who_misbehaves(mode: str) -> None:
     check(mode, 3, 0)
 
@@ -55,6 +56,14 @@ def test_teams_name_who_lies_whatever_the_scheme(mode: str, scheme: str, seed: i
 def test_a_false_sum_that_its_teller_signs_convicts_it_before_all(robots: int, seed: int) -> None:
     ending = check("sum", robots, seed)
     assert ending.out == {ending.liar}
+
+
+def test_no_robots_counts_make_others_expect_nothing_of_scans(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By counts that nobody could refuse a team once ended after 2.4 s, with a third of its office known."""
+    monkeypatch.setitem(lies.MODES, "counts", Mode(FewerCounts))  # type: ignore[arg-type]
+    ending, dead = play("counts", 3, 0), without("dead", 3, 0)
+    assert ending.known >= 0.99 * dead.known
+    assert ending.time <= 1.5 * dead.time
 
 
 def test_of_the_honest_nobody_is_named_and_all_are_believed() -> None:

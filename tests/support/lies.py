@@ -18,6 +18,7 @@ from vedette.agent.effects import Send
 from vedette.agent.messages import Evidence, Negotiate
 from vedette.agent.networked import Output
 from vedette.domains.mapping.objective import MappingObjective
+from vedette.domains.mapping.sightings import BINS
 from vedette.domains.mapping.views import MOST_STOPS
 from vedette.kernels.coverage import LAYERS
 from vedette.kernels.misses import SparseMisses
@@ -87,6 +88,24 @@ class Notes(Exploring):
         """Remember where there are frontiers."""
         self._belief = super().freeze(t0)
         return self._belief
+
+
+class Counts(Exploring):
+    """It has looked at everything, more often than anybody, and scans hardly ever show anything."""
+
+    tried = 1 << 53
+
+    def _own_counts(self) -> NDArray[np.int64]:
+        counts = super()._own_counts()
+        sightings = counts[: 4 * BINS].reshape(4, BINS)
+        sightings[0::2], sightings[1::2] = self.tried, 0
+        return counts
+
+
+class FewerCounts(Counts):
+    """Likewise, but no more often than somebody could."""
+
+    tried = 10**8
 
 
 class Claims(Exploring):
@@ -199,6 +218,7 @@ LIES: Mapping[str, Mode] = {
     "free": Mode(Free),
     "far": Mode(Far, unbounded=True),
     "notes": Mode(Notes),
+    "counts": Mode(Counts),
     "claim": Mode(Claims),
     "poison": Mode(program=lambda rng: Poisoning),
     "sum": Mode(Sums, between=True),

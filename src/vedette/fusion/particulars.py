@@ -15,6 +15,8 @@ from vedette import wire
 from vedette.kernels.tiles import SIDE, Tiling
 
 MOST_NOTES = 512
+MOST_COUNTED = 1e7  # of anything, by a robot, in a second; honest ones come to some 1e4
+LONG = 60.0  # a robot may have looked about before it says to have set out [s]
 ABOUT = 5.0  # where a visit is told of, its robot has been so near, some seconds ago [m]
 Cell = Annotated[int, Meta(ge=0, lt=2**31)]
 Centimetre = Annotated[int, Meta(ge=-(2**31), le=2**31)]
@@ -81,6 +83,13 @@ class Capabilities:
                     f"it says to have been in two places {away:.0f} m apart within {seconds:.0f} s"
                 )
             place, then = there, when
+
+    def check_counts(self, counts: NDArray[np.int64], start: Particulars, time: int) -> None:
+        """Raise ValueError for more than anybody can have counted since it set out."""
+        seconds = max(time - start.began, 0) / 10.0 + LONG
+        most = int(np.abs(counts).max(initial=0))
+        if most > MOST_COUNTED * seconds:
+            raise ValueError(f"it says to have counted {most} within {seconds:.0f} s, as nobody can")
 
     def check(self, tiling: Tiling, tiles: NDArray[np.int64], start: Particulars, time: int) -> None:
         """Raise ValueError for a tile farther from its maker's start than it can have driven, plus its range.

@@ -53,6 +53,8 @@ class MapSealings(Sealings[SealedSnapshot, Delta[np.uint8]]):
         if news.voucher.place is not None:
             wire.decode_place(news.voucher.place)
         self._limits.check_visits(now)
+        if news.counts is not None:
+            self._limits.check_counts(news.counts, now, news.voucher.seal.time)
         self._limits.check(self._tiling, news.tiles, now, news.voucher.seal.time)
 
 
@@ -198,6 +200,14 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
             if copy.particulars and robot not in self.out:
                 told.setdefault(robot, set()).update(wire.decode(copy.particulars).notes)
         return told
+
+    def counts_of_each(self) -> NDArray[np.int64]:
+        """``(n, K)`` what each robot that is believed has counted, all its starts together."""
+        told: dict[int, NDArray[np.int64]] = {}
+        for (robot, _), copy in self._contributors.copies.items():
+            if robot not in self.out:
+                told[robot] = told.get(robot, 0) + copy.counts
+        return np.array([told[robot] for robot in sorted(told)], np.int64).reshape(-1, len(self.counts))
 
     def _believed(self) -> Iterable[SealedSnapshot]:
         return (copy for (robot, _), copy in self._contributors.copies.items() if robot not in self.out)

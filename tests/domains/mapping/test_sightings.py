@@ -16,6 +16,7 @@ from vedette.domains.mapping.sightings import (
     empty_counts,
     measured_model,
     non_increasing,
+    pooled,
 )
 
 seeds = st.integers(0, 2**32 - 1)
@@ -100,3 +101,24 @@ def test_rays_that_share_unknown_cells_miss_together_more_often_than_the_product
     assert together <= (missed @ chance).min() + 1e-12
     if disjoint:
         assert together == pytest.approx(product)
+
+
+@settings(deadline=None, max_examples=50)
+@given(seeds, st.integers(2, 6), st.integers(0, 2**53), st.integers(-(2**53), 2**53))
+def test_whatever_one_robot_has_counted_the_curve_is_at_least_half_of_what_all_others_make_it(
+    seed: int, robots: int, tried: int, seen: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    honest = np.array([counts_of(rng.uniform(0.2, 1.0, BINS), 1000, rng) for _ in range(robots)])
+    told = np.append(honest, [np.repeat([[tried], [seen], [tried], [seen]], BINS, axis=1)], axis=0)
+    ours, all_of = pooled(told), honest.sum(axis=0)
+    assert (ours[0::2] <= 2 * all_of[0::2]).all()
+    assert (2 * ours[1::2] * all_of[0::2] >= 0.99 * all_of[1::2] * ours[0::2]).all()
+    assert (ours[1::2] <= ours[0::2]).all()
+
+
+def test_counts_of_robots_that_have_tried_alike_and_of_one_alone_are_added_up() -> None:
+    rng = np.random.default_rng(4)
+    honest = np.array([counts_of(rng.uniform(size=BINS), 1000, rng) for _ in range(3)])
+    assert np.array_equal(pooled(honest), honest.sum(axis=0))
+    assert np.array_equal(pooled(honest[:1]), honest[0])

@@ -35,6 +35,21 @@ def empty_counts() -> NDArray[np.int64]:
     return np.zeros((4, BINS), np.int64)
 
 
+def pooled(told: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Add up ``(n, 4, BINS)`` counts of robots that need not be honest: nobody outweighs all the others.
+
+    Where one has tried more than all others together it counts as if it had tried as often as they have; so
+    what one says halves, or doubles, what is expected at most. Of one robot alone all counts.
+    """
+    tried = np.maximum(told[:, 0::2], 0)
+    seen = np.clip(told[:, 1::2], 0, tried)
+    counts = np.minimum(tried, tried.sum(axis=0) - tried) if len(told) > 1 else tried
+    sightings = np.empty(told.shape[1:], np.int64)
+    sightings[0::2] = counts.sum(axis=0)
+    sightings[1::2] = np.rint(seen * (counts / np.maximum(tried, 1))).sum(axis=0)
+    return sightings
+
+
 def measured_model(
     counts: NDArray[np.int64], resolution: float, cells: int, *, by_distance: bool
 ) -> SightingModel:

@@ -28,7 +28,7 @@ from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.planners import Planner
 from vedette.domains.mapping.platform import STAY, MappingPlatform, Tour
 from vedette.domains.mapping.prior import PriorMap
-from vedette.domains.mapping.sightings import BINS
+from vedette.domains.mapping.sightings import BINS, pooled
 from vedette.domains.mapping.stops import NEARBY, VIEW_REACH, Disc, around
 from vedette.domains.mapping.views import MOST_STOPS
 from vedette.fusion import Fusion, ShownMap
@@ -193,7 +193,7 @@ class Exploring:
         """Snapshot a map of the team."""
         known = shown.known
         classes = shown.classes.window(*known)
-        counts = shown.counts[: 4 * BINS].reshape(4, BINS).copy()
+        counts = self._sightings(shown)
         about: dict[str, Any] = {
             "reach": max(self.spec.range, NEARBY + self.frame.resolution),
             "extent": longest_frontier(self.spec.range),
@@ -212,6 +212,12 @@ class Exploring:
             (self.frame, *about.values()),
             lambda: freeze(classes, self.frame, counts=counts, **about),
         )
+
+    def _sightings(self, shown: ShownMap) -> NDArray[np.int64]:
+        """``(4, BINS)`` the team's sightings; where they are signed nobody's outweigh all others'."""
+        if self.signed is None:
+            return shown.counts[: 4 * BINS].reshape(4, BINS).copy()
+        return pooled(self.signed.counts_of_each()[:, : 4 * BINS].reshape(-1, 4, BINS))
 
     def prepare(
         self, belief: MapBelief, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float
