@@ -16,6 +16,7 @@ from vedette.fusion.frame_edges import FrameEdge
 from vedette.fusion.link import Key
 from vedette.kernels.coverage import Footprints
 from vedette.maps import GridFrame
+from vedette.maps.disc import cells_under
 from vedette.maps.transform import IDENTITY, TURN, Transform
 from vedette.missions.explore.frames.footprints import on_plane
 from vedette.missions.explore.frames.graph import Placed, solved
@@ -23,6 +24,7 @@ from vedette.missions.explore.frames.layout import Box, laid_out
 from vedette.record.explore.observer import ExploreReport
 from vedette.sim.explore.run import explore, prepare
 from vedette.sim.explore.simulation import ExploreSetup
+from vedette.sim.framed import FramedRobots
 
 TRANSFORMS = st.builds(
     Transform, st.integers(-20_000, 20_000), st.integers(-20_000, 20_000), st.integers(0, TURN - 1)
@@ -205,6 +207,18 @@ def test_two_robots_that_share_no_frame_map_an_office_together() -> None:
     assert join.error_m < 0.1
     assert join.error_deg < 1.0
     assert summary.maps == (("robot-1", "robot-2"),)
+
+
+def test_a_mate_whose_frame_is_unknown_is_not_mapped_as_a_wall() -> None:
+    simulation = prepare(small_office(seed=1), robots(2), ExploreSetup(seed=7, frames="unknown"))
+    assert isinstance(simulation.robots, FramedRobots)
+    while simulation.now < 4.5:
+        simulation.step()
+        for i, mission in enumerate(simulation.missions):
+            x, y, _ = simulation.pose(1 - i)
+            mate = simulation.robots.frames[i].inverse().places(np.array([[x, y]]))[0]
+            under = cells_under(mission.frame, float(mate[0]), float(mate[1]), 0.15)
+            assert (mission.own.log_odds.take(under) <= 0).all()
 
 
 def test_the_same_seed_gives_the_same_mission() -> None:

@@ -21,6 +21,7 @@ from vedette.missions.explore.exploring import Exploring
 from vedette.missions.explore.frames.footprints import on_plane
 from vedette.missions.explore.frames.matching import Matcher
 from vedette.missions.explore.frames.shared import SharedFrames
+from vedette.missions.explore.passers_by import PassersBy
 
 ASKEW = 0.5  # of a cell: no frame of a robot's own has its cells along the walls
 ERRAND = -1  # epoch of a job that belongs to no round
@@ -41,6 +42,7 @@ class FramedExploring(Exploring):
         super().__post_init__()
         evidence = cast(FramedEvidence, self.fusion)
         self.own.askew = ASKEW * self.frame.resolution
+        self.own.passers_by = PassersBy(self.frame, self.spec.radius)  # mates of unknown frames among them
         reach = self.spec.range if self.most is None else self.most.range
         self.frames = SharedFrames(evidence, self.frame, gap=2.0 * reach + 1.0)
         self.matcher = Matcher(evidence.key[0], self.frames.charts)
