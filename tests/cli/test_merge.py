@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from PIL import Image
 
@@ -11,7 +12,7 @@ from tests.support.commands import Command, refused
 from tests.support.frames import Part, building, part
 from tests.support.schemas import valid
 from vedette.align import FramePose
-from vedette.maps import read_map, write_map
+from vedette.maps import FREE, UNKNOWN, GridFrame, read_map, write_map
 
 HERE = FramePose(0.0, 0.0, 0.0)
 
@@ -64,4 +65,8 @@ def test_bad_input_is_told_in_one_line(vedette: Command) -> None:
     refused(vedette("a.yaml", "gone.yaml", "--out", "both"), "gone.yaml")
     refused(vedette("a.yaml", "a.pgm", "--out", "both"), "resolution")
     refused(vedette("a.yaml", "a.yaml", "--out", "."), "which this command reads")
+    frame = GridFrame(0.05, 60, 80)
+    for name, content in (("empty", UNKNOWN), ("bare", FREE)):
+        write_map(name, frame, np.full(frame.shape, content, np.uint8))
+        refused(vedette("a.yaml", f"{name}.yaml", "--out", "both"), "has no walls beside free ground")
     assert not Path("both").exists()
