@@ -68,5 +68,7 @@ def test_bad_input_is_told_in_one_line(vedette: Command) -> None:
     frame = GridFrame(0.05, 60, 80)
     for name, content in (("empty", UNKNOWN), ("bare", FREE)):
         write_map(name, frame, np.full(frame.shape, content, np.uint8))
-        refused(vedette("a.yaml", f"{name}.yaml", "--out", "both"), "has no walls beside free ground")
+        refused(
+            vedette("a.yaml", f"{name}.yaml", "--out", "both"), "so there is nothing to find its place by"
+        )
     assert not Path("both").exists()
