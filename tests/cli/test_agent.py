@@ -76,6 +76,7 @@ MISTAKES: list[tuple[dict[str, Any], str]] = [
     ({"explore": {"planner": "tour"}}, "explore.planner: unknown planner 'tour'; did you mean 'tours'?"),
     ({"explore": {"scheme": "tokens"}}, "explore.scheme: unknown scheme 'tokens'"),
     ({"explore": {"fusion": "none"}}, "explore.fusion: unknown fusion 'none'"),
+    ({"explore": {"frames": "unknown"}}, "explore.frames: 'unknown' is for simulated teams"),
     ({"body": {"map": "no-map.yaml"}}, "no-map.yaml"),
     ({"body": {"start": [1.0, 1.0]}}, "body.start: must be a list of 3 numbers"),
     ({"body": {"start": [100.0, 1.0, 0.0]}}, "start 100,1 is outside the map"),

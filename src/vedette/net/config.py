@@ -190,6 +190,11 @@ def _check_explore(config: AgentConfig) -> None:
     _check_scheme("explore", options.scheme)
     _check_word("explore.fusion", options.fusion, list(FUSIONS))
     _ = options.negotiates_by
+    if options.frames != "known":
+        raise InputError(
+            f"explore.frames: {options.frames!r} is for simulated teams (vedette explore --frames unknown); "
+            "robots on a network share a frame; leave it out"
+        )
     _check_ground(config.body, options)
     real = config.body.ros2
     if real is not None and real.evidence == "map" and options.fusion == "channel":
