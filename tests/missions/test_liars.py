@@ -8,7 +8,7 @@ from tests.support import lies
 from tests.support.liars import Ending, play, without
 from tests.support.lies import MODES, FewerCounts, Mode
 
-BAD = sorted(MODES.keys() - {"dead", "dead between", "honest"})
+BAD = sorted(MODES.keys() - {"dead", "dead between", "honest", "misdated"})
 SCHEMES = ("fork", "async", "jacobi")
 NAMED_WITHIN = 30.0  # [s]
 
@@ -64,6 +64,13 @@ def test_no_robots_counts_make_others_expect_nothing_of_scans(monkeypatch: pytes
     ending, dead = play("counts", 3, 0), without("dead", 3, 0)
     assert ending.known >= 0.99 * dead.known
     assert ending.time <= 1.5 * dead.time
+
+
+def test_who_dates_what_it_sees_an_hour_off_is_named() -> None:
+    ending = play("misdated", 3, 0)
+    assert ending.outcome.value == "complete"
+    assert is_named(ending)
+    assert ending.named.keys() == {ending.liar}
 
 
 def test_of_the_honest_nobody_is_named_and_all_are_believed() -> None:

@@ -20,6 +20,7 @@ from vedette.agent.networked import Output
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.sightings import BINS
 from vedette.domains.mapping.views import MOST_STOPS
+from vedette.fusion.signed import SignedEvidence
 from vedette.kernels.coverage import LAYERS
 from vedette.kernels.misses import SparseMisses
 from vedette.maps.disc import cells_under
@@ -29,6 +30,7 @@ from vedette.missions.explore.exploring import Exploring
 from vedette.negotiation import messages as negotiation
 from vedette.team import Most
 
+HOUR = 36_000  # [0.1 s]
 SLOW = (0.7, 2.0, 5.0)  # a slow member takes for every job [s]
 
 
@@ -71,6 +73,17 @@ class Far(Liar):
     def _lies(self, near: NDArray[np.int64]) -> NDArray[np.int64]:
         there = near + 300 * self.frame.cols
         return super()._lies(there[there < self.frame.rows * self.frame.cols])
+
+
+class Misdated(Free):
+    """There are no walls, as of an hour ahead; what clock it says to have is the right one."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        assert isinstance(self.fusion, SignedEvidence)
+        notary: Any = self.fusion.standing.notary
+        clock = notary.now
+        notary.now = lambda: clock() + HOUR
 
 
 class Notes(Exploring):
@@ -229,6 +242,7 @@ MODES: Mapping[str, Mode] = {
     "dead": Mode(program=lambda rng: misbehaving.Dead),
     "dead between": Mode(program=lambda rng: misbehaving.Dead, between=True),
     "honest": Mode(),
+    "misdated": Mode(Misdated),
     **LIES,
     **{mode: Mode(program=make) for mode, make in bad_member.MODES.items()},
     "slow": Mode(program=lambda rng: partial(misbehaving.Slow, takes=float(rng.choice(SLOW)))),

@@ -88,5 +88,8 @@ def _hear_vouched(agent: Agent, sender: int, message: Vouched, told: bytes, now:
 def take_places(agent: Agent, now: float) -> None:
     """Take in where robots are by what they have signed with their evidence."""
     if agent.signed is not None:
-        for (robot, boot), place in agent.signed.take_places().items():
-            agent.mates.prove(robot, (boot, place.sequence), place.x / 100.0, place.y / 100.0, now)
+        for (robot, boot), (place, signed) in agent.signed.take_places().items():
+            stamp = boot, place.sequence
+            if agent.mates.is_new(robot, stamp, now):
+                agent.signed.standing.dates(robot, signed)
+            agent.mates.prove(robot, stamp, place.x / 100.0, place.y / 100.0, now)

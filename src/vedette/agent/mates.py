@@ -104,6 +104,12 @@ class Mates:
         speed = 0.0 if known is None else known.speed
         return follows and seconds <= PROVES and away <= ASIDE + speed * moved
 
+    def is_new(self, robot: int, stamp: tuple[int, int], now: float) -> bool:
+        """Tell whether a beacon, by boot and sequence, is one of the last few of a mate that is heard."""
+        known, (boot, sequence) = self._mates.get(robot), self._newest.get(robot, (-1, -1))
+        lately = boot == stamp[0] and abs(sequence - stamp[1]) <= MOST_UNPROVED
+        return known is not None and not known.silent(now) and lately
+
     def prove(self, robot: int, stamp: tuple[int, int], x: float, y: float, now: float) -> None:
         """Note where a robot has signed to be [m], by which beacon: boot and sequence."""
         if robot < self.admitted and stamp > self._proved.get(robot, ((-1, -1), 0.0, 0.0, 0.0))[0]:

@@ -95,7 +95,7 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
         self._again: dict[int, int] = {}  # tiles to look at again, since evidence grows firm: when [0.1 s]
         self._told: Particulars | None = None  # by this robot
         self._place = b""  # of this robot
-        self._placed: dict[Key, SignedPlace] = {}  # others, since that was last asked for
+        self._placed: dict[Key, tuple[SignedPlace, int]] = {}  # others, since that was last asked for
 
     @property
     def signed(self) -> SignedEvidence:
@@ -150,8 +150,8 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
         own = self._contributors.own
         return bool(own.place) and self.standing.notary.now() < own.seal.time + COVERS
 
-    def take_places(self) -> dict[Key, SignedPlace]:
-        """Return where others have signed to be, since that was last asked for."""
+    def take_places(self) -> dict[Key, tuple[SignedPlace, int]]:
+        """Return where others have signed to be, and when [0.1 s], since that was last asked for."""
         placed, self._placed = self._placed, {}
         return placed
 
@@ -184,7 +184,7 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
             if change is not None:
                 changed.append(change.tiles)
                 if key != self._contributors.key and copies[key].place:
-                    self._placed[key] = wire.decode_place(copies[key].place)
+                    self._placed[key] = wire.decode_place(copies[key].place), copies[key].seal.time
                 self._trust.see(key, change.tiles, copies[key].values.read)
         before = self.out
         self._judge()

@@ -11,6 +11,7 @@ from vedette.fusion.digest import fingerprint
 from vedette.fusion.link import Key
 from vedette.fusion.particulars import SignedPlace
 from vedette.fusion.seals import Notary
+from vedette.fusion.trust import APART
 
 REVOKED = "its certificate has been revoked: the belief and the plans leave out all that it has signed"
 
@@ -21,6 +22,7 @@ class Standing:
 
     notary: Notary
     complaints: dict[int, str] = field(default_factory=dict)  # by robot: why its word was not taken
+    misdated: dict[int, str] = field(default_factory=dict)  # robots whose latest evidence has a far-off date
     forgers: set[int] = field(default_factory=set)  # neighbours that pass on what they have changed
     gone: dict[int, str] = field(default_factory=dict)  # robots of whom nothing counts any more, and why
     found: list[ProvenLie] = field(
@@ -30,7 +32,7 @@ class Standing:
     @property
     def said(self) -> dict[int, str]:
         """What is wrong with whom, by robot."""
-        return self.complaints | self.gone
+        return self.misdated | self.complaints | self.gone
 
     def catch(self, robot: int, proof: Contradiction) -> None:
         """Note what a robot has signed that cannot both be so."""
@@ -40,6 +42,14 @@ class Standing:
     def convict(self, robot: int, at: str) -> None:
         """Let nothing count of a robot whose lie is proven."""
         self.gone.setdefault(robot, f"{at}: the belief and the plans leave it out")
+
+    def dates(self, robot: int, time: int) -> None:
+        """Note by what time [0.1 s] a robot has just dated what it signed; far off, it is named for it."""
+        apart = time - self.notary.now()
+        self.misdated.pop(robot, None)
+        if abs(apart) > APART:
+            away = f"{apart / 10:+.0f} s from this robot's clock"
+            self.misdated[robot] = f"it dates what it sees {away}: that is compared with nobody's"
 
     def revoke(self, robots: frozenset[int]) -> bool:
         """Let nothing count that these robots have signed; tell whether that is news.
@@ -73,8 +83,8 @@ class Signed(Protocol):
     def be_at(self, sequence: int, x: int, y: int) -> None:
         """Note where this robot is by one of its beacons [cm]."""
 
-    def take_places(self) -> Mapping[Key, SignedPlace]:
-        """Return where others have signed to be, by contributor, since that was last asked for."""
+    def take_places(self) -> Mapping[Key, tuple[SignedPlace, int]]:
+        """Return where others have signed to be, and when [0.1 s], since that was last asked for."""
 
     def heed(self) -> None:
         """Take up that somebody has gone."""

@@ -48,7 +48,7 @@ class SignedSteps(SharedLogs[E, SealedLog, SealedEntries]):
     def be_at(self, sequence: int, x: int, y: int) -> None:
         """Tell nothing of the robot's place."""
 
-    def take_places(self) -> dict[Key, SignedPlace]:
+    def take_places(self) -> dict[Key, tuple[SignedPlace, int]]:
         """Return nothing: nobody tells of its place."""
         return {}
 
