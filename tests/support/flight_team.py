@@ -14,6 +14,7 @@ from vedette.agent import Agent, FlightBehaviour, Pace
 from vedette.agent.events import Pose, Sensed
 from vedette.agent.flight import FlightPlan, start_step
 from vedette.agent.mates import Mate
+from vedette.forbidden import NOWHERE, Forbidden
 from vedette.fusion import ReplicatedEvidence
 from vedette.negotiation import Chooser
 from vedette.outcome import Outcome
@@ -64,6 +65,7 @@ class Spreading:
     departures: dict[int, Pose] = field(default_factory=dict)  # by start step
     values: list[float] = field(default_factory=list)  # of the decisions
     against: Float | None = None  # others' impact at the last reply
+    forbidden: Forbidden = NOWHERE
 
     def __post_init__(self) -> None:
         self._coverage = Coverage()
