@@ -120,6 +120,18 @@ def test_clocks_more_than_a_minute_apart_are_told_to_keep_evidence_from_being_co
         assert ("compared with nobody's" in known.warnings[1]) == much
 
 
+def test_an_introduction_that_comes_again_late_puts_no_clock_back() -> None:
+    known = Acquaintance(TERMS, lambda now: now)
+    told = encode(Introduction(7, False, 10_000, dict(TERMS)))
+    known.hear(1, told, 1, 10.0)
+    known.hear(1, told, 1, 15.0)
+    assert known.warnings == {}
+    known.hear(1, encode(Introduction(8, False, 12_000, dict(TERMS))), 1, 15.0)
+    assert known.warnings == {1: "its clock is -3.0 s from this robot's"}
+    known.hear(1, encode(Introduction(8, False, 16_000, dict(TERMS))), 1, 16.0)
+    assert known.warnings == {}
+
+
 def test_an_older_version_is_told_in_one_line() -> None:
     here, there = pair(TERMS)
     (hello,) = [out for out in there.leave(10.0) if out.payload.startswith(HELLO)]

@@ -27,6 +27,7 @@ class Acquaintance:
     warnings: dict[int, str] = field(default_factory=dict)  # by neighbour: clocks
     _met: dict[int, int] = field(default_factory=dict)  # boots of those that have told
     _asked: dict[int, float] = field(default_factory=dict)  # when [s]
+    _clocks: dict[int, tuple[int, float]] = field(default_factory=dict)  # boots, and how far ahead [s]
 
     def ask(self, robot: int, boot: int, own_boot: int, now: float) -> list[bytes]:
         """Return what to send to a neighbour that is heard, if its present life has not told yet."""
@@ -52,10 +53,18 @@ class Acquaintance:
         unlike = difference(told.fields, self.terms)
         if unlike is not None:
             self.complaints[robot] = f"its link is refused: {unlike}"
-        apart = told.clock / 1000.0 - self.time_of_day(now)
+        apart = self._ahead(robot, told, now)
         if abs(apart) > CLOCKS_APART:
             much = ", so that what it sees is compared with nobody's" if abs(apart) > self.far else ""
             self.warnings[robot] = f"its clock is {apart:+.1f} s from this robot's{much}"
+
+    def _ahead(self, robot: int, told: Introduction, now: float) -> float:
+        """Return how far a clock is ahead [s]: what came late, or came again, shows it behind."""
+        ahead = told.clock / 1000.0 - self.time_of_day(now)
+        boot, before = self._clocks.get(robot, (told.boot, ahead))
+        ahead = max(ahead, before) if boot == told.boot else ahead
+        self._clocks[robot] = told.boot, ahead
+        return ahead
 
     def _tell(self, own_boot: int, asks: bool, now: float) -> bytes:
         clock = round(1000.0 * self.time_of_day(now))
