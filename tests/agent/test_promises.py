@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
-from vedette.agent.promises import LEAST, NOTHING, PAUSE, Promises
+from tests.support.signing_agents import agent
+from vedette.agent import Agent
+from vedette.agent.holdups import HoldUps
+from vedette.agent.messages import Beacon
+from vedette.agent.promises import LEAST, MOST_HELD_UP, NOTHING, PAUSE, SOON, TWICE, Promises
 from vedette.domains.mapping.impact import Impact, discounted, promised
 from vedette.kernels.coverage import LAYERS
 from vedette.kernels.misses import CERTAIN, STEPS_PER_NAT
@@ -67,6 +73,105 @@ def test_each_cell_is_due_by_when_it_was_first_promised_for_as_long_as_it_is_rep
             lost.append(now)
             kept = {}
     assert 3 <= len(lost) < 60
+
+
+class Promised:
+    """A mission in which every robot promises the same, within some time, and keeps it at last, or never."""
+
+    def __init__(self, within: float, kept: float = np.inf) -> None:
+        self.within, self.kept, self.now = within, kept, 0.0
+
+    def promised(self, belief: Any, impact: Any) -> tuple[np.ndarray, np.ndarray]:
+        """The same."""
+        return MANY, np.full(len(MANY), self.within)
+
+    def unseen(self, belief: Any, cells: np.ndarray) -> np.ndarray:
+        """All of it, until it is kept."""
+        return never(cells) if self.now < self.kept else sure(cells)
+
+    def discounted(self, impact: Any, halvings: int) -> Any:
+        """As it is."""
+        return impact
+
+
+LIAR, WHO, LINK = 0, 3, 2
+
+
+def tells_of(hearer: Agent, now: float, slowed: float, x: float) -> None:
+    """A robot behind a link, whose beacons are passed on, is heard there."""
+    hearer.mates.hear(
+        Beacon(WHO, 1, int(10 * now), round(100 * x), 0, 0, round(10 * slowed), 20, 50, ()), now, LINK
+    )
+
+
+def found_out(within: float, slowed: Any, x: Any, kept: float = np.inf) -> tuple[list[float], list[float]]:
+    """Let a robot promise the same each second; return when it, and its link, lose weight.
+
+    ``slowed(now)``, ``x(now)``: for how long it says to be without progress [s], and where it is [m].
+    """
+    judge = agent(1, (LIAR, LINK))
+    auditor, mission = judge.rounds.scrutiny.auditor, Promised(within, kept)
+    assert auditor is not None
+    robot, link = list[float](), list[float]()
+    for now in np.arange(0.0, 100.0, 0.25).tolist():
+        mission.now = now
+        tells_of(judge, now, slowed(now), x(now))
+        if now == round(now):
+            robot += [now] * len(auditor.promises.note(mission, None, {WHO: None}, now))  # type: ignore[arg-type]
+            link += [now] * len(judge.rounds.scrutiny.suspicion.note(mission, None, {LINK: None}, now))  # type: ignore[arg-type]
+    return robot, link
+
+
+def on(now: float) -> float:
+    """It drives on."""
+    return 0.5 * now
+
+
+@pytest.mark.parametrize(
+    ("slowed", "x"),
+    [
+        pytest.param(lambda now: min(now, 15.0) if now < 15.0 else 0.0, on, id="as it says"),
+        pytest.param(lambda now: 0.0, lambda now: on(max(now - 15.0, 0.0)), id="as its place shows"),
+    ],
+)
+@pytest.mark.parametrize("within", [2.0, 5.0])
+def test_a_robot_that_is_held_up_for_15_s_has_so_much_longer(slowed: Any, x: Any, within: float) -> None:
+    asked = found_out(within, slowed, x)
+    for lost in asked:
+        assert TWICE * within + 14.5 <= lost[0] <= TWICE * within + 16.0
+    after = 15.0 + within
+    assert found_out(within, slowed, x, kept=after) == ([], [])
+    assert all(found_out(within, lambda now: 0.0, on, kept=after))
+
+
+@pytest.mark.parametrize("within", [2.0, 5.0, SOON])
+def test_who_always_says_to_be_held_up_is_found_out_all_the_same(within: float) -> None:
+    for lost in found_out(within, lambda now: now, lambda now: 0.0):
+        assert lost[0] == TWICE * within + MOST_HELD_UP
+    assert found_out(within, lambda now: 0.0, on)[0][0] == TWICE * within
+
+
+def test_of_another_link_nobody_is_held_up() -> None:
+    holdups = HoldUps()
+    for now in np.arange(0.0, 10.25, 0.25).tolist():
+        holdups.note(WHO, 1.0, 1.0, 0.0, LINK, now)
+        holdups.note(LIAR, on(now), 1.0, 0.0, LIAR, now)
+    assert (holdups.of(WHO), holdups.behind(LINK)) == (10.0, 10.0)
+    assert (holdups.of(LIAR), holdups.behind(LIAR)) == (0.0, 0.0)
+
+
+def test_two_that_are_held_up_at_once_behind_a_link_are_so_once() -> None:
+    holdups = HoldUps()
+    for now in np.arange(0.0, 10.25, 0.25).tolist():
+        holdups.note(WHO, 1.0, 1.0, 0.0, LINK, now)
+        holdups.note(LINK, 2.0, 1.0, now, LINK, now)
+    assert holdups.behind(LINK) == 10.0
+
+
+def test_what_is_said_of_the_time_before_one_was_heard_counts_for_nothing() -> None:
+    holdups = HoldUps()
+    holdups.note(WHO, 1.0, 1.0, 2.0**50, LINK, 5.0)
+    assert holdups.of(WHO) == 0.0
 
 
 def test_weight_comes_back_in_quiet_times() -> None:

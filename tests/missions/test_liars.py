@@ -8,7 +8,7 @@ from tests.support import lies
 from tests.support.liars import Ending, play, without
 from tests.support.lies import MODES, FewerCounts, Mode
 
-BAD = sorted(MODES.keys() - {"dead", "dead between", "honest", "misdated"})
+BAD = sorted(MODES.keys() - {"dead", "dead between", "honest", "misdated", "in the way"})
 SCHEMES = ("fork", "async", "jacobi")
 NAMED_WITHIN = 30.0  # [s]
 
@@ -77,3 +77,11 @@ def test_of_the_honest_nobody_is_named_and_all_are_believed() -> None:
     ending = play("honest", 3, 0)
     assert not ending.named
     assert not ending.out
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(4))
+def test_a_robot_in_whose_way_a_liar_says_to_stand_is_not_named(seed: int) -> None:
+    ending = play("in the way", 3, seed)
+    assert ending.outcome.value == "complete"
+    assert ending.named.keys() <= {ending.liar}

@@ -20,6 +20,7 @@ from vedette.agent.networked import Output
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.sightings import BINS
 from vedette.domains.mapping.views import MOST_STOPS
+from vedette.fusion.seals import BEACON
 from vedette.fusion.signed import SignedEvidence
 from vedette.kernels.coverage import LAYERS
 from vedette.kernels.misses import SparseMisses
@@ -215,6 +216,33 @@ class Poisoning(NetworkedAgent):
         return super()._say(send, now)
 
 
+class Blocking(NetworkedAgent):
+    """Says in its beacons to stand in the way of who is nearest, whoever that is."""
+
+    _said: tuple[bytes, bytes] = b"", b""  # its honest beacon, and what it says
+
+    def _say(self, send: Send, now: float) -> list[Output]:
+        told = messages.decode(send.payload)
+        own = messages.decode_beacon(told.beacon) if isinstance(told, messages.Vouched) else told
+        if isinstance(own, messages.Beacon) and own.robot == self.agent.robot:
+            if self._said[0] != send.payload:
+                self._said = send.payload, self._blocks(told, own)
+            send = replace(send, payload=self._said[1])
+        return super()._say(send, now)
+
+    def _blocks(self, told: Any, own: messages.Beacon) -> bytes:
+        here = np.array((own.x, own.y)) / 100.0
+        ways = [np.vstack(((mate.x, mate.y), mate.path)) for mate in self.agent.mates.heard]
+        way = min(ways, key=lambda way: float(np.hypot(*(way[0] - here))), default=here[None])
+        x, y = np.rint(100.0 * way[min(2, len(way) - 1)]).astype(int).tolist()
+        data = messages.encode(structs.replace(own, x=x, y=y, path=()))
+        if not isinstance(told, messages.Vouched):
+            return data
+        assert self.agent.signed is not None
+        signature = self.agent.signed.standing.notary.sign(BEACON, data)
+        return messages.encode(structs.replace(told, beacon=data, signature=signature))
+
+
 @dataclass(frozen=True)
 class Mode:
     """What one member does."""
@@ -247,4 +275,5 @@ MODES: Mapping[str, Mode] = {
     **{mode: Mode(program=make) for mode, make in bad_member.MODES.items()},
     "slow": Mode(program=lambda rng: partial(misbehaving.Slow, takes=float(rng.choice(SLOW)))),
     "double": Mode(doubled=True),
+    "in the way": Mode(program=lambda rng: Blocking),
 }

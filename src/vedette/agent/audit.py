@@ -38,6 +38,7 @@ class Auditor:
     mission: Mission[Any, Any, Any]
     standing: Standing
     caught: dict[int, str] = field(default_factory=dict)  # by robot: at what
+    promises: Suspicion = field(default_factory=Suspicion)  # of robots, by their accounts
     _until: dict[int, float] = field(default_factory=dict)  # planned without until [s]
     _times: Counter[int] = field(default_factory=Counter)  # that each was caught
     _wanted: float = -1e9  # until [s]
@@ -46,7 +47,6 @@ class Auditor:
     _accounts: dict[Stamp, dict[int, Account]] = field(default_factory=dict)
     _answered: set[Stamp] = field(default_factory=set)
     _due: tuple[Stamp, float] | None = None  # what is to be judged, and when [s]
-    _promises: Suspicion = field(default_factory=Suspicion)  # of robots, by their accounts
     _unlike: Counter[int] = field(default_factory=Counter)  # audits in a row in which a link's sum was wrong
 
     def want(self, now: float) -> None:
@@ -119,7 +119,7 @@ class Auditor:
                 continue
             self._check_sums(account)
         others = {robot: impact for robot, impact in impacts.items() if robot != self.robot}
-        for robot in self._promises.note(self.mission, claimed.belief, others, now):
+        for robot in self.promises.note(self.mission, claimed.belief, others, now):
             self._catch(robot, "less than half of what it has signed to see comes true", now)
         for link, told in claimed.heard.items():
             self._compare(link, told, claimed, accounts, impacts, now)

@@ -10,6 +10,7 @@ import numpy as np
 from msgspec import structs
 from numpy.typing import NDArray
 
+from vedette.agent.holdups import HoldUps
 from vedette.agent.messages import Beacon
 from vedette.maps.transform import Transform
 
@@ -60,6 +61,7 @@ class Mates:
 
     admitted: int = MOST_MATES  # robots of the team are numbered below it
     framed: Callable[[int], Transform | None] | None = None  # where a robot's frame lies; None: all share one
+    holdups: HoldUps = field(default_factory=HoldUps)
     _newest: dict[int, tuple[int, int]] = field(default_factory=dict)  # boot and sequence
     _mates: dict[int, Mate] = field(default_factory=dict)
     _proved: dict[int, Proved] = field(default_factory=dict)
@@ -87,7 +89,8 @@ class Mates:
         if newest == stamp or (newest > stamp and not believed):
             return False
         self._newest[beacon.robot] = stamp
-        self._mates[beacon.robot] = _mate(beacon, now)
+        mate = self._mates[beacon.robot] = _mate(beacon, now)
+        self.holdups.note(beacon.robot, mate.x, mate.y, mate.slowed, sender, now)
         if not passed_on:
             self._proved[beacon.robot] = stamp, beacon.x / 100.0, beacon.y / 100.0, now
         return True

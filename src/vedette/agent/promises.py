@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from vedette.agent.mission import Mission, Promising
 LEAST = 100  # cells that are overdue before anything is said of it; four square metres of planning cells
 SOON = 20.0  # what is promised for later is not looked at [s]
 TWICE = 2.0  # so many times the promised time is given
+MOST_HELD_UP = 20.0  # and so much more at most, to who says or shows to be held up [s]
 FADES = 0.8  # what was fulfilled counts so much less in each round that comes
 NOTHING = 3  # halvings at which a link counts as nothing for a while
 TOLD = 2  # halvings from which people are told
@@ -37,6 +39,7 @@ class Promises:
     _cells: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))  # increasing
     _first: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))  # when first promised [s]
     _due: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))  # for when, at the earliest [s]
+    _before: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))  # held up before that [s]
     _fulfilled: float = 0.0  # cells
 
     @property
@@ -50,12 +53,17 @@ class Promises:
         due: NDArray[np.float64],
         unseen: Callable[[NDArray[np.int64]], NDArray[np.bool_]],
         now: float,
+        held_up: float = 0.0,
     ) -> bool:
-        """Take in what is promised now, increasing cells, each for a time [s]; tell if that loses weight."""
+        """Take in what is promised now, increasing cells, each for a time [s]; tell if that loses weight.
+
+        ``held_up``: how long who promises has been kept from it so far, all in all and by its own word [s].
+        """
         self._fulfilled = FADES * self._fulfilled + float(np.count_nonzero(~unseen(self._cells)))
         soon = (due <= now + SOON) & unseen(cells)
-        self._repeat(cells[soon], due[soon], now)
-        overdue = int(np.count_nonzero(now >= self._first + TWICE * (self._due - self._first)))
+        self._repeat(cells[soon], due[soon], now, held_up)
+        late = TWICE * (self._due - self._first) + np.minimum(held_up - self._before, MOST_HELD_UP)
+        overdue = int(np.count_nonzero(now >= self._first + late))
         if overdue >= LEAST and overdue > self._fulfilled:
             self._lose(now)
             return True
@@ -63,23 +71,25 @@ class Promises:
             self.halvings, self.lost = self.halvings - 1, now
         return False
 
-    def _repeat(self, cells: NDArray[np.int64], due: NDArray[np.float64], now: float) -> None:
+    def _repeat(self, cells: NDArray[np.int64], due: NDArray[np.float64], now: float, held_up: float) -> None:
         """Keep what is promised again as it was first, and add what is new."""
-        first, due = np.full(len(cells), now), due.copy()
+        first, due, before = np.full(len(cells), now), due.copy(), np.full(len(cells), held_up)
         old = np.searchsorted(self._cells, cells)
         again = old < len(self._cells)
         again[again] = self._cells[old[again]] == cells[again]
         old = old[again]
         first[again] = self._first[old]
         due[again] = np.minimum(due[again], self._due[old])
-        self._cells, self._first, self._due = cells, first, due
+        before[again] = self._before[old]
+        self._cells, self._first, self._due, self._before = cells, first, due, before
 
     def _lose(self, now: float) -> None:
         self.halvings, self.lost = min(self.halvings + 1, NOTHING), now
         if self.halvings == NOTHING:
             self.until = now + PAUSE
         self._fulfilled = 0.0
-        self._cells, self._first, self._due = self._cells[:0], self._first[:0], self._due[:0]
+        self._cells, self._first = self._cells[:0], self._first[:0]
+        self._due, self._before = self._due[:0], self._before[:0]
 
 
 def weighed(mission: Mission[Any, Any, Any], impact: Any, halvings: int) -> Any:
@@ -91,8 +101,9 @@ def weighed(mission: Mission[Any, Any, Any], impact: Any, halvings: int) -> Any:
 
 @dataclass
 class Suspicion:
-    """A robot's neighbours, by what comes over their links."""
+    """A robot's neighbours, by what comes over their links; or, in audits, robots by their own accounts."""
 
+    held_up: Callable[[int], float] = lambda name: 0.0  # how long who promises has been, all in all [s]
     _promises: dict[int, Promises] = field(default_factory=dict)
 
     def weigh(self, mission: Mission[Any, Any, Any], neighbour: int, impact: Any) -> Any:
@@ -114,7 +125,8 @@ class Suspicion:
         for name, impact in claims.items():
             cells, after = mission.promised(belief, impact)
             promises = self._promises.setdefault(name, Promises())
-            if promises.note(cells, now + after, lambda asked: mission.unseen(belief, asked), now):
+            unseen = partial(mission.unseen, belief)
+            if promises.note(cells, now + after, unseen, now, self.held_up(name)):
                 lost.add(name)
         return lost
 

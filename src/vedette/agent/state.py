@@ -116,12 +116,15 @@ class Agent:
     def __post_init__(self) -> None:
         self.rounds = Rounds(self.mission, self.scheme, self._decided, self.pace, forks=self.forks)
         self.rounds.scrutiny.anybody_moves = self.mates.anybody_moves
+        self.rounds.scrutiny.suspicion.held_up = self.mates.holdups.behind
         self.rounds.mandate = lambda: self.orders.digest
         if isinstance(self.mission, Framing):
             self.framing = self.mission
             self.mates.framed = self.mission.in_own
         if self.signed is not None:
-            self.rounds.scrutiny.auditor = Auditor(self.robot, self.boot, self.mission, self.signed.standing)
+            auditor = Auditor(self.robot, self.boot, self.mission, self.signed.standing)
+            auditor.promises.held_up = self.mates.holdups.of
+            self.rounds.scrutiny.auditor = auditor
             self.proofs = Proofs(self.mission, self.signed)
 
     @property
