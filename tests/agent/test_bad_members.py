@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import pytest
 
+from tests.support import signed_mutants, signed_team
 from tests.support.bad_member import MODES, plan_of, play
 from tests.support.mutants import CASES, mutants_of
 
 SEEDS = 4
 ALL, BATCH = 124, 10
-MUTANTS = 40
+MUTANTS, SIGNED = 40, 20
 TWO_HUNG, WORTH_TOLD = 100223, 13614  # seeds
 
 
@@ -60,3 +61,16 @@ def test_no_field_of_any_message_stops_the_others(first: int) -> None:
 def test_no_field_of_any_message_stops_the_others_at_any_value(first: int) -> None:
     for seed in range(first, min(first + BATCH, len(CASES))):
         play("mutant", seed)
+
+
+@pytest.mark.parametrize("first", range(0, SIGNED, BATCH))
+def test_no_field_of_what_is_signed_stops_the_others_or_has_the_honest_accused(first: int) -> None:
+    for seed in range(first, first + BATCH):
+        signed_team.play(seed)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("first", range(SIGNED, len(signed_mutants.CASES), BATCH))
+def test_no_field_of_what_is_signed_stops_the_others_at_any_value(first: int) -> None:
+    for seed in range(first, min(first + BATCH, len(signed_mutants.CASES))):
+        signed_team.play(seed)

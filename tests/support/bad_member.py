@@ -97,13 +97,13 @@ def plan_of(mode: str, seed: int) -> tuple[Plan, dict[int, Program]]:
     if mode == "mutant":
         (case,) = mutants_of([seed])
         scheme = str(rng.choice(SCHEMES.get(case.message, (plan.scheme,))))
-        plan, bad = replace(plan, scheme=scheme), [_sayer(case.message, n, bad[0])]
+        plan, bad = replace(plan, scheme=scheme), [sayer_of(case.message, n, bad[0])]
         others = [i for i in range(n) if i not in bad]
         return plan, {bad[0]: partial(Mutant, case=case, another=int(rng.choice(others)))}
     return plan, {i: misbehaving.Dead if mode == "dead" else MODES[mode](rng) for i in bad}
 
 
-def _sayer(message: str, robots: int, else_: int) -> int:
+def sayer_of(message: str, robots: int, else_: int) -> int:
     """Return a member that has cause to say such messages: the highest number becomes the root."""
     if message in FROM_ABOVE:
         return robots - 1

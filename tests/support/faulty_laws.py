@@ -10,9 +10,10 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from tests.support.faulty_world import Belief, Impact, Life, SiteMission, Sites, check, worth
+from tests.support.faulty_world import FRAME, Belief, Impact, Life, SiteMission, Sites, check, worth
 from vedette.agent import Agent, GroundBehaviour, State
 from vedette.agent.round import Round as RoundSeen
+from vedette.fusion.standing import signed_by
 from vedette.fusion.tiles import WORDS, classes_of, codes_of
 from vedette.negotiation import RoundOutcome, TokenNode
 
@@ -34,7 +35,7 @@ def versions_of(mission: SiteMission) -> Versions:
 
 @dataclass(eq=False)
 class EvidenceLaw:
-    """A team map is the sum of what its holder has of each contributor, and nobody forgets anything."""
+    """A team map is the sum of what its holder has of each whom it believes, and nobody forgets anything."""
 
     sites: Sites
     _ledger: dict[tuple[Life, int], tuple[NDArray[np.int32], NDArray[np.int64]]] = field(default_factory=dict)
@@ -56,9 +57,12 @@ class EvidenceLaw:
             now,
         )
         self._held[mission.life] = now
-        words = sum(self._ledger[each][0] for each in now.items())
-        counts = sum(self._ledger[each][1] for each in now.items())
-        right = np.array_equal(mission.fusion.classes.window(), classes_of(np.asarray(words)))
+        signed = signed_by(mission.fusion)
+        out = frozenset[int]() if signed is None else signed.out
+        believed = [self._ledger[each] for each in now.items() if each[0][0] not in out]
+        words = sum((words for words, _ in believed), np.zeros(FRAME.shape, np.int32))
+        counts = sum((counts for _, counts in believed), np.zeros(len(self.sites.cells), np.int64))
+        right = np.array_equal(mission.fusion.classes.window(), classes_of(words))
         check(right, "a map is not the sum of its contributors", mission.life, now)
         right = np.array_equal(mission.fusion.counts, counts)
         check(right, "evidence is counted twice or not at all", mission.life, now)

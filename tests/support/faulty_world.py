@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -19,7 +20,7 @@ from vedette.agent.events import Pose, Sensed
 from vedette.agent.mates import Mate
 from vedette.agent.messages import Note
 from vedette.agent.round import MOST_NOTES
-from vedette.fusion import ReplicatedEvidence
+from vedette.fusion.replicated_map import ReplicatedMap
 from vedette.kernels.tiles import TiledGrid, Tiling
 from vedette.maps import FREE, GridFrame
 from vedette.problem import Coverage
@@ -151,7 +152,7 @@ class SiteMission:
 
     life: Life
     sites: Sites
-    fusion: ReplicatedEvidence
+    fusion: ReplicatedMap[Any]
     published: Published  # is told each version of the robot's evidence
     suffers: bool = False  # from somebody who says what is not so
     stamp: Callable[[], Stamp] = field(init=False)  # of the round going on

@@ -56,7 +56,15 @@ SCHEMES: Mapping[str, tuple[str, ...]] = {
     **dict.fromkeys(("Offer", "Tidings"), ("async",)),
     **dict.fromkeys(("Settled",), ("fork", "async")),
 }
-FROM_ABOVE = ("Begin", "Freeze", "Down", "Fork", "Tidings", "Settled")  # what a root has cause to say
+FROM_ABOVE = (
+    "Begin",
+    "Freeze",
+    "FramedFreeze",
+    "Down",
+    "Fork",
+    "Tidings",
+    "Settled",
+)  # what a root has cause to say
 FROM_BELOW = ("Call", "Flushed", "Gather", "Up", "Joined", "Offer")  # and who has a parent
 EVIDENCE = ("nonce", "echo", "have robot", "have boot", "have version", "robot", "boot", "base", "version")
 
@@ -75,8 +83,12 @@ class Case:
         return f"{self.message}{where} = {repr(self.value)[:40]}{', once' if self.once else ''}"
 
 
+def places_of(kind: Any) -> Iterator[tuple[int, ...]]:
+    """Yield where the fields of a kind of message are, and those within them; of many alike the first."""
+    return _places(inspect.type_info(kind))
+
+
 def _places(kind: inspect.Type) -> Iterator[tuple[int, ...]]:
-    """Yield where the fields of a message are, and those within them; of many alike the first."""
     inner: list[inspect.Type] = []
     match kind:
         case inspect.Metadata():
@@ -102,8 +114,13 @@ def _places(kind: inspect.Type) -> Iterator[tuple[int, ...]]:
 def _cases() -> Iterator[Case]:
     negotiated = [kind[bytes] if hasattr(kind, "__parameters__") else kind for kind in NEGOTIATION.values()]
     kinds: tuple[Any, ...] = (*DATAGRAMS.values(), *AGENTS, *negotiated)
-    places = {_name(kind): list(_places(inspect.type_info(kind))) for kind in kinds}
+    places = {_name(kind): list(places_of(kind)) for kind in kinds}
     places["Evidence"] = [(k,) for k in range(len(EVIDENCE))]
+    return cases_of(places)
+
+
+def cases_of(places: Mapping[str, Iterable[tuple[int, ...]]]) -> Iterator[Case]:
+    """Yield all that can be said at these places of messages."""
     for message, all_places in places.items():
         for place in all_places:
             for value in VALUES:

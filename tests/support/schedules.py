@@ -16,13 +16,14 @@ from pathlib import Path
 
 from bench.journal import append, read
 from bench.machine import commit
-from tests.support import bad_member, faulty_team
+from tests.support import bad_member, faulty_team, signed_team
 
 TELL = 60.0  # how far it is, so often [s]
 
 KINDS: Mapping[str, Callable[[int], object]] = {
     "faults": faulty_team.play,
     **{mode: partial(bad_member.play, mode) for mode in (*bad_member.MODES, "mutant")},
+    "signed": signed_team.play,
 }
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from vedette.agent.effects import Drive, Motion
 from vedette.agent.events import Arrived, Event, Pose, Sensed
 from vedette.agent.pace import Pace
 from vedette.fusion import ReplicatedEvidence
+from vedette.fusion.replicated_map import ReplicatedMap
 from vedette.maps.world import World
 from vedette.outcome import Outcome
 from vedette.sim.datagrams import Datagrams, linked
@@ -112,8 +114,11 @@ class SiteTeam(Simulation):
             spawn, self.bodies, self._datagrams, timeline=timeline, lease=self.lease, live=self._live
         )
 
+    def _fusion(self, robot: int, boot: int) -> ReplicatedMap[Any]:
+        return ReplicatedEvidence(robot, boot, FRAME.shape, len(self.sites.cells))
+
     def _spawn(self, robot: int, boot: int) -> Agent:
-        fusion = ReplicatedEvidence(robot, boot, FRAME.shape, len(self.sites.cells))
+        fusion = self._fusion(robot, boot)
         mission = SiteMission((robot, boot), self.sites, fusion, self._published)
         spec = PlatformSpec(name=f"robot-{robot + 1}", speed=SPEED)
         behaviour = GroundBehaviour(mission, Driver(robot, spec))

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+
+import msgspec
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from tests.support.mutants import VALUES
 from tests.support.small_missions import small_office
-from vedette.agent.messages import FrameTold
+from vedette.agent.messages import FramedFreeze, FrameTold, decode, encode
 from vedette.fusion.frame_edges import FrameEdge, packed, room_for
 from vedette.fusion.framed import FramedEvidence
 from vedette.fusion.link import Key
@@ -18,6 +22,7 @@ from vedette.missions.explore.frames.shared import SharedFrames
 
 KEYS: list[Key] = [(0, 5), (1, 5)]
 FRAME = GridFrame(0.1, 512, 512, -25.6, -25.6)
+ANGLE = 5  # its place in `FrameTold`
 THERE = Transform(600, -400, 0)  # of the second one's frame in the first one's: whole cells
 
 
@@ -111,3 +116,28 @@ def test_who_solves_otherwise_than_the_root_knows_that_the_round_is_approximate(
     with pytest.raises(ValueError, match="twice"):
         two.take([*told, told[0]])
     assert one.plane[KEYS[0]] == IDENTITY
+
+
+@pytest.mark.parametrize("field", range(len(FrameTold.__struct_fields__)))
+def test_whatever_a_root_says_of_a_frame_a_robot_refuses_it_or_knows_that_it_differs(field: int) -> None:
+    one, two = team(moved(seen(slice(0, 100))), [edge(THERE)])
+    told = one.lay_out()
+    fields = msgspec.to_builtins(told[1])
+    refused = 0
+    for value in (*VALUES, 2**31, -(2**31), 2**16 - 1, 25_600, -25_600):
+        says = [*fields[:field], value, *fields[field + 1 :]]
+        data = msgspec.msgpack.decode(encode(FramedFreeze(1, 2, 0, 0, 2)))
+        data[-1] = [msgspec.to_builtins(told[0]), says]
+        try:
+            message = decode(msgspec.msgpack.encode(data))
+        except ValueError:
+            refused += 1
+            continue
+        assert isinstance(message, FramedFreeze)
+        agrees = says == fields or (field == ANGLE and value in (1, 2**16 - 1))  # by 0.005 degrees
+        with suppress(ValueError):  # a contributor is told twice
+            assert two.take(message.frames) == agrees, says
+    assert refused >= 10
+    assert two.take(told)
+    assert one.take(told)
+    assert one.evidence.digest == two.evidence.digest
