@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import shutil
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -29,7 +31,7 @@ from vedette.missions.track.options import TrackOptions
 from vedette.net.config import load_config
 from vedette.net.domain import DomainTeller
 from vedette.net.domain_picture import DomainOnlooker
-from vedette.net.feed import Onlooker
+from vedette.net.feed import Onlooker, TeamFeed
 from vedette.net.gather import UNHEARD
 from vedette.net.onlookers import onlooker_of
 from vedette.net.report import Report
@@ -37,6 +39,7 @@ from vedette.net.search.content import SearchTeller
 from vedette.net.search.picture import SearchOnlooker
 from vedette.net.track.content import TrackTeller
 from vedette.net.track.picture import TrackOnlooker
+from vedette.record.space import LITTLE
 from vedette.sim.domains import domain_of
 from vedette.window.picture import NOTHING, SHADES
 
@@ -157,3 +160,15 @@ def test_who_looks_knows_the_scenario_from_a_robots_file(
     (tmp_path / "scene.yaml").unlink()
     with pytest.raises(InputError, match=r"scene\.yaml"):
         onlooker_of(load_config(file), tmp_path)
+
+
+def test_a_disk_that_is_nearly_full_where_a_team_is_recorded_is_an_alert(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    operator: Any = SimpleNamespace(subscribe=lambda *what: None)
+    access: Any = SimpleNamespace()
+    feed = TeamFeed(operator, access, TrackOnlooker(track_scenes.scenario(), "six"), tmp_path)
+    monkeypatch.setattr(shutil, "disk_usage", lambda path: SimpleNamespace(free=LITTLE - 1))
+    feed.hearing.reports[0] = report(0, b"")
+    feed.hearing._times[0] = 0.0
+    assert f"disk full: 67 MB left for {tmp_path}" in feed._beside().alerts

@@ -125,6 +125,8 @@ def test_a_running_team_obeys_and_refuses_what_makes_no_sense(
         assert ran.err.startswith("robot-1: 100, 1 lies outside")
         assert order("recall", "--robot", "0").status == 2
         assert order("no-go", "--area", "lab").status == 2
+        ran = order("remove", "--area", "lab")
+        assert (ran.status, ran.err.splitlines()[0]) == (2, "robot-1: there is no area lab; known: none")
         assert [len(each["orders"]) for each in said().values()] == [1, 1]
         assert order("resume", "--robot", 2).status == 0
         wait_until(lambda: said()["robot-2"]["state"] != "paused", 30.0)

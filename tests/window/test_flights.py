@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 import json
+import shutil
+from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from tests.support.track_scenes import content
+from vedette.agent.orders import Pause
+from vedette.cli.windows import beside_of
 from vedette.record.log import VehicleSample
 from vedette.record.search.log import SearchSnapshot
+from vedette.record.space import LITTLE
 from vedette.record.track.log import TrackSnapshot
 from vedette.run import Search, Track
+from vedette.sim.orders import OrderAt
 from vedette.window.explore import Shower
 from vedette.window.flights import search_picture, track_picture
 from vedette.window.hub import Hub
@@ -40,6 +47,19 @@ def test_trackers_are_shown_with_their_targets_over_the_scenarios_area() -> None
         assert mark[:2] == pytest.approx(mean[:2].tolist())
         variances = np.linalg.eigvalsh(covariance[:2, :2])
         assert (mark[3], mark[2]) == pytest.approx(2.0 * 2.4477 * np.sqrt(variances), rel=1e-3)
+
+
+def test_orders_and_a_disk_that_is_nearly_full_are_told_beside_vehicles_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mission = Track(orders=[OrderAt(0.0, Pause(robot=2))], max_time=2.0)
+    names = mission.scene.vehicles
+    mission.run()
+    told = beside_of(mission, names, tmp_path)
+    assert list(told.orders) == [("pause robot 2", list(names))]
+    assert told.alerts == []
+    monkeypatch.setattr(shutil, "disk_usage", lambda path: SimpleNamespace(free=LITTLE - 1))
+    assert list(beside_of(mission, names, tmp_path).alerts) == [f"disk full: 67 MB left for {tmp_path}"]
 
 
 def test_the_likelier_the_target_is_in_a_cell_the_deeper_is_its_shade() -> None:

@@ -11,7 +11,7 @@ import pytest
 
 from tests.support.places import ROOT
 from tests.support.windows import SCENE, needs_chromium, shown, snapshot
-from vedette.agent.orders import End, LookThere, NoGo, Order, Pause, Priority, Recall, Resume, Stay
+from vedette.agent.orders import End, LookThere, NoGo, Order, Pause, Priority, Recall, Remove, Resume, Stay
 from vedette.record import palette
 from vedette.record.explore.log import Ahead
 from vedette.record.explore.summary import LeftOut
@@ -331,6 +331,8 @@ def test_places_and_areas_are_drawn_by_clicks(page: Any) -> None:
         hub.show(picture(SCENE, replace(told, robots=(scout, told.robots[1]))))
         until(page, "$('orders').childElementCount === 2")
         assert "held by scout" in page.inner_text("#orders")
+        page.click(f"#commands >> text=Remove priority {area.area}")
+        assert confirm("for all robots?") == Remove(area=area.area)
 
 
 def test_an_order_asked_on_a_picture_that_has_grown_old_is_refused(page: Any) -> None:
@@ -360,11 +362,58 @@ def test_two_watch_and_one_whose_connection_breaks_comes_back(page: Any, browser
         see(page, hub, "#state", "live")
         see(second, hub, "#state", "live")
         port, token = window.port, window.token
-    until(page, "$('state').textContent.startsWith('connection lost')")
+    until(page, "$('state').textContent === 'the window is closed'")
     hub = shown(range(3))
     with WindowServer(hub, port=port, token=token):
         see(page, hub, "#state", "live")
     second.close()
+
+
+def test_a_page_whose_team_has_ended_says_so_and_not_that_it_tries_again(page: Any) -> None:
+    hub = shown(range(5), lambda order: "taken")
+    with WindowServer(hub) as window:
+        page.goto(window.address)
+        see(page, hub, "#state", "live")
+        hub.close()
+    until(page, "socket.readyState === 3")
+    page.wait_for_timeout(700)
+    assert page.inner_text("#state") == "the mission is over"
+    assert page.get_attribute("#state", "class") == ""
+    assert page.is_disabled("text=Pause")
+
+
+def test_a_robot_is_selected_by_a_slow_finger_while_pictures_come(page: Any) -> None:
+    hub = shown(range(5), lambda order: "taken")
+    with WindowServer(hub) as window:
+        page.goto(window.address)
+        see(page, hub, "#state", "live")
+        box = page.locator("tr.robot >> text=mule").bounding_box()
+        page.mouse.move(box["x"] + 5, box["y"] + 5)
+        page.mouse.down()
+        for t in (10.0, 11.0, 12.0):
+            hub.show(picture(SCENE, snapshot(t)))
+            until(page, f"$('clock').textContent === '{t:.1f} s'")
+        page.mouse.up()
+        see(page, hub, "#whom", "mule")
+
+
+def test_each_robot_keeps_its_own_trail_and_key_when_another_is_heard_of_later(page: Any) -> None:
+    hub, told = shown(range(0)), snapshot(3.0)
+    with WindowServer(hub) as window:
+        page.goto(window.address)
+        until(page, "$('state').textContent === 'nobody has been heard yet'")
+        hub.show(picture(SCENE, replace(told, robots=told.robots[1:]), Beside(numbers=(2,))))
+        until(page, "past.length === 1")
+        hub.show(picture(SCENE, snapshot(4.0)))
+        until(page, "past.length === 2")
+        assert page.evaluate("past.map(([, , places]) => places[2][1])") == [5.0, 5.0]
+        assert page.evaluate("past.map(([, , places]) => 1 in places)") == [False, True]
+        hub.show(picture(SCENE, replace(snapshot(5.0), robots=told.robots[1:]), Beside(numbers=(2,))))
+        until(page, "past.length === 3")
+        page.keyboard.press("1")
+        assert page.inner_text("#whom") == "the team"
+        page.keyboard.press("2")
+        see(page, hub, "#whom", "mule")
 
 
 def test_a_phone_has_all_of_it_and_nothing_beyond_its_edge(page: Any) -> None:

@@ -174,6 +174,36 @@ def test_an_order_on_an_old_picture_is_refused() -> None:
     assert hub.order({"order": "pause"}, 0.1) == "taken"
 
 
+def test_what_happens_meanwhile_does_not_take_away_what_a_page_looks_back_at() -> None:
+    hub = shown(range(20))
+    with WindowServer(hub) as window, watching(window) as one, watching(window) as other:
+        first, second = Page(one), Page(other)
+        first.until("now")
+        second.until("now")
+        one.send(json.dumps({"seek": 3.0}))
+        assert first.until("now")["now"]["t"] == 3.0
+        for t in (20.0, 21.0, 22.0):
+            hub.show(picture(SCENE, snapshot(t)))
+            assert second.until("now")["now"]["t"] == t
+        one.send(json.dumps({"seek": 5.0}))
+        assert first.until("now")["now"]["t"] == 5.0
+
+
+def test_who_looks_back_hears_of_the_end_and_may_ask_for_now_after_it() -> None:
+    hub = shown(range(20))
+    with WindowServer(hub) as window, watching(window) as connection:
+        page = Page(connection)
+        page.until("now")
+        connection.send(json.dumps({"seek": 3.0}))
+        assert page.until("now")["now"]["t"] == 3.0
+        hub.close()
+        assert page.until("over")["over"] == "the mission is over"
+        connection.send(json.dumps({"live": True}))
+        connection.send(json.dumps({"seek": 5.0}))
+        assert page.until("now")["now"]["t"] == 5.0
+        assert window.cut_off == 0
+
+
 def test_a_record_takes_no_orders_and_a_refusal_is_told() -> None:
     assert "record" in shown(range(2), live=False).order({"order": "pause"}, 0.0)
 

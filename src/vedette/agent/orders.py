@@ -14,14 +14,20 @@ import msgspec
 from msgspec import Meta, Struct
 
 from vedette import wire
+from vedette.errors import nearest_name
 from vedette.fusion.digest import fingerprint
 
 MOST_ORDERS = 256  # subjects that there can be
 MOST_CORNERS = 64
 Number = Annotated[int, Meta(ge=1, le=1 << 16)]  # of a robot, as people count
 Metre = Annotated[float, Meta(ge=-2.1e7, le=2.1e7)]
-Name = Annotated[str, Meta(pattern=r"^[A-Za-z0-9_-]{1,32}\Z")]
-Corners = Annotated[tuple[tuple[Metre, Metre], ...], Meta(min_length=3, max_length=MOST_CORNERS)]
+Name = Annotated[
+    str, Meta(pattern=r"^[A-Za-z0-9_-]{1,32}\Z", description="1 to 32 letters, digits, '-' or '_'")
+]
+Corners = Annotated[
+    tuple[tuple[Metre, Metre], ...],
+    Meta(min_length=3, max_length=MOST_CORNERS, description=f"a list of 3 to {MOST_CORNERS} places [x, y]"),
+]
 
 
 class _Order(
@@ -201,6 +207,13 @@ class OrderBook:
     def any_no_go(self) -> bool:
         """Tell whether there is ground where nobody may go."""
         return any(isinstance(given.order, NoGo) for given in self._given.values())
+
+    def unknown_area(self, order: Order) -> str | None:
+        """Say in a line that an order removes an area that there never was; None: it does not."""
+        names = [held.order.area for held in self.all if isinstance(held.order, NoGo | Priority | Remove)]
+        if isinstance(order, Remove) and order.area not in names:
+            return f"there is no area {order.area}; {nearest_name(order.area, names)}"
+        return None
 
     def fulfil(self, robot: int) -> None:
         """Note that a robot has looked where it was to look; it works on."""

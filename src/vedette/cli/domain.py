@@ -20,7 +20,7 @@ from vedette.cli.options import (
     with_options,
 )
 from vedette.cli.running import Kind, simulate, simulate_watched
-from vedette.cli.windows import orders_of, watch_options, watched
+from vedette.cli.windows import beside_of, watch_options, watched
 from vedette.missions.flights import FUSIONS
 from vedette.missions.pairs import SCHEME
 from vedette.negotiation import SCHEMES
@@ -85,7 +85,7 @@ def command_of(declared: DomainEntry) -> click.Command:
         draw = pictures(mission.scene)
 
         def drawn(snapshot: Any) -> Picture:
-            return draw(snapshot, orders_of(mission, names))
+            return draw(snapshot, beside_of(mission, names, output.out))
 
         shower = Shower[Any](hub, drawn, pace)
         simulate_watched(kind, mission, mission.scene, output, hub, shower, beside)

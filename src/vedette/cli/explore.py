@@ -10,16 +10,15 @@ import click
 from vedette.cli.exploring import EXPLORING, exploring_options, team_named, world_named
 from vedette.cli.options import FILE, OneOf, Output, fault_options, orders_option, output_options
 from vedette.cli.running import simulate, simulate_watched
-from vedette.cli.windows import watch_options, watched
+from vedette.cli.windows import beside_of, watch_options, watched
 from vedette.errors import InputError
 from vedette.missions.explore.options import FRAMES
 from vedette.record.explore.log import ExploreSnapshot
-from vedette.record.space import short_of_space
 from vedette.run import Explore
 from vedette.run.inputs import files_of
 from vedette.run.saved import seed_of
 from vedette.window.explore import Shower
-from vedette.window.picture import Beside, Picture, picture
+from vedette.window.picture import Picture, picture
 
 
 @click.command()
@@ -65,11 +64,10 @@ def explore(
     mission.inputs += files_of(None if saved is None else saved / "map.yaml", team)
     if not watch:
         simulate(EXPLORING, mission, mission.scene, output)
-    hub, folder = watched(mission, mission.scene.name), output.out or Path()
+    hub, names = watched(mission, mission.scene.name), mission.scene.vehicles
 
     def drawn(snapshot: ExploreSnapshot) -> Picture:
-        short = short_of_space(folder)
-        return picture(mission.scene, snapshot, Beside(alerts=[short] if short else []))
+        return picture(mission.scene, snapshot, beside_of(mission, names, output.out))
 
     shower = Shower[ExploreSnapshot](hub, drawn, pace)
     simulate_watched(EXPLORING, mission, mission.scene, output, hub, shower)

@@ -11,7 +11,7 @@ from vedette.cli.options import Output, fault_options, orders_option, output_opt
 from vedette.cli.running import Say, simulate, simulate_watched
 from vedette.cli.searching import SEARCHING, searching_options
 from vedette.cli.seeking import OF_UNKNOWN_MAPS, OF_VEHICLES, check_together, seek, seeking_options
-from vedette.cli.windows import orders_of, watch_options, watched
+from vedette.cli.windows import beside_of, watch_options, watched
 from vedette.record.search.log import SearchSnapshot
 from vedette.record.search.observer import SearchReport
 from vedette.run import Search
@@ -71,7 +71,7 @@ def search(
     hub, names = watched(mission, mission.scene.name), mission.scene.vehicles
 
     def drawn(snapshot: SearchSnapshot) -> Picture:
-        return search_picture(mission.scene, snapshot, orders_of(mission, names))
+        return search_picture(mission.scene, snapshot, beside_of(mission, names, output.out))
 
     shower = Shower[SearchSnapshot](hub, drawn, pace)
     simulate_watched(SEARCHING, mission, mission.scene, output, hub, shower, beside)

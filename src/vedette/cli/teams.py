@@ -92,7 +92,7 @@ class TeamRun:
             processes = stack.enter_context(team)
             operator = stack.enter_context(Operator(processes.operator))
             if self.watch:
-                feed = TeamFeed(operator, processes.operator, self.onlooker)
+                feed = TeamFeed(operator, processes.operator, self.onlooker, logs)
                 hub = Hub(processes.operator.team, feed.give)
                 stack.enter_context(opened(hub))
                 stack.enter_context(feed.followed(hub))

@@ -10,7 +10,7 @@ import click
 from vedette.cli.options import Output, fault_options, orders_option, output_options
 from vedette.cli.running import simulate, simulate_watched
 from vedette.cli.tracking import TRACKING, tracking_options
-from vedette.cli.windows import orders_of, watch_options, watched
+from vedette.cli.windows import beside_of, watch_options, watched
 from vedette.record.track.log import TrackSnapshot
 from vedette.run import Track
 from vedette.window.explore import Shower
@@ -47,7 +47,7 @@ def track(
     hub, names = watched(mission, mission.scene.name), mission.scene.vehicles
 
     def drawn(snapshot: TrackSnapshot) -> Picture:
-        return track_picture(mission.scene, snapshot, orders_of(mission, names))
+        return track_picture(mission.scene, snapshot, beside_of(mission, names, output.out))
 
     shower = Shower[TrackSnapshot](hub, drawn, pace)
     simulate_watched(TRACKING, mission, mission.scene, output, hub, shower, beside)

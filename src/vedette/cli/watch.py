@@ -41,7 +41,7 @@ def watch(
     foxglove: int | None,
     export: Path | None,
 ) -> None:
-    """Show a team on the network, or an exploration that was recorded, in a browser until Ctrl-C.
+    """Show a team on the network, or a mission that was recorded, in a browser until Ctrl-C.
 
     The address that is printed has a token in it, without which nothing is shown. Of a team whose agents
     listen where the CONFIG.yaml files say, the page gives orders. Exit status: 0, or 2 for bad input.

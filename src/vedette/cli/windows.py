@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
@@ -12,6 +13,7 @@ import click
 from vedette.agent.orders import Order
 from vedette.cli.options import Positive, with_options
 from vedette.interrupt import ending_on_ctrl_c
+from vedette.record.space import space_alerts
 from vedette.run.mission import StepwiseMission
 from vedette.window.hub import LOOPBACK, Hub
 from vedette.window.picture import Beside, ordered
@@ -60,11 +62,11 @@ def watched(mission: StepwiseMission[Any, Any, Any, Any], name: str) -> Hub:
     return Hub(name, give)
 
 
-def orders_of(mission: StepwiseMission[Any, Any, Any, Any], names: Sequence[str]) -> Beside:
-    """Return the orders that robots of these names hold."""
+def beside_of(mission: StepwiseMission[Any, Any, Any, Any], names: Sequence[str], out: Path | None) -> Beside:
+    """Return the orders that robots of these names hold, and whether the disk that results go to is full."""
     held = [[given.order for given in book.all] for book in mission.books]
     orders, areas = ordered(zip(names, held, strict=True))
-    return Beside(orders=orders, areas=areas)
+    return Beside(orders=orders, areas=areas, alerts=space_alerts(out or Path()))
 
 
 @contextmanager

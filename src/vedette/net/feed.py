@@ -6,6 +6,7 @@ import threading
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
 from vedette.agent.orders import Order
@@ -17,6 +18,7 @@ from vedette.net.report import Report
 from vedette.net.transport import Operator
 from vedette.record.log import LEFT
 from vedette.record.mcap import McapFile, Medium, Place
+from vedette.record.space import space_alerts
 from vedette.window.foxglove import FoxgloveServer
 from vedette.window.hub import Hub
 from vedette.window.picture import Beside, Picture, ordered
@@ -53,9 +55,11 @@ class Onlooker(Protocol[SceneT, SnapshotT]):
 class TeamFeed:
     """Makes pictures of what an operator's session hears."""
 
-    def __init__(self, operator: Operator, access: Access, onlooker: Onlooker[Any, Any]) -> None:
-        """Begin to hear."""
-        self.hearing = Hearing(operator)
+    def __init__(
+        self, operator: Operator, access: Access, onlooker: Onlooker[Any, Any], folder: Path | None = None
+    ) -> None:
+        """Begin to hear; ``folder``: where what is heard is kept, whose disk may be full."""
+        self.hearing, self._folder = Hearing(operator), folder
         self._onlooker, self._giving = onlooker, Giving(operator, access, onlooker.name)
 
     def picture(self) -> Picture | None:
@@ -106,6 +110,7 @@ class TeamFeed:
         finally:
             ended.set()
             thread.join()
+            hub.close()
 
     def _beside(self) -> Beside:
         reports, name = dict(sorted(self.hearing.reports.items())), self._onlooker.name
@@ -119,6 +124,7 @@ class TeamFeed:
             orders=orders,
             areas=areas,
             alerts=[
+                *(space_alerts(self._folder) if self._folder is not None else ()),
                 *(f"{name(each.robot)}: {line}" for each in told for line in each.alerts),
                 *(
                     f"{name(each.robot)} of {name(complaint.robot)}: {complaint.what}"

@@ -22,7 +22,7 @@ from vedette.record.folder import OutputFolder
 from vedette.record.log import LEFT, VehicleSample
 from vedette.record.mcap import McapFile
 from vedette.record.robot import RobotRecorder
-from vedette.record.space import short_of_space
+from vedette.record.space import space_alerts
 
 PERIOD = 30.0  # of real time, at most, in which what has come to be known is put on disk [s]
 RECORD = "run.mcap"
@@ -62,8 +62,8 @@ class Keeper:
     @property
     def alerts(self) -> tuple[str, ...]:
         """What an operator has to know of the folder."""
-        short = short_of_space(self._folder.path)
-        return tuple(line[:MOST_WORDS] for line in (self._failed, short) if line)
+        lines = self._failed, *space_alerts(self._folder.path)
+        return tuple(line[:MOST_WORDS] for line in lines if line)
 
     def take(self, report: Report, now: float) -> None:
         """Add a report to the record, and write it all if it is time; ``now`` by the process's clock [s]."""

@@ -10,7 +10,7 @@ from typing import cast
 import numpy as np
 from msgspec import structs
 
-from vedette.agent.orders import Given, LookThere, NoGo, Order, Priority, Recall, decode, encode
+from vedette.agent.orders import Given, LookThere, NoGo, Order, Priority, Recall, Remove, decode, encode
 from vedette.agent.state import Agent
 from vedette.errors import InputError
 from vedette.maps import OCCUPIED
@@ -77,7 +77,10 @@ def explorer_judge(agent: Agent, gate: Gate) -> Judge:
 def flight_judge(agent: Agent, gate: Gate, grounds: Grounds) -> Judge:
     """Return the judge of a vehicle, which also checks orders that mates pass on."""
     agent.check_order = gate.check
-    return Judge(gate, lambda order: grounds.objection(order, agent.orders.all_of(NoGo)))
+    return Judge(
+        gate,
+        lambda order: agent.orders.unknown_area(order) or grounds.objection(order, agent.orders.all_of(NoGo)),
+    )
 
 
 def _objection(agent: Agent, mission: Exploring, order: Order) -> str | None:
@@ -85,6 +88,8 @@ def _objection(agent: Agent, mission: Exploring, order: Order) -> str | None:
     if order.robot_number > agent.rounds.admitted:
         return f"there is no robot {order.robot_number} in a team of {agent.rounds.admitted} at most"
     match order:
+        case Remove():
+            return agent.orders.unknown_area(order)
         case NoGo() | Priority():
             try:
                 area = Area.of(order.corners)

@@ -73,10 +73,12 @@ def check_orders(
             raise InputError(f"{at}: there is no robot {order.robot_number} in a team of {len(specs)}")
         match order:
             case NoGo() | Priority():
-                _check_area(Area.of(order.corners), world, at)
+                _check_area(order.corners, world, at)
                 areas.add(order.area)
             case Remove() if order.area not in areas:
                 raise InputError(f"{at}: there is no such area by then; {nearest_name(order.area, areas)}")
+            case Remove():
+                areas.discard(order.area)
             case Recall(to=(x, y)) | LookThere(at=(x, y)):
                 robots = specs if order.robot is None else [specs[order.robot - 1]]
                 _check_place(x, y, world, max(spec.radius for spec in robots), at)
@@ -120,7 +122,11 @@ def _order(told: dict[str, Any], where: str) -> OrderAt:
         raise InputError(str(error).replace(": what.", ": ", 1).replace(": what:", ":", 1)) from None
 
 
-def _check_area(area: Area, world: World, at: str) -> None:
+def _check_area(corners: Sequence[tuple[float, float]], world: World, at: str) -> None:
+    try:
+        area = Area.of(corners)
+    except InputError as error:
+        raise InputError(f"{at}: {error}") from None
     if not area.holds(world.frame).any():
         x_min, x_max, y_min, y_max = world.frame.extent
         raise InputError(

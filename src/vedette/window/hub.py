@@ -19,6 +19,7 @@ from vedette.window.picture import Picture, said
 LOOPBACK = "127.0.0.1"  # where a window is served, unless somebody wants it elsewhere
 FRESH = 3.0  # an order given on an older picture is refused [s]
 MOST_EVENTS = 500
+OVER = "the mission is over"
 PER_SECOND = 10.0  # pictures, at most
 
 
@@ -60,7 +61,7 @@ class Hub:
         self._latest: Picture | None = None
         self._number, self._shown_at = 0, -1e9
         self._states: dict[str, str] = {}
-        self.closed = False
+        self.closed = ""  # why nothing more will be shown
 
     @property
     def takes_orders(self) -> bool:
@@ -80,16 +81,16 @@ class Hub:
             self._note_changes(shown)
             self._news.notify_all()
 
-    def close(self) -> None:
-        """Show nothing more: the mission is over."""
+    def close(self, why: str = OVER) -> None:
+        """Show nothing more, and say why; what was said first counts."""
         with self._news:
-            self.closed = True
+            self.closed = self.closed or why
             self._news.notify_all()
 
     def wait(self, seen: int, seconds: float) -> tuple[int, Picture | None]:
         """Return the latest picture and its number, once that is another than ``seen``, or time is over."""
         with self._news:
-            self._news.wait_for(lambda: self._number != seen or self.closed, seconds)
+            self._news.wait_for(lambda: self._number != seen or bool(self.closed), seconds)
             return self._number, self._latest
 
     def note(self, what: str, at: float | None = None) -> None:

@@ -29,6 +29,7 @@ MOST_ASKED = 16 << 10  # bytes of what a page says
 INLINE = "script-src 'unsafe-inline'; style-src 'unsafe-inline'"  # the page is one file
 POLICY = f"default-src 'none'; {INLINE}; connect-src 'self'; img-src data:"
 NO_TOKEN = b"the token is missing or wrong: use the whole address\n"
+CLOSED = "the window is closed"  # whether or not the mission goes on
 NONSENSE = 1008  # how a page that makes no sense is cut off: a policy violation
 WAKE = 1.0  # a watcher hears at least so often that nothing is new [s]
 
@@ -72,8 +73,8 @@ class WindowServer:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         """Stop."""
-        self.hub.close()
-        self._server.shutdown()
+        self.hub.close(CLOSED)
+        self._server.shutdown(reason=self.hub.closed)
         self._thread.join()
 
     def _answer(self, connection: ServerConnection, request: Request) -> Response | None:
@@ -81,9 +82,7 @@ class WindowServer:
         url = urlsplit(request.path)
         given = parse_qs(url.query).get("token", [""])[0]
         if not secrets.compare_digest(given.encode(), self.token.encode()):
-            return _page(
-                HTTPStatus.FORBIDDEN, b"the token is missing or wrong: use the whole address\n", "text/plain"
-            )
+            return _page(HTTPStatus.FORBIDDEN, NO_TOKEN, "text/plain")
         if url.path == "/watch":
             return None
         if url.path != "/":
@@ -130,7 +129,7 @@ class _Watcher:
         self._numbers = 0
         self._at: float | None = None if hub.live else 0.0  # the time that it looks at [s]; None: now
         self._wake = threading.Event()
-        self._gone = False
+        self._gone = self._over = False
 
     def gone(self) -> None:
         """Note that nobody looks any more."""
@@ -145,17 +144,18 @@ class _Watcher:
         if not hub.live:
             self._seek(hub.history.span[0])
         while not self._gone:
+            over = hub.closed  # then no picture comes after the one that follows
             if self._at is not None:
                 self._wake.wait(WAKE)
                 self._wake.clear()
-                continue
-            number, shown = hub.wait(self._seen, WAKE)
-            if shown is not None and number != self._seen:
-                self._seen = number
-                self._show(shown)
-            if hub.closed:
-                self._say({"over": True})
-                self._at = hub.history.span[1]
+            else:
+                number, shown = hub.wait(self._seen, WAKE)
+                if shown is not None and number != self._seen:
+                    self._seen = number
+                    self._show(shown, now=True)
+            if over and not self._over:
+                self._over, self._at = True, hub.history.span[1] if self._at is None else self._at
+                self._say({"over": over})
 
     def hear(self, message: str | bytes) -> None:
         """Do what the page asks for; ValueError or InputError if it makes no sense."""
@@ -164,9 +164,10 @@ class _Watcher:
             case {"seek": float() | int() as t}:
                 self._at = float(t)
                 self._seek(self._at)
-            case {"live": True} if self._hub.live and not self._hub.closed:
-                self._at, self._seen = None, -1
-                self._wake.set()
+            case {"live": True} if self._hub.live:
+                if not self._over:
+                    self._at, self._seen = None, -1
+                    self._wake.set()
             case {"order": dict() as order, "seen": int() as seen, "id": int() as number}:
                 age = self._clock() - self._sent.get(seen, -1e9)
                 self._say({"answer": self._hub.order(order, age), "id": number})
@@ -180,14 +181,16 @@ class _Watcher:
 
     def _show_trails(self) -> None:
         past = [
-            [each["t"], each["share"], [[robot["x"], robot["y"]] for robot in each["robots"]]]
+            [each["t"], each["share"], {robot["id"]: [robot["x"], robot["y"]] for robot in each["robots"]}]
             for each in self._hub.history.told()
         ]
         self._say({"past": past})
 
-    def _show(self, shown: Picture) -> None:
-        """Send what is new in a picture."""
+    def _show(self, shown: Picture, now: bool = False) -> None:
+        """Send what is new in a picture; one of ``now`` not to a page that has begun to look back."""
         with self._send_lock:
+            if now and self._at is not None:
+                return
             if shown.frame != self._frame:
                 self._shown, self._frame = None, shown.frame
             whole, tiles = changes(shown.frame, shown.classes, self._shown)

@@ -233,7 +233,15 @@ def test_whatever_way_orders_come_the_same_are_in_force(told: list[Any], chance:
         ),
         (
             {"at": 5, "order": "no-go", "area": "x", "corners": [[0, 0], [1, 1], [2, 2]]},
-            "all corners are on a line",
+            "orders.yaml: area-x at 5 s: area: all corners are on a line",
+        ),
+        (
+            {"at": 5, "order": "no-go", "area": "a lab", "corners": [[0, 0], [1, 1], [2, 0]]},
+            "area: must be 1 to 32 letters, digits, '-' or '_'; got 'a lab'",
+        ),
+        (
+            {"at": 5, "order": "priority", "area": "x", "corners": [[0, 0], [1, 1]]},
+            "corners: must be a list of 3 to 64 places [x, y]; got [[0, 0], [1, 1]]",
         ),
         ({"at": 5, "order": "exclude", "robot": 1}, "simulated robots sign nothing"),
     ],
@@ -247,6 +255,20 @@ def test_orders_that_make_no_sense_are_refused_in_one_line(
         Explore(small_office(), 2, orders=path)
     assert message in str(told.value)
     assert "\n" not in str(told.value)
+
+
+def test_an_area_is_removed_but_once() -> None:
+    lab = 1.0, NoGo(area="lab", corners=WEST)
+    with pytest.raises(InputError, match="area-lab at 3 s: there is no such area by then; known: none"):
+        ordered(lab, (2.0, Remove(area="lab")), (3.0, Remove(area="lab")))
+
+
+def test_an_area_that_there_never_was_is_no_area_to_remove_and_one_that_was_removed_is_again() -> None:
+    book = OrderBook()
+    book.take(Given(1, "operator", NoGo(area="lab", corners=WEST)))
+    assert book.unknown_area(Remove(area="lap")) == "there is no area lap; did you mean 'lab'?"
+    book.take(Given(2, "operator", Remove(area="lab")))
+    assert book.unknown_area(Remove(area="lab")) is None
 
 
 def test_a_file_of_orders_is_read_in_order_of_time(tmp_path: Path) -> None:
