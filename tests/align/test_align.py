@@ -32,6 +32,14 @@ def test_parts_with_a_third_in_common_lie_within_5_cm_and_0_3_degrees_of_the_tru
     assert verdict.joined.overlap == pytest.approx(0.5, abs=0.12)
 
 
+def test_parts_of_a_hundred_metres_with_a_third_in_common_are_joined_where_they_were_cut() -> None:
+    classes = building(3, 90.0, 100.0)
+    a, b = part(classes, 0.0, 60.0, HERE), part(classes, 30.0, 90.0, FramePose.of(-7.0, 3.0, 0.4))
+    found = align(a.charted, b.charted).candidates[0]
+    assert off(found.pose, a, b)[0] <= 0.05
+    assert found.contradicted < 0.05
+
+
 def test_maps_of_other_cells_are_laid_on_each_other() -> None:
     classes = building(4)
     a, b = (

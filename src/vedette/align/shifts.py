@@ -14,7 +14,7 @@ from vedette.kernels.align import QUARTERS, Weights, align_peaks
 
 WEIGHTS = Weights(walls=1.0, clash=0.6, free=0.03)
 BESIDE = 0.5  # a wall counts in the cells beside it [of a wall]
-SMALLEST, LARGEST = 0.25, 1.0  # sides of the large cells [m]
+SMALLEST, LARGEST = 0.25, 0.4  # sides of the large cells: in larger ones walls fill all ground [m]
 CELLS_ALONG = 384  # large cells on a side of both maps together, as far as `LARGEST` allows
 TURN_AT_THE_END = 1.25  # large cells that the end of a map moves between two angles
 LEAST_TURN, MOST_TURN = math.radians(1.5), math.radians(3.0)
@@ -28,7 +28,7 @@ def likely(a: Charted, b: Charted, most: int) -> list[FramePose]:
     Of places within `APART` and two angles of each other the best stands for all.
     """
     both = a.side + b.side * math.sqrt(2.0) + 2.0 * SMALLEST
-    cell = min(max(SMALLEST, 2.0 * a.cell, 2.0 * b.cell, both / CELLS_ALONG), LARGEST)
+    cell = max(min(max(SMALLEST, both / CELLS_ALONG), LARGEST), 2.0 * a.cell, 2.0 * b.cell)
     size = int(scipy.fft.next_fast_len(math.ceil(both / cell) + 4))
     turn = min(max(TURN_AT_THE_END * cell / (b.side / 2.0), LEAST_TURN), MOST_TURN)
     turns = math.ceil(math.pi / 2.0 / turn)
