@@ -13,6 +13,7 @@ import pytest
 from tests.support.commands import Command
 from tests.support.small_missions import small_office
 from vedette.agent.orders import Pause
+from vedette.cli.compare import figures_side_by_side
 from vedette.maps import UNKNOWN, read_map
 from vedette.record.explore.details import RobotDetails, encode
 from vedette.record.explore.log import RobotSample
@@ -126,6 +127,40 @@ def test_runs_are_compared_by_what_differs(vedette: Command, run: Path, tmp_path
     assert "coverage" in vedette("compare", run, other, "--all").out
     assert vedette("compare", run, run).out == "the runs have the same figures\n"
     assert vedette("compare", run).status == 2
+
+
+def test_of_what_is_not_by_robot_nothing_is_added_up() -> None:
+    team = {"path_m": {"a": 1.0, "b": 2.0}, "bytes": {"a": {"fusion": 3}, "b": {"fusion": 4}}}
+    told = {
+        "schema_version": 3,
+        **team,
+        "left_out": [{"x": 9.0}],
+        "comparison": {"shared": {"rmse": 5.0, "nees": 1.0}},
+        "expected": {"ended": {"low": 1.0, "middle": 2.0}},
+    }
+    figures = {each.name: each.values[0] for each in figures_side_by_side([told])}
+    assert figures == {
+        "path_m": 3.0,
+        "bytes": 7,
+        "left_out": 1,
+        "comparison.shared.rmse": 5.0,
+        "comparison.shared.nees": 1.0,
+        "expected.ended.low": 1.0,
+        "expected.ended.middle": 2.0,
+    }
+    kept = {
+        "time_s": 4.0,
+        "condition": {"boot": 96, "x": 1.0, "rounds": 5, "bytes": {"fusion": 1, "overlay": 2}},
+    }
+    figures = {each.name: each.values[0] for each in figures_side_by_side([kept])}
+    assert figures == {"time_s": 4.0, "rounds": 5, "bytes": 3}
+
+
+def test_what_is_of_teams_alone_is_refused_with_a_record(vedette: Command, run: Path) -> None:
+    for option, value in (("--foxglove", 0), ("--keys", "keys")):
+        ran = vedette("watch", run, option, value)
+        assert (ran.status, ran.out) == (2, "")
+        assert ran.err.startswith(f"vedette: {option} is of teams on a network, and ")
 
 
 def test_a_record_has_the_orders_that_robots_held(tmp_path: Path) -> None:

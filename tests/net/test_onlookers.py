@@ -162,7 +162,7 @@ def test_who_looks_knows_the_scenario_from_a_robots_file(
         onlooker_of(load_config(file), tmp_path)
 
 
-def test_a_disk_that_is_nearly_full_where_a_team_is_recorded_is_an_alert(
+def test_what_a_team_has_sent_is_told_and_that_the_disk_for_its_record_is_nearly_full(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     operator: Any = SimpleNamespace(subscribe=lambda *what: None)
@@ -171,4 +171,6 @@ def test_a_disk_that_is_nearly_full_where_a_team_is_recorded_is_an_alert(
     monkeypatch.setattr(shutil, "disk_usage", lambda path: SimpleNamespace(free=LITTLE - 1))
     feed.hearing.reports[0] = report(0, b"")
     feed.hearing._times[0] = 0.0
-    assert f"disk full: 67 MB left for {tmp_path}" in feed._beside().alerts
+    beside, condition = feed._beside(), feed.hearing.reports[0].condition
+    assert f"disk full: 67 MB left for {tmp_path}" in beside.alerts
+    assert beside.counts == {1: (condition.rounds, sum(condition.bytes.values()))}

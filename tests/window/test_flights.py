@@ -23,7 +23,7 @@ from vedette.sim.orders import OrderAt
 from vedette.window.explore import Shower
 from vedette.window.flights import search_picture, track_picture
 from vedette.window.hub import Hub
-from vedette.window.picture import SHADES, Picture
+from vedette.window.picture import SHADES, Picture, size
 
 
 def last_of(mission: Any, draw: Any) -> tuple[Any, Picture, dict[str, Any]]:
@@ -58,6 +58,12 @@ def test_orders_and_a_disk_that_is_nearly_full_are_told_beside_vehicles_too(
     told = beside_of(mission, names, tmp_path)
     assert list(told.orders) == [("pause robot 2", list(names))]
     assert told.alerts == []
+    shown = json.loads(track_picture(mission.scene, mission.snapshot, told).text)
+    rounds, sent = zip(*mission.counts, strict=True)
+    assert min(*rounds, *sent) > 0
+    assert [each["rounds"] for each in shown["robots"]] == list(rounds)
+    assert [each["sent"] for each in shown["robots"]] == [size(each) for each in sent]
+    assert shown["figures"][-2:] == [["rounds", str(max(rounds))], ["sent", size(sum(sent))]]
     monkeypatch.setattr(shutil, "disk_usage", lambda path: SimpleNamespace(free=LITTLE - 1))
     assert list(beside_of(mission, names, tmp_path).alerts) == [f"disk full: 67 MB left for {tmp_path}"]
 

@@ -16,6 +16,7 @@ from vedette.errors import InputError
 from vedette.record.plain import json_text
 from vedette.run.saved import read_figures
 
+COUNTED = ("travelled", "rounds", "sweeps", "collisions", "min_clearance", "messages", "bytes", "complaints")
 SHOWN = 5  # runs in a table; more are asked for as JSON
 
 
@@ -71,16 +72,27 @@ def figures_side_by_side(summaries: Sequence[Mapping[str, Any]]) -> list[Compare
 
 
 def _added_up(summary: Mapping[str, Any]) -> dict[str, Any]:
-    """Return numbers and words as they are, numbers by robot as their sum, and of lists the length."""
+    """Return numbers and words as they are, numbers by robot as their sum, and of lists the length.
+
+    Other objects' fields are named with the object's name before them; of a robot's whole condition, which says
+    who and where it is as well, what it has counted.
+    """
+    team = set(summary["path_m"]) if isinstance(summary.get("path_m"), dict) else set()
     told: dict[str, Any] = {}
     for name, value in summary.items():
-        if isinstance(value, dict):
-            told[name] = sum(_numbers(value))
-        elif isinstance(value, list):
-            told[name] = len(value)
+        if name == "condition":
+            told |= {each: _plain(value[each]) for each in COUNTED if each in value}
+        elif isinstance(value, dict) and value.keys() != team:
+            told |= {f"{name}.{inner}": each for inner, each in _added_up(value).items()}
         elif name != "schema_version":
-            told[name] = value
+            told[name] = _plain(value)
     return told
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return sum(_numbers(value))
+    return len(value) if isinstance(value, list) else value
 
 
 def _numbers(value: Any) -> list[float]:

@@ -57,6 +57,9 @@ def watch(
         click.echo(f"open {export} in a browser")
         return
     if record is not None:
+        if keys is not None or foxglove is not None:
+            option = "--keys" if foxglove is None else "--foxglove"
+            raise InputError(f"{option} is of teams on a network, and {record} is a record; leave it out")
         with opened(recorded(record), host, port):
             linger()
         return

@@ -63,10 +63,15 @@ def watched(mission: StepwiseMission[Any, Any, Any, Any], name: str) -> Hub:
 
 
 def beside_of(mission: StepwiseMission[Any, Any, Any, Any], names: Sequence[str], out: Path | None) -> Beside:
-    """Return the orders that robots of these names hold, and whether the disk that results go to is full."""
+    """Return what robots of these names hold and have counted, and whether the disk for results is full."""
     held = [[given.order for given in book.all] for book in mission.books]
     orders, areas = ordered(zip(names, held, strict=True))
-    return Beside(orders=orders, areas=areas, alerts=space_alerts(out or Path()))
+    return Beside(
+        orders=orders,
+        areas=areas,
+        alerts=space_alerts(out or Path()),
+        counts=dict(enumerate(mission.counts, 1)),
+    )
 
 
 @contextmanager

@@ -123,6 +123,7 @@ class TeamFeed:
             links=links_among(reports, numbers),
             orders=orders,
             areas=areas,
+            counts={each.robot + 1: (each.rounds, sum(each.bytes.values())) for each in told},
             alerts=[
                 *(space_alerts(self._folder) if self._folder is not None else ()),
                 *(f"{name(each.robot)}: {line}" for each in told for line in each.alerts),

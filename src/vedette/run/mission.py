@@ -23,7 +23,7 @@ from vedette.record.log import Sink
 from vedette.record.mcap import Place
 from vedette.sim.orders import OrderAt
 from vedette.sim.simulation import Simulation
-from vedette.sim.views import state
+from vedette.sim.views import figures, state
 from vedette.sim.watched import Watched
 
 RECORD = "run.mcap"
@@ -197,6 +197,12 @@ class StepwiseMission(ABC, Generic[SnapshotT, StrategyT, ImpactT, ReportT]):
     def states(self) -> tuple[str, ...]:
         """Everybody's word for what it does."""
         return tuple(state(self._simulation, i) for i in range(len(self._agents)))
+
+    @property
+    def counts(self) -> tuple[tuple[int, int], ...]:
+        """Of each robot, the rounds that it has ended with a decision, and what it has sent [byte]."""
+        counted = [figures(self._simulation, i, 0.0) for i in range(len(self._agents))]
+        return tuple((each.rounds.rounds, each.bytes.total) for each in counted)
 
     @property
     def observed(self) -> tuple[tuple[Event, ...], ...]:

@@ -34,6 +34,7 @@ class Beside:
     orders: Sequence[tuple[str, Sequence[str]]] = ()  # in force, and who holds each
     areas: Sequence[Mapping[str, Any]] = ()  # that are ordered: kind, name and corners
     alerts: Sequence[str] = ()
+    counts: Mapping[int, tuple[int, int]] = field(default_factory=dict)  # by number: rounds, and bytes sent
 
 
 NOTHING = Beside()
@@ -105,7 +106,7 @@ def picture(scene: ExploreScene, snapshot: ExploreSnapshot, beside: Beside = NOT
         share=share,
         links=snapshot.links or (),
         left=left,
-        beside=replace(beside, orders=orders, areas=areas),
+        beside=replace(beside, orders=orders, areas=areas, counts={}),
     )
 
 
@@ -142,6 +143,7 @@ def drawn(
         beside: what is told beside.
     """
     numbers = beside.numbers or range(1, len(robots) + 1)
+    robots, figures = _counted(numbers, robots, beside.counts), [*figures, *_totals(beside.counts)]
     told = {
         "t": round(t, 2),
         "robots": [
@@ -159,6 +161,23 @@ def drawn(
     }
     text = msgspec.json.encode(told, enc_hook=lambda number: number.item())  # NumPy's
     return Picture(t, text, frame, ground)
+
+
+def _counted(
+    numbers: Sequence[int], robots: Sequence[RobotSample], counts: Mapping[int, tuple[int, int]]
+) -> list[RobotSample]:
+    """Return robots with their rounds and what they have sent, of those of whom it is told beside."""
+    return [
+        replace(robot, rounds=counts[number][0], sent=counts[number][1]) if number in counts else robot
+        for number, robot in zip(numbers, robots, strict=True)
+    ]
+
+
+def _totals(counts: Mapping[int, tuple[int, int]]) -> list[tuple[str, str]]:
+    if not counts:
+        return []
+    rounds, sent = zip(*counts.values(), strict=True)
+    return [("rounds", str(max(rounds))), ("sent", size(sum(sent)))]
 
 
 def shaded(scene: ExploreScene, snapshot: ExploreSnapshot) -> NDArray[np.uint8]:
