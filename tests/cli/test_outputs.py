@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import shutil
 import sys
 from collections.abc import Callable
@@ -10,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from mcap.reader import make_reader
+from mcap.writer import Writer
 from PIL import Image
 
 from vedette.cli import main
@@ -140,6 +143,24 @@ def test_a_folder_that_another_run_has_is_refused_and_left_as_it_is(
         assert error.startswith("vedette: out is in use by another run, process ")
         assert len(error.splitlines()) == 1
         assert everything(tmp_path) == before
+
+
+def test_where_the_disk_is_full_at_a_records_end_the_map_and_the_figures_are_kept_all_the_same(
+    vedette: Vedette, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(writer: Writer) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(Writer, "finish", full)
+    options = "--robots", 1, "--max-time", 2, "--out", "out"
+    status, _, error = vedette("explore", "maps/room.yaml", *options)
+    assert (status, error) == (
+        2,
+        "vedette: cannot write out/run.mcap: No space left on device; choose another folder\n",
+    )
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {
+        "summary.json", "timing.json", "map.yaml", "map.pgm", "progress.png", "curves.png",
+    }  # fmt: skip
 
 
 def test_a_mission_whose_folder_vanishes_says_so_and_leaves_all_results_beside_it(

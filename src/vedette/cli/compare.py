@@ -74,8 +74,8 @@ def figures_side_by_side(summaries: Sequence[Mapping[str, Any]]) -> list[Compare
 def _added_up(summary: Mapping[str, Any]) -> dict[str, Any]:
     """Return numbers and words as they are, numbers by robot as their sum, and of lists the length.
 
-    Other objects' fields are named with the object's name before them; of a robot's condition, which says who and
-    where it is as well, what it has counted.
+    Other objects' fields are named with the object's name before them; of a robot's condition, which says who
+    and where it is as well, what it has counted.
     """
     team = set(summary["path_m"]) if isinstance(summary.get("path_m"), dict) else set()
     told: dict[str, Any] = {}

@@ -13,6 +13,7 @@ import click
 from vedette.cli.ends import telling_what_is_missing
 from vedette.cli.options import Output
 from vedette.cli.windows import linger, opened
+from vedette.errors import InputError
 from vedette.interrupt import ending_on_ctrl_c
 from vedette.record.display import Display
 from vedette.record.folder import OutputFolder
@@ -61,13 +62,23 @@ class Kind(Generic[SceneT, SnapshotT, ReportT]):
             OutputFolder.make(output.out, output.force, scene.name, inputs) as folder,
             telling_what_is_missing(folder, leaves),
         ):
-            with ExitStack() as sinks:
-                live = sinks.enter_context(self.display(scene, output.as_json))
-                record = sinks.enter_context(self.recorder(lambda: folder / RECORD, scene))
-                report = play((live, record, folder), folder)
+            report, unkept = None, None
+            try:
+                with ExitStack() as sinks:
+                    live = sinks.enter_context(self.display(scene, output.as_json))
+                    record = sinks.enter_context(self.recorder(lambda: folder / RECORD, scene))
+                    report = play((live, record, folder), folder)
+            except InputError as error:
+                if report is None:
+                    raise
+                unkept = (
+                    error  # the record alone cannot be written: what has been found out is kept all the same
+                )
             report = beside(report, live.say)
             self.write(report, folder, output.animate)
             closed = self.closing(report.summary, folder.path)
+        if unkept is not None:
+            raise unkept
         end(report.summary, closed, output.as_json)
 
 
