@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 from msgspec import structs
 
-from tests.support.agent_team import Float
+from tests.support.agent_team import Float, ToyMission
 from tests.support.signing_agents import agent, hears, notary
 from vedette.agent import Agent, messages
 from vedette.agent.account import Claimed, account_of, contradicts, words_of
 from vedette.agent.audit import EVERY, WAITS
 from vedette.agent.effects import Send
 from vedette.agent.messages import MOST_ANSWERED, Account, Audit, Proof
+from vedette.agent.promises import LEAST
 from vedette.agent.scrutiny import IDLE_ROUNDS
 from vedette.problem import Coverage
 
@@ -200,6 +201,41 @@ def test_links_that_make_no_tree_are_followed_once_a_robot_and_catch_nobody() ->
     assert proofs == []
     assert len(combined) < 20
     assert judge.rounds.distrusted == frozenset()
+
+
+class Promising(ToyMission):
+    """Each point that is likely seen is promised, as so many cells that it is worth a complaint."""
+
+    def promised(self, belief: Any, impact: Float) -> tuple[np.ndarray, np.ndarray]:
+        """Return the cells of those points, for at once."""
+        cells = (np.flatnonzero(impact < 0.5)[:, None] * LEAST + np.arange(LEAST)).ravel()
+        return cells, np.zeros(len(cells))
+
+    def unseen(self, belief: Any, cells: np.ndarray) -> np.ndarray:
+        """All are seen in time."""
+        return np.zeros(len(cells), np.bool_)
+
+    def discounted(self, impact: Float, halvings: int) -> Float:
+        """As it is."""
+        return impact
+
+
+@pytest.mark.parametrize("goes_back", [False, True])
+def test_sums_of_a_round_that_ended_by_strategies_of_earlier_catch_nobody(goes_back: bool) -> None:
+    """Of jacobi and multistart: the last sums are of strategies that nobody has, though all are honest."""
+    made = robot(1, (0,))
+    auditor = made.rounds.scrutiny.auditor
+    assert auditor is not None
+    auditor.mission.__class__ = Promising
+    auditor.standing.notary.admit(0, notary(0).certificate)
+    for sequence in (7, 8):
+        now = 10.0 * sequence
+        auditor.want(now)
+        auditor.decided(Claimed((1, sequence), WORTH, NOTHING, {0: ALL}, {}, {}, goes_back), (0,), now)
+        own = Claimed((1, sequence), WORTH, SOME, {1: NOTHING}, {1: ALL}, {})
+        hears(made, 0, account(0, made, own), now)
+        auditor.tick(now + 2.0 * WAITS)
+    assert (auditor.caught.keys() == {0}) != goes_back
 
 
 def test_an_account_in_a_robots_own_name_keeps_it_from_giving_none() -> None:

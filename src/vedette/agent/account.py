@@ -27,6 +27,7 @@ class Claimed:
     heard: Mapping[int, Any]  # the sum that came over each link
     told: Mapping[int, Any]  # the sum that went over each last
     halvings: Mapping[int, int]  # by so many halves each that came counted less
+    goes_back: bool = False  # the round has ended by strategies of earlier, which those sums are not of
 
 
 def account_of(claimed: Claimed, mission: Mission[Any, Any, Any], robot: int, boot: int) -> Account:

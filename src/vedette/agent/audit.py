@@ -121,7 +121,7 @@ class Auditor:
         others = {robot: impact for robot, impact in impacts.items() if robot != self.robot}
         for robot in self.promises.note(self.mission, claimed.belief, others, now):
             self._catch(robot, "less than half of what it has signed to see comes true", now)
-        for link, told in claimed.heard.items():
+        for link, told in claimed.heard.items() if not claimed.goes_back else ():
             self._compare(link, told, claimed, accounts, impacts, now)
 
     def _check_sums(self, account: Account) -> None:

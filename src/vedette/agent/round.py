@@ -133,6 +133,11 @@ class Round:
         return self.negotiator is not None and self.negotiator.replied
 
     @property
+    def goes_back(self) -> bool:
+        """Whether it has ended by strategies of earlier, which the sums that were told last are not of."""
+        return self.negotiator is not None and self.negotiator.goes_back
+
+    @property
     def team_seen(self) -> Any:
         """The impact of the team's choice; None: this robot does not hold all of it."""
         whole = all(reach is None for reach in self._told(self.heard).values())

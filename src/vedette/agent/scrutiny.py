@@ -57,7 +57,7 @@ class Scrutiny:
         if lost or self._stands_about(belief, impact, claims):
             self.auditor.want(now)
         return self.auditor.decided(
-            Claimed(stamp, belief, impact, claims, round_.told, halvings), neighbours, now
+            Claimed(stamp, belief, impact, claims, round_.told, halvings, round_.goes_back), neighbours, now
         )
 
     def nobody_goes(self, belief: Any, impact: Any) -> bool:

@@ -91,6 +91,11 @@ class AsyncNode(Generic[ImpactT]):
         """Whether this platform has replied."""
         return self._slack < math.inf or self._changes > 0
 
+    @property
+    def goes_back(self) -> bool:
+        """Never: who changes its mind says so."""
+        return False
+
     def team_held(self) -> ImpactT:
         """Return the impacts held together; see `Negotiator`."""
         return self._together(self._branches().values(), self._own.impact)

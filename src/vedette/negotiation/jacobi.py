@@ -97,6 +97,11 @@ class JacobiNode(RootedNode[ImpactT]):
         """Whether an iterate has begun here: everybody replies in each."""
         return bool(self._strategies)
 
+    @property
+    def goes_back(self) -> bool:
+        """Whether the best iterate may have been an earlier one: it is not a fixed point."""
+        return self.finished is not None and not self.finished.converged
+
     def team_held(self) -> None:
         """Nothing: the round may end with the strategies of an earlier iterate."""
 

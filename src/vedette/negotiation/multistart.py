@@ -102,6 +102,12 @@ class MultistartNode(Generic[ImpactT]):
         """Whether the token has been here."""
         return self.rounds[0].replied
 
+    @property
+    def goes_back(self) -> bool:
+        """Whether the first round was better than the second."""
+        last = self.rounds[-1]
+        return isinstance(last, BackwardNode) and last.first_is_better
+
     def team_held(self) -> ImpactT | None:
         """Return the impacts held together; see `Negotiator`."""
         last = self.rounds[-1]

@@ -90,6 +90,10 @@ class Negotiator(Protocol[ImpactT]):
     def replied(self) -> bool:
         """Whether this platform has had its say in the round."""
 
+    @property
+    def goes_back(self) -> bool:
+        """Whether the round has ended by strategies of earlier: what was told last is of others."""
+
     def team_held(self) -> ImpactT | None:
         """Return the impacts held together, own one included; None: they are not all here.
 

@@ -39,6 +39,11 @@ class RootedNode(ABC, Generic[ImpactT]):
     def waiting_for(self) -> frozenset[int]:
         """Neighbours without whose next message nothing goes on here; none once the round is over."""
 
+    @property
+    def goes_back(self) -> bool:
+        """Never: who changes its mind says so."""
+        return False
+
     def start(self) -> list[Outgoing[ImpactT]]:
         """Begin, once the own impact is ready; messages may have arrived before."""
         self._started = True
