@@ -19,6 +19,9 @@ from vedette.agent.mission import Mission, Promising
 LEAST = 100  # cells that are overdue before anything is said of it; four square metres of planning cells
 SOON = 20.0  # what is promised for later is not looked at [s]
 TWICE = 2.0  # so many times the promised time is given
+AT_LEAST = (
+    5.0  # and no less than this: a plan is carried out once its round has ended, and rounds take time [s]
+)
 MOST_HELD_UP = 20.0  # and so much more at most, to who says or shows to be held up [s]
 FADES = 0.8  # what was fulfilled counts so much less in each round that comes
 NOTHING = 3  # halvings at which a link counts as nothing for a while
@@ -62,8 +65,9 @@ class Promises:
         self._fulfilled = FADES * self._fulfilled + float(np.count_nonzero(~unseen(self._cells)))
         soon = (due <= now + SOON) & unseen(cells)
         self._repeat(cells[soon], due[soon], now, held_up)
-        late = TWICE * (self._due - self._first) + np.minimum(held_up - self._before, MOST_HELD_UP)
-        overdue = int(np.count_nonzero(now >= self._first + late))
+        given = np.maximum(TWICE * (self._due - self._first), AT_LEAST)
+        given += np.minimum(held_up - self._before, MOST_HELD_UP)
+        overdue = int(np.count_nonzero(now >= self._first + given))
         if overdue >= LEAST and overdue > self._fulfilled:
             self._lose(now)
             return True
