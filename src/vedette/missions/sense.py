@@ -56,9 +56,8 @@ class Grounds:
         left, low, right, high = self.box
         if not (left <= x <= right and low <= y <= high):
             return f"{x:g}, {y:g} lies outside: {self._extent}"
-        for each in no_go:
-            if Forbidden((Area(each.corners),)).holds(x, y):
-                return f"{x:g}, {y:g} lies in the no-go area {each.area}"
+        if (objection := forbidden_by(x, y, no_go)) is not None:
+            return objection
         if self.walls is not None:
             frame, blocked = self.walls
             lands = [not flies for flies in self.flies]
@@ -70,3 +69,11 @@ class Grounds:
     def _extent(self) -> str:
         left, low, right, high = self.box
         return f"x is {left:g} to {right:g} m, y is {low:g} to {high:g} m"
+
+
+def forbidden_by(x: float, y: float, areas: Iterable[NoGo | Priority]) -> str | None:
+    """Say in a line in which no-go area a place [m] lies; None: in none."""
+    for each in areas:
+        if isinstance(each, NoGo) and Forbidden((Area(each.corners),)).holds(x, y):
+            return f"{x:g}, {y:g} lies in the no-go area {each.area}"
+    return None

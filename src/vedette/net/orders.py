@@ -16,7 +16,7 @@ from vedette.errors import InputError
 from vedette.maps import OCCUPIED
 from vedette.maps.area import Area
 from vedette.missions.explore.exploring import Exploring
-from vedette.missions.sense import Grounds
+from vedette.missions.sense import Grounds, forbidden_by
 from vedette.net.config import AgentConfig
 from vedette.net.credentials import Credentials
 from vedette.net.endpoints import is_loopback
@@ -105,6 +105,7 @@ def _objection(agent: Agent, mission: Exploring, order: Order) -> str | None:
             cell = np.array([row * mission.frame.cols + col])
             if mission.fusion.classes.take(cell)[0] == OCCUPIED:
                 return f"there is a wall at {x:g}, {y:g}"
+            return forbidden_by(x, y, agent.orders.all_of(NoGo))
     return None
 
 

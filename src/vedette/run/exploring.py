@@ -172,7 +172,7 @@ class Explore(_Mission):
 
     def _check_order(self, given: OrderAt, known: Sequence[NoGo | Priority]) -> None:
         """Raise InputError for an order that makes no sense in this world."""
-        check_orders([given], self.world, self.simulation.specs, "order", [each.area for each in known])
+        check_orders([given], self.world, self.simulation.specs, "order", known)
         check_places([given], self.simulation.setup.frames)
 
     def run(self, progress: Callable[[ExploreSnapshot], object] | None = None) -> ExploreResult:

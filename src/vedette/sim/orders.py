@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -12,7 +12,7 @@ from vedette.agent.orders import Exclude, LookThere, NoGo, Order, Priority, Reca
 from vedette.errors import InputError, nearest_name
 from vedette.maps.area import Area
 from vedette.maps.world import World, standable
-from vedette.missions.sense import Grounds
+from vedette.missions.sense import Grounds, forbidden_by
 from vedette.scenario import as_scenario, load_scenario
 from vedette.team import PlatformSpec
 
@@ -55,7 +55,7 @@ def check_orders(
     world: World,
     specs: Sequence[PlatformSpec],
     where: str,
-    known: Iterable[str] = (),
+    known: Sequence[NoGo | Priority] = (),
     signed: bool = False,
 ) -> None:
     """Refuse orders that make no sense to this team in this world.
@@ -64,9 +64,9 @@ def check_orders(
 
     Raises:
         InputError: there is no such robot, or no such area yet; an area, or a place, lies outside or in a
-            wall; or it is about whom to believe, where nobody signs what it says.
+            wall or a no-go area; or it is about whom to believe, where nobody signs what it says.
     """
-    areas = set(known)
+    areas: dict[str, NoGo | Priority] = {each.area: each for each in known}
     for each in orders:
         order, at = each.what, f"{where}: {each.what.subject} at {each.at:g} s"
         if order.robot_number > len(specs):
@@ -74,14 +74,16 @@ def check_orders(
         match order:
             case NoGo() | Priority():
                 _check_area(order.corners, world, at)
-                areas.add(order.area)
+                areas[order.area] = order
             case Remove() if order.area not in areas:
                 raise InputError(f"{at}: there is no such area by then; {nearest_name(order.area, areas)}")
             case Remove():
-                areas.discard(order.area)
+                del areas[order.area]
             case Recall(to=(x, y)) | LookThere(at=(x, y)):
                 robots = specs if order.robot is None else [specs[order.robot - 1]]
                 _check_place(x, y, world, max(spec.radius for spec in robots), at)
+                if (objection := forbidden_by(x, y, areas.values())) is not None:
+                    raise InputError(f"{at}: {objection}")
             case Exclude() | Reinstate() if not signed:
                 raise InputError(f"{at}: simulated robots sign nothing, and all are believed; leave it out")
 

@@ -13,7 +13,18 @@ from hypothesis import strategies as st
 from msgspec import yaml
 
 from tests.support.small_missions import TWO_ROOMS, drawn, small_office
-from vedette.agent.orders import Given, NoGo, Order, OrderBook, Pause, Priority, Recall, Remove, Resume
+from vedette.agent.orders import (
+    Given,
+    LookThere,
+    NoGo,
+    Order,
+    OrderBook,
+    Pause,
+    Priority,
+    Recall,
+    Remove,
+    Resume,
+)
 from vedette.errors import InputError
 from vedette.maps.area import Area
 from vedette.outcome import Outcome
@@ -261,6 +272,14 @@ def test_an_area_is_removed_but_once() -> None:
     lab = 1.0, NoGo(area="lab", corners=WEST)
     with pytest.raises(InputError, match="area-lab at 3 s: there is no such area by then; known: none"):
         ordered(lab, (2.0, Remove(area="lab")), (3.0, Remove(area="lab")))
+
+
+@pytest.mark.parametrize("order", [Recall(to=(1.5, 5.0)), LookThere(at=(1.5, 5.0), robot=1)])
+def test_nobody_is_sent_into_a_no_go_area(order: Order) -> None:
+    west = 1.0, NoGo(area="west", corners=WEST)
+    with pytest.raises(InputError, match=r"at 2 s: 1\.5, 5 lies in the no-go area west"):
+        ordered(west, (2.0, order))
+    ordered(west, (2.0, Remove(area="west")), (3.0, order))
 
 
 def test_an_area_that_there_never_was_is_no_area_to_remove_and_one_that_was_removed_is_again() -> None:
