@@ -8,25 +8,13 @@ from __future__ import annotations
 import sys
 from dataclasses import replace
 from functools import partial
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tests.support import bad_member
 from tests.support.bad_member import BadTeam, Program, sayer_of
 from tests.support.faulty_team import Plan
-from tests.support.faulty_world import (
-    FRAME,
-    SPEED,
-    TAU,
-    Belief,
-    Impact,
-    Life,
-    Published,
-    SiteMission,
-    check,
-)
+from tests.support.faulty_world import FRAME, SPEED, check
 from tests.support.mutants import Case
 from tests.support.notaries import PlainNotary
 from tests.support.signed_mutants import (
@@ -38,39 +26,18 @@ from tests.support.signed_mutants import (
     given_by_operator,
 )
 from vedette.agent import Agent, NetworkedAgent
-from vedette.agent.promises import LEAST
 from vedette.fusion.particulars import Capabilities
-from vedette.fusion.replicated_map import ReplicatedMap
 from vedette.fusion.signed import SignedEvidence
 from vedette.negotiation import SCHEMES
 from vedette.outcome import Outcome
 from vedette.sim.network import Act
 
 SEES = 2.0  # so far, at most, robots see sites [m]
-PASSES = (  # of links, and for a while
+PASSES = (
     "it is slow",
     "rounds go on without it",
     "no round gets anywhere by it",
-    "less than half of what is claimed over its link",
-)
-
-
-class PromisingSites(SiteMission):
-    """Each site that will likely be seen is promised, as so many cells that it is worth a complaint."""
-
-    def promised(self, belief: Belief, impact: Impact) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-        """Return the cells of those sites, and after how long each [s]."""
-        sites = np.flatnonzero(impact.miss < 0.5)
-        cells = (sites[:, None] * LEAST + np.arange(LEAST)).ravel()
-        return cells, np.repeat(-TAU * np.log(1.0 - impact.miss[sites]), LEAST)
-
-    def unseen(self, belief: Belief, cells: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Tell whose site has not been seen."""
-        return np.asarray(~belief.seen[cells // LEAST])
-
-    def discounted(self, impact: Impact, halvings: int) -> Impact:
-        """Return so many times half."""
-        return replace(impact, miss=1.0 - (1.0 - impact.miss) / 2**halvings)
+)  # of links, and for a while
 
 
 class SignedTeam(BadTeam):
@@ -95,9 +62,6 @@ class SignedTeam(BadTeam):
         x, y = self.bodies.places[robot]
         fusion.set_out(int(y / FRAME.resolution), int(x / FRAME.resolution))
         return fusion
-
-    def _mission_of(self, life: Life, fusion: ReplicatedMap[Any], published: Published) -> SiteMission:
-        return PromisingSites(life, self.sites, fusion, published)
 
     def _spawn(self, robot: int, boot: int) -> Agent:
         agent = super()._spawn(robot, boot)

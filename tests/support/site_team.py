@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from tests.support.faulty_world import FRAME, NEAR, SPEED, Life, Published, SiteMission, Sites
+from tests.support.faulty_world import FRAME, NEAR, SPEED, Published, SiteMission, Sites
 from tests.support.overlay_network import Edge
 from vedette.agent import Agent, GroundBehaviour
 from vedette.agent.driving import Driver
@@ -117,11 +117,9 @@ class SiteTeam(Simulation):
     def _fusion(self, robot: int, boot: int) -> ReplicatedMap[Any]:
         return ReplicatedEvidence(robot, boot, FRAME.shape, len(self.sites.cells))
 
-    def _mission_of(self, life: Life, fusion: ReplicatedMap[Any], published: Published) -> SiteMission:
-        return SiteMission(life, self.sites, fusion, published)
-
     def _spawn(self, robot: int, boot: int) -> Agent:
-        mission = self._mission_of((robot, boot), self._fusion(robot, boot), self._published)
+        fusion = self._fusion(robot, boot)
+        mission = SiteMission((robot, boot), self.sites, fusion, self._published)
         spec = PlatformSpec(name=f"robot-{robot + 1}", speed=SPEED)
         behaviour = GroundBehaviour(mission, Driver(robot, spec))
         agent = Agent(robot, boot, spec, behaviour, self.setup.scheme, PACE)
