@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ from tests.support.places import ROOT
 DOCUMENTS = [*sorted(ROOT.glob("*.md")), *sorted((ROOT / "docs").rglob("*.md"))]
 LINK = re.compile(r"\]\((?!https?:|mailto:)([^)#\s]*)(?:#([^)\s]+))?\)")
 FENCED = re.compile(r"^(```+).*?^\1", re.MULTILINE | re.DOTALL)
+CLAIM = re.compile(r"\\tag\{(V\d+)\}")
 HEADING = re.compile(r"^#+ +(.+?) *$", re.MULTILINE)
 
 
@@ -29,6 +31,13 @@ def test_every_link_leads_somewhere(path: Path) -> None:
         assert target.exists(), f"{file}: no such file"
         if anchor:
             assert anchor in anchors(target.read_text(encoding="utf-8")), f"{file}#{anchor}: no such heading"
+
+
+def test_no_two_claims_and_no_two_decisions_have_one_number() -> None:
+    claims = Counter(tag for path in DOCUMENTS for tag in CLAIM.findall(path.read_text(encoding="utf-8")))
+    decisions = Counter(path.name[:4] for path in (ROOT / "docs" / "decisions").glob("[0-9]*.md"))
+    assert len(claims) > 100
+    assert [each for numbers in (claims, decisions) for each, count in numbers.items() if count > 1] == []
 
 
 def test_anchors_are_the_headings_in_lower_case_with_hyphens_and_without_marks() -> None:

@@ -73,7 +73,7 @@ class MonitoringObjective(Objective[MonitoringBelief, Impact]):
     ``Y_l = W' diag(y_l) W`` is the information of all measurements up to the end of layer l, y_l in whole
     units, cut off at 255. ``*`` adds them: exactly associative. docs/monitoring.md (V124), (V125)
 
-    With priorities a it is ``psi(all) + sum_a (f_a - 1) psi(measurements in a)``. (V161)
+    With priorities a it is ``psi(all) + sum_a (f_a - 1) psi(measurements in a)``. (V165)
 
     Monotone and submodular: so is each mutual information with measurements that are independent given the
     field, and a sum of such with weights >= 0 is. (V126)

@@ -57,7 +57,7 @@ class TrackingObjective(Objective[Tracks, Impact]):
     def values(self, belief: Tracks, others: Impact, own: Sequence[Impact]) -> NDArray[np.float64]:
         """``value(others * own_k)`` for every k, by one kernel call that redoes only what own_k sees.
 
-        Where targets differ in weight, by one for all that share it: ``psi = sum_t w_t psi_t``. (V162)
+        Where targets differ in weight, by one for all that share it: ``psi = sum_t w_t psi_t``. (V166)
         """
         if not belief.weights:
             return self._values(belief, others, own)

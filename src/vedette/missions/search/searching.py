@@ -147,7 +147,7 @@ class Searching(FlyingMission[SearchBelief, Flight, Impact]):
         return replace(belief, mass=self._weighed(belief)) if self.priorities else belief
 
     def _weighed(self, belief: SearchBelief) -> NDArray[np.float64]:
-        """``P(x) prod_a f_a``, (R, C), over the priority areas a that x lies in; docs/search.md (V160)."""
+        """``P(x) prod_a f_a``, (R, C), over the priority areas a that x lies in; docs/search.md (V164)."""
         mass = belief.mass.copy()
         for area, factor in self.priorities:
             mass[cells_in(area, belief.frame)] *= factor

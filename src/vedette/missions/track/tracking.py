@@ -125,7 +125,7 @@ class Tracking(FlyingMission[Tracks, Course, Impact]):
         return replace(known, weights=self._weights(known)) if self.priorities else known
 
     def _weights(self, known: Tracks) -> tuple[float, ...]:
-        """(T,) ``w_t = prod_a f_a`` over the priority areas a in which a target is expected; (V162)."""
+        """(T,) ``w_t = prod_a f_a`` over the priority areas a in which a target is expected; (V166)."""
         weights = np.ones(len(known))
         for area, factor in self.priorities:
             weights[area.distance(known.means[:, :2]) <= 0.0] *= factor
