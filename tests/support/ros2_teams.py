@@ -120,5 +120,5 @@ def sound(ended: Tried, robots: int, outcome: Outcome = Outcome.COMPLETE) -> Non
     assert summary.outcome is outcome, (summary, ended.robots_said)
     assert summary.coverage is None  # the robots do not know how large the building is
     assert ended.covered >= 0.99
-    assert ended.wrong <= WRONG
+    assert ended.wrong <= WRONG, ended.wrong
     assert ended.robots_said.count("collided: False") == robots, ended.robots_said
