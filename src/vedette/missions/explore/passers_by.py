@@ -63,22 +63,8 @@ class PassersBy:
             now: [s].
         """
         order = np.argsort(angles, kind="stable")
-        sorted_ranges, sorted_hits = ranges[order], hits[order]
-        back = self._sift(log_odds, place, angles[order], sorted_ranges, sorted_hits, nudge, now)
-        ranges[order], hits[order] = sorted_ranges, sorted_hits
-        return back
-
-    def _sift(
-        self,
-        log_odds: TiledGrid[np.int8],
-        place: tuple[float, float],
-        angles: Floats,
-        ranges: Floats,
-        hits: Mask,
-        nudge: float,
-        now: float,
-    ) -> NDArray[np.int64]:
-        """Do the same with increasing angles."""
+        angles, whole, told = angles[order], ranges, hits
+        ranges, hits = ranges[order], hits[order]
         back = self._seen_through(log_odds, place, angles, ranges)
         first, last = _standing_free(angles, ranges, hits)
         doubted = np.zeros(len(hits), np.bool_)
@@ -93,6 +79,7 @@ class PassersBy:
         self._seen = now
         hits[moving] = False
         ranges[moving] = np.maximum(ranges[moving] - self.frame.resolution, 0.0)
+        whole[order], told[order] = ranges, hits
         return back
 
     def discs(self, now: float) -> list[Disc]:
