@@ -150,6 +150,8 @@ def _go_on(agent: Agent, pose: Pose, now: float) -> list[Effect]:
         effects += agent.proofs.tick(agent.rounds.tree.neighbours, now)
     news, agent.news = agent.news, False
     effects += agent.behaviour.follow(agent, pose, now, news)
+    if agent.framing is not None and agent.awake:
+        agent.framing.meet(agent.mates.heard, now)
     belief = agent.rounds.frozen
     if belief is not None:
         start = agent.behaviour.departure(agent, pose, belief)

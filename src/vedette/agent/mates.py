@@ -35,6 +35,7 @@ class Mate(msgspec.Struct, frozen=True, eq=False):
     radius: float  # [m]
     speed: float  # at most [m/s]
     heard: float  # when the beacon came [s]
+    boot: int = 0  # of its start
 
     @property
     def path(self) -> NDArray[np.float64]:
@@ -146,4 +147,5 @@ def _mate(beacon: Beacon, heard: float) -> Mate:
         beacon.radius / 100.0,
         beacon.speed / 100.0,
         heard,
+        beacon.boot,
     )

@@ -158,6 +158,9 @@ class Framing(Protocol):
     def in_own(self, robot: int) -> Transform | None:
         """Return where a robot's frame lies in this one's; None: it is not known."""
 
+    def meet(self, mates: Sequence[Mate], now: float) -> None:
+        """Hear where mates are, each in the frame that it reckons in, and compare it with what is seen."""
+
     def errand(self, living: Collection[int], now: float) -> Job | None:
         """Return a job that finds out how two contributors' frames lie, if it is time for one."""
 

@@ -68,10 +68,10 @@ class Alignment:
 def align(a: Charted, b: Charted) -> Alignment:
     """Return where B may lie on A: likely places from a correlation, each fitted and weighed."""
     rough = [fitted(a, b, guess, ROUGHLY) for guess in likely(a, b, LIKELY)]
-    found = _distinct([(_weighed(a, b, fit), fit) for fit in rough], b.middle)
+    found = _distinct([(weighed(a, b, fit), fit) for fit in rough], b.middle)
     if not found:
         return Alignment(())
-    fine = _weighed(a, b, fitted(a, b, found[0][1].pose, FINELY))
+    fine = weighed(a, b, fitted(a, b, found[0][1].pose, FINELY))
     return Alignment((fine, *(candidate for candidate, _ in found[1:])))
 
 
@@ -85,7 +85,7 @@ def _distinct(found: Sequence[tuple[PossibleJoin, Fit]], at: Floats) -> list[tup
     return kept
 
 
-def _weighed(a: Charted, b: Charted, fit: Fit) -> PossibleJoin:
+def weighed(a: Charted, b: Charted, fit: Fit) -> PossibleJoin:
     """Return a fit with what speaks for and against it."""
     agrees = agreement(a, b, fit.pose)
     least = min(len(a.free) * a.cell**2, len(b.free) * b.cell**2)

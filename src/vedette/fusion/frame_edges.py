@@ -22,7 +22,13 @@ class FrameEdge(NamedTuple):
     a: Key
     b: Key
     there: Transform
-    weight: int  # walls in common [cm]
+    weight: int  # walls in common [cm]; of a meeting so much as would leave it as uncertain
+    met: bool = False  # by a meeting
+
+    @property
+    def inverse(self) -> FrameEdge:
+        """The same as it is seen from b."""
+        return FrameEdge(self.b, self.a, self.there.inverse(), self.weight, self.met)
 
 
 def room_for(robots: int) -> int:
@@ -36,7 +42,8 @@ def packed(edges: Iterable[FrameEdge], room: int) -> NDArray[np.int64]:
     kept = sorted(edges, key=lambda edge: (-edge.weight, edge))[: room // NUMBERS]
     for at, edge in enumerate(sorted(kept)):
         a, b = (robot << BOOT_BITS | boot for robot, boot in (edge.a, edge.b))
-        numbers[NUMBERS * at : NUMBERS * (at + 1)] = edge.weight + 1, a, b, *edge.there
+        weight = -edge.weight - 1 if edge.met else edge.weight + 1
+        numbers[NUMBERS * at : NUMBERS * (at + 1)] = weight, a, b, *edge.there
     return numbers
 
 
@@ -45,9 +52,9 @@ def unpacked(numbers: NDArray[np.int64]) -> list[FrameEdge]:
     edges = []
     for weight, a, b, x, y, angle in numbers.reshape(-1, NUMBERS).tolist():
         most = MOST_ROBOTS << BOOT_BITS
-        fits = weight > 0 and 0 <= a < most and 0 <= b < most and a != b and 0 <= angle < TURN
+        fits = weight != 0 and 0 <= a < most and 0 <= b < most and a != b and 0 <= angle < TURN
         if fits and max(abs(x), abs(y)) <= MOST_AWAY:
-            edges.append(FrameEdge(_key(a), _key(b), Transform(x, y, angle), weight - 1))
+            edges.append(FrameEdge(_key(a), _key(b), Transform(x, y, angle), abs(weight) - 1, weight < 0))
     return edges
 
 

@@ -100,10 +100,14 @@ class FramedEvidence(ReplicatedEvidence):
         return self.plane.digest
 
     @property
+    def told(self) -> dict[Key, list[FrameEdge]]:
+        """What each contributor has told of how frames lie."""
+        return {key: unpacked(copy.counts[self.edges_from :]) for key, copy in self.copies.items()}
+
+    @property
     def edges(self) -> list[FrameEdge]:
         """What anybody has told of how frames lie, in an order that is the same for all."""
-        told = {edge for copy in self.copies.values() for edge in unpacked(copy.counts[self.edges_from :])}
-        return sorted(told)
+        return sorted({edge for told in self.told.values() for edge in told})
 
     @property
     def frames(self) -> Frames:

@@ -57,7 +57,7 @@ def test_whoever_a_chain_of_edges_joins_lies_where_the_truth_says_in_the_lowest_
         a, b = (i, j) if rng.random() < 0.5 else (j, i)
         there = true[a].inverse().after(true[b])
         edges.append(FrameEdge(keys[a], keys[b], there, int(rng.integers(500, 9000))))
-    graph = solved(edges, keys, dict.fromkeys(keys, (1.0, 2.0)), always, always)
+    graph = solved(edges, keys, dict.fromkeys(keys, (1.0, 2.0)), always, always).graph
     group = list(range(n))  # by the definition: who can be reached
     for i, j in pairs:
         group = [min(group[i], group[j]) if g in (group[i], group[j]) else g for g in group]
@@ -77,7 +77,7 @@ def test_one_wrong_edge_in_a_cycle_bends_nothing_if_it_is_the_lightest(wrong: in
         if number == wrong:
             there = Transform(there.x + 900, there.y, there.angle)
         edges.append(FrameEdge(keys[a], keys[b], there, 1000 if number == wrong else 5000))
-    graph = solved(edges, keys, dict.fromkeys(keys, (0.0, 0.0)), always, always)
+    graph = solved(edges, keys, dict.fromkeys(keys, (0.0, 0.0)), always, always).graph
     assert all(is_close(graph[key].there, there, 0.01) for key, there in zip(keys, true, strict=True))
 
 
@@ -88,7 +88,7 @@ def test_edges_that_nearly_agree_share_the_difference() -> None:
         FrameEdge(keys[1], keys[2], Transform(1000, 0, 0), 5000),
         FrameEdge(keys[0], keys[2], Transform(2090, 0, 0), 5000),
     ]
-    graph = solved(edges, keys, dict.fromkeys(keys, (0.0, 0.0)), always, always)
+    graph = solved(edges, keys, dict.fromkeys(keys, (0.0, 0.0)), always, always).graph
     assert graph[keys[1]].there.x == pytest.approx(1030, abs=2)  # by hand: 9 cm over three edges alike
     assert graph[keys[2]].there.x == pytest.approx(2060, abs=2)
 
@@ -101,9 +101,9 @@ def test_what_evidence_does_not_bear_out_joins_nobody_and_what_it_contradicts_pa
         FrameEdge(keys[2], keys[3], Transform(1000, 0, 0), 4000),
     ]
     at = dict.fromkeys(keys, (0.0, 0.0))
-    graph = solved(edges, keys, at, lambda a, b, there: (a, b) != (keys[2], keys[3]), always)
+    graph = solved(edges, keys, at, lambda a, b, there: (a, b) != (keys[2], keys[3]), always).graph
     assert [graph[key].anchor for key in keys] == [keys[0], keys[0], keys[0], keys[3]]
-    graph = solved(edges, keys, at, always, lambda a, b, there: (a, b) != (keys[0], keys[3]))
+    graph = solved(edges, keys, at, always, lambda a, b, there: (a, b) != (keys[0], keys[3])).graph
     assert [graph[key].anchor for key in keys] == [keys[0], keys[0], keys[2], keys[2]]
     assert graph[keys[3]] == Placed(keys[2], Transform(1000, 0, 0))
 
@@ -111,7 +111,7 @@ def test_what_evidence_does_not_bear_out_joins_nobody_and_what_it_contradicts_pa
 def test_of_two_edges_between_a_pair_the_heavier_counts_whoever_tells_it() -> None:
     a, b = keys_of(2)
     edges = [FrameEdge(a, b, Transform(1, 0, 0), 10), FrameEdge(b, a, Transform(7000, 0, 0), 20)]
-    graph = solved(edges, [a, b], {a: (0.0, 0.0), b: (0.0, 0.0)}, always, always)
+    graph = solved(edges, [a, b], {a: (0.0, 0.0), b: (0.0, 0.0)}, always, always).graph
     assert graph[b].there == Transform(-7000, 0, 0)
 
 

@@ -39,7 +39,7 @@ class PassersBy:
     _cells: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))  # doubted, increasing
     _since: Floats = field(default_factory=lambda: np.empty(0))  # when something was first seen there [s]
     _discs: tuple[Disc, ...] = ()  # those that may move, frame of the evidence's own
-    _seen: float = 0.0  # when [s]
+    seen: float = 0.0  # when anything was looked at last [s]
 
     def sift(
         self,
@@ -76,7 +76,7 @@ class PassersBy:
         moving = doubted.copy()
         moving[doubted] = now - self._since[np.searchsorted(self._cells, cells[doubted])] < STILL
         self._note_discs(place, angles, ranges, moving, first, last)
-        self._seen = now
+        self.seen = now
         hits[moving] = False
         ranges[moving] = np.maximum(ranges[moving] - self.frame.resolution, 0.0)
         whole[order], told[order] = ranges, hits
@@ -84,7 +84,7 @@ class PassersBy:
 
     def discs(self, now: float) -> list[Disc]:
         """Return those seen lately that may move, as discs in the frame of the map [m]."""
-        if now > self._seen + LATELY:
+        if now > self.seen + LATELY:
             return []
         left, low = self.frame.origin_x, self.frame.origin_y
         return [(x + left, y + low, radius) for x, y, radius in self._discs]

@@ -14,12 +14,13 @@ from vedette.agent.events import Pose
 from vedette.agent.mates import Mate
 from vedette.agent.messages import FrameTold
 from vedette.domains.mapping.belief import MapBelief
-from vedette.fusion.frame_edges import packed
+from vedette.fusion.frame_edges import FrameEdge, packed
 from vedette.fusion.framed import FramedEvidence
 from vedette.maps.transform import Transform
 from vedette.missions.explore.exploring import Exploring
 from vedette.missions.explore.frames.footprints import on_plane
 from vedette.missions.explore.frames.matching import Matcher
+from vedette.missions.explore.frames.meetings import Meetings
 from vedette.missions.explore.frames.shared import SharedFrames
 from vedette.missions.explore.passers_by import PassersBy
 
@@ -35,6 +36,7 @@ class FramedExploring(Exploring):
 
     frames: SharedFrames = field(init=False)
     matcher: Matcher = field(init=False)
+    meetings: Meetings = field(init=False)
     _local: MapBelief | None = None  # the round's belief in the robot's own frame
     _errands: int = 0
 
@@ -46,21 +48,36 @@ class FramedExploring(Exploring):
         reach = self.spec.range if self.most is None else self.most.range
         self.frames = SharedFrames(evidence, self.frame, gap=2.0 * reach + 1.0)
         self.matcher = Matcher(evidence.key[0], self.frames.charts)
+        self.meetings = Meetings(evidence.key)
 
     # -- evidence -----------------------------------------------------------------------------------
 
     def publish(self, now: float) -> None:
         """Hand the own evidence to fusion, and at once what has been found of how frames lie."""
         self.matcher.take()
-        told = [edge for edge in self.frames.evidence.edges if edge in self.matcher.found.values()]
-        if len(told) < len(self.matcher.found):
+        told = self.frames.evidence.told.get(self.frames.key, ())
+        if not set(self._edges) <= set(told):
             self._counts_due = now
         super().publish(now)
 
+    @property
+    def _edges(self) -> list[FrameEdge]:
+        """What this robot has found of how frames lie."""
+        return [*self.matcher.found.values(), *self.meetings.found.values()]
+
     def _own_counts(self) -> NDArray[np.int64]:
         evidence = self.frames.evidence
-        edges = packed(self.matcher.found.values(), len(evidence.counts) - evidence.edges_from)
+        edges = packed(self._edges, len(evidence.counts) - evidence.edges_from)
         return np.concatenate((super()._own_counts(), edges))
+
+    def meet(self, mates: Sequence[Mate], now: float) -> None:
+        """Compare what has been seen of discs that move with what mates say, each in its own frame."""
+        assert self.own.passers_by is not None
+        unplaced = [mate for mate in mates if self.frames.own(mate.robot) is None]
+        self.meetings.hear(unplaced)
+        if unplaced and self.own.passers_by.seen == now:
+            self.meetings.see(self.own.passers_by.discs(now), now)
+        self.meetings.compare(now)
 
     def errand(self, living: Collection[int], now: float) -> Job | None:
         """Return a job that finds out how two contributors' frames lie, if it is time for one."""

@@ -32,6 +32,19 @@ class Placed(NamedTuple):
 
 
 Graph = Mapping[Key, Placed]
+
+
+class Solved(NamedTuple):
+    """Where contributors lie, and why."""
+
+    graph: dict[Key, Placed]
+    tree: list[FrameEdge]  # of the edges that join them
+
+    def met(self, a: Key, b: Key) -> bool:
+        """Tell whether two that are joined are so by a meeting, their own or somebody's between them."""
+        return any(edge.met for edge in _way(self.tree, a, b))
+
+
 Agrees = Callable[[Key, Key, Transform], bool]
 
 
@@ -41,37 +54,69 @@ def solved(
     middles: Mapping[Key, tuple[float, float]],
     borne_out: Agrees,
     allowed: Agrees,
-) -> dict[Key, Placed]:
+) -> Solved:
     """Return where all contributors lie that edges join; one that nothing joins lies in its own frame.
 
-    Of the edges between two the heaviest counts, if evidence bears it out. Heavier ones go first, and one
-    that would close a cycle has to close it. Where two that are joined contradict each other, the lightest
-    edge between them is left out, and so on until nobody does.
+    A match counts if evidence bears it out, a meeting if evidence does not speak against it; of those between
+    two the heaviest. Heavier ones go first, and one that would close a cycle has to close it. Where two that
+    are joined contradict each other, the lightest edge between them is left out, and so on until nobody does.
 
     Args:
-        edges: what anybody tells.
+        edges: matches that anybody tells, and meetings that both who met tell.
         keys: contributors.
         middles: of each one's map [m], its own frame.
         borne_out: whether the evidence of two bears out that b lies in a's frame so.
         allowed: whether it does not speak against it.
     """
-    left = [edge for edge in _heaviest(edges, keys) if borne_out(edge.a, edge.b, edge.there)]
+    counting = [
+        edge
+        for edge in (edge if edge.a < edge.b else edge.inverse for edge in edges)
+        if edge.a in keys and edge.b in keys
+        if (allowed if edge.met else borne_out)(edge.a, edge.b, edge.there)
+    ]
+    left = _heaviest(counting)
     while True:
-        graph, trees = _joined(left, keys, middles)
-        wrong = _contradicted(graph, trees, allowed)
+        found = _joined(left, keys, middles)
+        wrong = _contradicted(*found, allowed)
         if wrong is None:
-            return graph
+            return found
         left.remove(wrong)
 
 
-def _heaviest(edges: Iterable[FrameEdge], keys: Collection[Key]) -> list[FrameEdge]:
-    """Return one edge for two contributors, the lower key first, heaviest first."""
+def told_by_both(
+    told: Mapping[Key, Sequence[FrameEdge]], middles: Mapping[Key, tuple[float, float]]
+) -> list[FrameEdge]:
+    """Return the meetings of which both robots tell, and about the same.
+
+    Args:
+        told: by contributor, edges of any kind.
+        middles: of each one's map [m], its own frame.
+    """
+    met = {
+        key: [edge if edge.a == key else edge.inverse for edge in edges if edge.met and key in edge[:2]]
+        for key, edges in told.items()
+    }
+    kept = set[FrameEdge]()
+    for a, edges in met.items():
+        for edge in edges:
+            if not {a, edge.b} <= middles.keys():
+                continue
+            theirs = [other.inverse.there for other in met.get(edge.b, ()) if other.b == a]
+            if any(_is_closed(edge, there, middles) for there in theirs):
+                kept.add(edge)
+    return sorted(kept)
+
+
+def _is_closed(edge: FrameEdge, there: Transform, middles: Mapping[Key, tuple[float, float]]) -> bool:
+    """Tell whether an edge says about the same as ``T_a_b`` by other edges."""
+    shift, turn = there.apart(edge.there, *middles[edge.b])
+    return shift <= CLOSED[0] and turn <= CLOSED[1]
+
+
+def _heaviest(edges: Iterable[FrameEdge]) -> list[FrameEdge]:
+    """Return one edge for two contributors, heaviest first."""
     best: dict[tuple[Key, Key], FrameEdge] = {}
     for edge in edges:
-        if edge.a not in keys or edge.b not in keys:
-            continue
-        if edge.a > edge.b:
-            edge = FrameEdge(edge.b, edge.a, edge.there.inverse(), edge.weight)
         pair = edge.a, edge.b
         if pair not in best or _rank(edge) < _rank(best[pair]):
             best[pair] = edge
@@ -84,15 +129,14 @@ def _rank(edge: FrameEdge) -> tuple[int, FrameEdge]:
 
 def _joined(
     edges: Sequence[FrameEdge], keys: Collection[Key], middles: Mapping[Key, tuple[float, float]]
-) -> tuple[dict[Key, Placed], list[FrameEdge]]:
-    """Return where contributors lie by a tree of the heaviest edges and what agrees with it; and the tree."""
+) -> Solved:
+    """Return where contributors lie by a tree of the heaviest edges and what agrees with it."""
     graph = {key: Placed(key, IDENTITY) for key in sorted(keys)}
     tree, closing = list[FrameEdge](), list[FrameEdge]()
     for edge in edges:
         a, b = graph[edge.a], graph[edge.b]
         if a.anchor == b.anchor:
-            shift, turn = a.there.inverse().after(b.there).apart(edge.there, *middles[edge.b])
-            if shift <= CLOSED[0] and turn <= CLOSED[1]:
+            if _is_closed(edge, a.there.inverse().after(b.there), middles):
                 closing.append(edge)
             continue
         tree.append(edge)
@@ -104,7 +148,7 @@ def _joined(
                 graph[key] = Placed(first, move.after(placed.there))
     if closing:
         graph = _relaxed(graph, [*tree, *closing], middles)
-    return graph, tree
+    return Solved(graph, tree)
 
 
 def _contradicted(graph: Graph, tree: Sequence[FrameEdge], allowed: Agrees) -> FrameEdge | None:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
 
 from vedette.align import Alignment, Charted, FramePose, align
-from vedette.align.agreement import middles, own_frames
-from vedette.align.candidates import FINELY
+from vedette.align.agreement import middles
+from vedette.align.candidates import FINELY, weighed
 from vedette.align.fitted import fitted
 from vedette.align.verdict import STEADY, JoinRule
 from vedette.fusion.frame_edges import FrameEdge
@@ -22,6 +26,8 @@ VERSIONS = 3  # of both maps in a row, for which the rule has to hold, at one po
 LEAST = 15.0  # ground that a map has before it is looked at [m^2]
 GROWN, GROWN_LITTLE = 1.2, 1.03  # more of both, before they are looked at again; after the rule has held [1]
 FITTED_AGAIN = 1.15  # more of both, before a join is fitted anew [1]
+WHERE_JOINED = JoinRule(rivalry=1.0, lead=0.0, same=8.0, common=8.0)  # of maps that others' edges join
+BESIDE = 0.5, math.radians(3.0)  # and how far from where those say they may fit [m, rad]
 EVERY = 2.0  # a robot looks at a pair [s]
 
 Pair = tuple[Key, Key]
@@ -58,15 +64,16 @@ class Matcher:
             a, b = (self.charts.of(key) for key in pair)
             if a is None or b is None or min(_ground(a), _ground(b)) < LEAST:
                 continue
-            joined = graph[pair[0]].anchor == graph[pair[1]].anchor
+            there = _between(graph, *pair)
             attempts = self._attempts.setdefault(pair, _Attempts())
-            grown = FITTED_AGAIN if joined else GROWN_LITTLE if attempts.held else GROWN
+            steady = there is not None and pair in self.found
+            grown = FITTED_AGAIN if steady else GROWN_LITTLE if there or attempts.held else GROWN
             if _ground(a) + _ground(b) < grown * attempts.ground:
                 continue
             attempts.ground = _ground(a) + _ground(b)
-            if joined:
-                return lambda a=a, b=b, pair=pair: self._refit(pair, a, b)  # type: ignore[misc]
-            return lambda a=a, b=b, pair=pair: self._look(pair, a, b)  # type: ignore[misc]
+            if there is not None:
+                return partial(self._fit, pair, a, b, there)
+            return partial(self._look, pair, a, b)
         return None
 
     def take(self) -> None:
@@ -85,8 +92,6 @@ class Matcher:
         keys = sorted(graph)
         for at, a in enumerate(keys):
             for b in keys[at + 1 :]:
-                if graph[a].anchor == graph[b].anchor and (a, b) not in self.found:
-                    continue
                 whose = next((key[0] for key in (a, b) if key[0] in living), min(living))
                 if whose == self.robot:
                     yield a, b
@@ -113,13 +118,21 @@ class Matcher:
         if len(attempts.held) >= VERSIONS:
             self.found[pair] = _edge(pair, best.pose, best.same)
 
-    def _refit(self, pair: Pair, a: Charted, b: Charted) -> None:
-        edge = self.found.get(pair)
-        if edge is None:
-            return
-        fit = fitted(a, b, middles(a, b, pose_of(edge.there)), FINELY)
-        better = _edge(pair, own_frames(a, b, fit.pose), fit.paired * b.cell)
-        self._done.append(lambda: self.found.update({pair: better}) if pair in self.found else None)
+    def _fit(self, pair: Pair, a: Charted, b: Charted, there: Transform) -> None:
+        """Fit two maps that whatever edges join, where they lie: if they do fit, that is an edge."""
+        guess = middles(a, b, pose_of(there))
+        fit = fitted(a, b, guess, FINELY)
+        shift, turn = fit.pose.apart(guess, np.zeros(2))
+        place = weighed(a, b, fit)
+        if shift <= BESIDE[0] and turn <= BESIDE[1] and WHERE_JOINED.doubt(Alignment((place,))) is None:
+            better = _edge(pair, place.pose, place.same)
+            self._done.append(lambda: self.found.update({pair: better}))
+
+
+def _between(graph: Graph, a: Key, b: Key) -> Transform | None:
+    """Return where b lies in a's frame; None: nothing joins them."""
+    (anchor, there), (other, of_b) = graph[a], graph[b]
+    return there.inverse().after(of_b) if anchor == other else None
 
 
 def _edge(pair: Pair, pose: FramePose, same: float) -> FrameEdge:

@@ -12,7 +12,7 @@ from vedette.kernels.tiles import SIDE, Tiling
 from vedette.maps import GridFrame
 from vedette.maps.transform import IDENTITY, Transform
 from vedette.missions.explore.frames.charts import Charts
-from vedette.missions.explore.frames.graph import Placed, solved, within
+from vedette.missions.explore.frames.graph import Placed, Solved, solved, told_by_both, within
 from vedette.missions.explore.frames.layout import Box, laid_out
 
 BORNE_OUT = 8.0, 0.15  # walls in common at least [m], and contradicted at most, that an edge may count
@@ -30,18 +30,23 @@ class SharedFrames:
     frame: GridFrame  # of everybody's cells
     gap: float  # between components on the plane, at least [m]
     charts: Charts = field(init=False)
-    graph: dict[Key, Placed] = field(default_factory=dict)
+    found: Solved = field(init=False)  # how contributors lie, as this robot sees it
     plane: dict[Key, Transform] = field(default_factory=dict)  # T_plane_contributor of the latest round
     _verdicts: dict[tuple[Key, Key, Transform], Verdict] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.charts = Charts(self.evidence, self.frame)
-        self.graph = {self.key: Placed(self.key, IDENTITY)}
+        self.found = Solved({self.key: Placed(self.key, IDENTITY)}, [])
 
     @property
     def key(self) -> Key:
         """This robot as a contributor."""
         return self.evidence.key
+
+    @property
+    def graph(self) -> dict[Key, Placed]:
+        """Where contributors lie, as this robot sees it."""
+        return self.found.graph
 
     @property
     def known(self) -> list[Key]:
@@ -52,8 +57,15 @@ class SharedFrames:
         """Work out anew where contributors lie, and draw those that are joined in this robot's own frame."""
         keys = self.known
         middles = {key: _middle(box) for key, box in self._boxes(keys).items()}
-        edges = [edge for edge in self.evidence.edges if edge.a in middles and edge.b in middles]
-        self.graph = solved(edges, keys, middles, self._bears_out, self._allows)
+        told = self.evidence.told
+        matches = {
+            edge
+            for edges in told.values()
+            for edge in edges
+            if not edge.met and edge.a in middles and edge.b in middles
+        }
+        edges = [*matches, *told_by_both(told, middles)]
+        self.found = solved(edges, keys, middles, self._bears_out, self._allows)
         anchor, own = self.graph[self.key]
         back = own.inverse()
         self.evidence.place_own(
