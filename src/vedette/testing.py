@@ -64,6 +64,7 @@ def check_objective(
     laws.monoid()
     laws.inverse()
     laws.values()
+    laws.prices_add()
     laws.returns()
 
 
@@ -84,6 +85,7 @@ class _Laws:
         self.tolerance = tolerance
         self.nothing = objective.nothing(belief)
         self.worth = 0.0  # size of the largest value of an example
+        self.prices = np.array([self._price(a, f"impacts[{i}]") for i, a in enumerate(self.impacts)])
 
     def leaves_arguments_alone(self) -> None:
         """No function changes what it is given or has returned: impacts are shared between messages."""
@@ -141,13 +143,24 @@ class _Laws:
                 one = self._value(self.objective.combine(others, own), f"combine({name}, impacts[{k}])")
                 self._close(float(many[k]), one, f"values({name}, impacts)[{k}] != value(combine(...))")
 
+    def prices_add(self) -> None:
+        """Prices are not below 0, and add up."""
+        if (self.prices < 0.0).any():
+            k = int(np.argmin(self.prices))
+            raise LawBroken(f"price(impacts[{k}]) is {self.prices[k]:.9g}, below 0")
+        for (i, a), (j, b) in itertools.product(self.some, repeat=2):
+            name = f"combine(impacts[{i}], impacts[{j}])"
+            both, apart = self._price(self.objective.combine(a, b), name), self.prices[i] + self.prices[j]
+            self._close(both, float(apart), f"price({name}) != the sum of their prices")
+
     def returns(self) -> None:
         """More never hurts, and brings less the more there is: where declared."""
         for name, base in self._bases():
             gains, rounding = self._gains(base, name)
-            if self.objective.monotone and (gains < -rounding).any():
-                k = int(np.argmin(gains))
-                raise LawBroken(f"not monotone: impacts[{k}] added to {name} gains {gains[k]:.9g}")
+            gross = gains + self.prices
+            if self.objective.monotone and (gross < -rounding).any():
+                k = int(np.argmin(gross))
+                raise LawBroken(f"not monotone: impacts[{k}] added to {name} gains {gross[k]:.9g}")
             for j, more in self.some if self.objective.submodular else []:
                 later, its = self._gains(self.objective.combine(base, more), f"combine({name}, impacts[{j}])")
                 if (excess := later - gains).max() > max(rounding, its):
@@ -168,6 +181,9 @@ class _Laws:
     def _value(self, impact: object, name: str) -> float:
         returned = self.objective.value(self.belief, impact)
         return _law(number_of, returned, f"value({name})")
+
+    def _price(self, impact: object, name: str) -> float:
+        return _law(number_of, self.objective.price(impact), f"price({name})")
 
     def _values(self, others: object, name: str) -> NDArray[np.float64]:
         returned = self.objective.values(self.belief, others, self.impacts)

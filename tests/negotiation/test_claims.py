@@ -190,7 +190,7 @@ def test_more_information_than_the_teams_best_sensors_have_is_refused() -> None:
 
 def test_without_limits_a_mission_refuses_nothing() -> None:
     belief = mapping_scenes.frozen()
-    lie = everywhere(belief.planning.size, LAYERS, 0)
+    lie = mapping.Impact(*everywhere(belief.planning.size, LAYERS, 0).sparse)
     mission = run(small_maze(), robots(1), max_time=1.0)[0].missions[0]
     mission.admit(belief, lie, 1)
     mission.most = Most(1.0, 0.1)

@@ -17,13 +17,13 @@ from vedette.agent import NetworkedAgent, messages
 from vedette.agent.effects import Send
 from vedette.agent.messages import Evidence, Negotiate
 from vedette.agent.networked import Output
+from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.sightings import BINS
 from vedette.domains.mapping.views import MOST_STOPS
 from vedette.fusion.seals import BEACON
 from vedette.fusion.signed import SignedEvidence
 from vedette.kernels.coverage import LAYERS
-from vedette.kernels.misses import SparseMisses
 from vedette.maps.disc import cells_under
 from vedette.maps.swept import most_cells_swept
 from vedette.missions.explore.evidence import CLAMP
@@ -137,7 +137,7 @@ class Claims(Exploring):
         self.platform.impact = impact  # type: ignore[method-assign]
 
 
-def largest_claim(belief: Any, most: Most) -> SparseMisses:
+def largest_claim(belief: Any, most: Most) -> Impact:
     """Return the planning cells of most worth, as many and as early as one robot may claim."""
     side, edges = belief.planning.resolution, belief.layers.edges
     worth = belief.weights.window
@@ -151,7 +151,7 @@ def largest_claim(belief: Any, most: Most) -> SparseMisses:
     cells = (row + belief.first[0]) * belief.planning.cols + col + belief.first[1]
     keys = (cells * LAYERS + layer).astype(np.uint32)
     at = np.argsort(keys)
-    return SparseMisses(keys[at], np.full(len(keys), 64, np.uint8))
+    return Impact(keys[at], np.full(len(keys), 64, np.uint8))
 
 
 class BoastingObjective(MappingObjective):

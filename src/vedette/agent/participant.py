@@ -55,6 +55,10 @@ class RoundParticipant(Generic[BeliefT, StrategyT, ImpactT]):
         """``psi(team)``."""
         return self._objective.value(self._belief, team)
 
+    def price(self, impact: ImpactT) -> float:
+        """Return what of an impact's value is a price, taken off."""
+        return self._objective.price(impact)
+
     def slack(self, base: ImpactT) -> float:
         """Most that any strategy of this robot would add to ``base``."""
         return self._platform.slack(self._belief, base)

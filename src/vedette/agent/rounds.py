@@ -39,7 +39,7 @@ class Decision:
     """What a finished round says, besides the strategies themselves."""
 
     time: float
-    value: float  # of the team's choice: as this robot sees it, if it sees all of it
+    value: float  # of the team's choice: as this robot sees it, if it sees all of it, prices not taken off
     approximate: bool  # its belief was not the root's, or it decided without the team or its own say
     blocked: bool  # this robot planned with its mates in the way
     alone: bool = False  # nobody else had part in the round, though there are others
@@ -275,7 +275,7 @@ class Rounds:
     def _seen(self, round_: Round, own: RoundParticipant[Any, Any, Any]) -> float | None:
         """Return what this robot sees the team's choice to be worth: nothing, where nobody goes."""
         if self.team_impact is not None:
-            return own.value(self.team_impact)
+            return own.value(self.team_impact) + own.price(self.team_impact)
         return 0.0 if self.scrutiny.nobody_goes(round_.belief, own.impact) else None
 
     def _end(self, now: float) -> None:

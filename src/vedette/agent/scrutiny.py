@@ -62,7 +62,7 @@ class Scrutiny:
 
     def nobody_goes(self, belief: Any, impact: Any) -> bool:
         """Tell whether this robot has nothing to do, by its own impact, and no mate is on its way."""
-        return self.mission.objective.value(belief, impact) <= 0.0 and not self.anybody_moves()
+        return self.mission.objective.gross(belief, impact) <= 0.0 and not self.anybody_moves()
 
     def _stands_about(self, belief: Any, impact: Any, claims: dict[int, Any]) -> bool:
         """Tell whether nobody goes, round after round, though this robot would if one link said nothing."""

@@ -11,7 +11,7 @@ import msgspec
 from vedette.errors import InputError
 from vedette.negotiation.branch import Branch, value_alone
 from vedette.negotiation.messages import Message, Offer, RoundOutcome, Settled, Tidings
-from vedette.negotiation.node import Claims, Outgoing, Participant
+from vedette.negotiation.node import Claims, Outgoing, Participant, slack_at
 from vedette.negotiation.offers import Child, Pending
 from vedette.problem.bound import tightest
 from vedette.problem.objective import ImpactT
@@ -261,7 +261,7 @@ class AsyncNode(Generic[ImpactT]):
             self._changes += 1
             if not self._guard:
                 self._present, self._fact = (self._own.strategy, self._own.impact), True
-        self._slack = self._own.slack(self._own.combine(others, self._own.impact))
+        self._slack = slack_at(self._own, self._own.combine(others, self._own.impact), self._own.impact)
 
     def _count(self, pending: Pending[ImpactT]) -> None:
         """Let changes count: they are told to all whom they concern."""

@@ -8,7 +8,7 @@ from collections.abc import Hashable, Mapping, Sequence
 from vedette.errors import InputError
 from vedette.negotiation.branch import Branch, value_alone
 from vedette.negotiation.messages import Fork, Gather, Joined, Message, RoundOutcome, Settled
-from vedette.negotiation.node import Claims, Outgoing, Participant
+from vedette.negotiation.node import Claims, Outgoing, Participant, slack_at
 from vedette.negotiation.rooted import RootedNode
 from vedette.problem.bound import attains, tightest
 from vedette.problem.objective import ImpactT
@@ -156,7 +156,7 @@ class ForkNode(RootedNode[ImpactT]):
             self._links.changed()
         self._slack = math.inf  # counts only if nobody moves
         if not self._moved:
-            self._slack = self._own.slack(self._own.combine(others, self._own.impact))
+            self._slack = slack_at(self._own, self._own.combine(others, self._own.impact), self._own.impact)
         self._forked = True
         onwards = [
             Outgoing(child, Fork(self._links.outgoing(child), child not in self._refused))

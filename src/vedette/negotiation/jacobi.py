@@ -7,7 +7,7 @@ from collections.abc import Callable, Hashable, Sequence
 
 from vedette.errors import InputError
 from vedette.negotiation.messages import Down, Message, RoundOutcome, Stop, Up
-from vedette.negotiation.node import Claims, Outgoing, Participant
+from vedette.negotiation.node import Claims, Outgoing, Participant, slack_at
 from vedette.negotiation.rooted import RootedNode
 from vedette.problem.bound import attains, tightest
 from vedette.problem.objective import ImpactT
@@ -186,7 +186,7 @@ class JacobiNode(RootedNode[ImpactT]):
         before = self._own.impact
         if self._own.reply(others):
             self._links.changed()
-        self._slack = self._own.slack(self._own.combine(others, before))
+        self._slack = slack_at(self._own, self._own.combine(others, before), before)
         self._strategies.append(self._own.strategy)
         return onwards + self._gather()
 

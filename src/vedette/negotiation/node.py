@@ -40,11 +40,22 @@ class Participant(Protocol[ImpactT]):
     def value(self, team: ImpactT) -> float:
         """``psi(team)``."""
 
+    def price(self, impact: ImpactT) -> float:
+        """Return what of an impact's value is a price, taken off: to be added again for a bound; (V193)."""
+
     def slack(self, base: ImpactT) -> float:
         """Most that any strategy of this platform would add to ``base``; infinite where not known."""
 
     def clip(self, impact: ImpactT, reach: Reach) -> ImpactT:
         """Return what of an impact can matter to platforms that make a difference only within ``reach``."""
+
+
+def slack_at(own: Participant[ImpactT], team: ImpactT, impact: ImpactT) -> float:
+    """Return what a platform adds to the bound at a team in which it has an impact: slack, and price again.
+
+    docs/theory.md (V193)
+    """
+    return own.slack(team) + own.price(impact)
 
 
 @dataclass(frozen=True, eq=False)

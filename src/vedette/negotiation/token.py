@@ -9,7 +9,7 @@ import msgspec
 
 from vedette.errors import InputError
 from vedette.negotiation.messages import Gather, Message, RoundOutcome, Stop, Tally, Token
-from vedette.negotiation.node import Claims, Outgoing, Participant
+from vedette.negotiation.node import Claims, Outgoing, Participant, slack_at
 from vedette.negotiation.part import Part
 from vedette.negotiation.rooted import RootedNode
 from vedette.problem.bound import attains, tightest
@@ -187,7 +187,7 @@ class TokenNode(RootedNode[ImpactT]):
         if changed:
             self._links.changed()
             gain = self._own.value(team) - self._own.value(self._own.combine(others, before))
-        slack = self._own.slack(team)
+        slack = slack_at(self._own, team, self._own.impact)
         tally = msgspec.structs.replace(
             tally,
             turns=tally.turns + 1,

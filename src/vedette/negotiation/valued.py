@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Generic
 
-from vedette.problem.checked import value_of
+from vedette.problem.checked import number_of, value_of
 from vedette.problem.objective import BeliefT, ImpactT, Objective
 from vedette.problem.reach import Clippable, Reach
 
@@ -28,6 +28,10 @@ class Valued(Generic[BeliefT, ImpactT]):
     def value(self, team: ImpactT) -> float:
         """``psi(team)``."""
         return value_of(self._objective, self._belief, team) - self._base
+
+    def price(self, impact: ImpactT) -> float:
+        """Return what of an impact's value is a price, taken off."""
+        return number_of(self._objective.price(impact), f"{type(self._objective).__name__}.price")
 
     def clip(self, impact: ImpactT, reach: Reach) -> ImpactT:
         """Return what of an impact can matter within ``reach``; all of it if the objective cannot tell."""

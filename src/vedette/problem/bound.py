@@ -49,10 +49,10 @@ def bound(
     candidates: Sequence[Sequence[ImpactT]],
     choice: Sequence[int],
 ) -> float | None:
-    """``min_B {psi(B) + sum_i slack_i(B)}`` over B = nobody, B = the team at ``choice``: optimum <= bound.
+    """``min_B {gross(B) + sum_i slack_i(B)}`` over B = nobody, B = the team at ``choice``: optimum <= bound.
 
     The first is tight where the platforms do not interact, the second where they have covered what there is.
-    ``None`` unless the objective is monotone and submodular. Source: docs/theory.md (V12).
+    ``None`` unless the objective is monotone and submodular. Source: docs/theory.md (V12), (V193).
 
     Raises:
         InputError: as `negotiate`, or a choice that is not one index per platform.
@@ -65,7 +65,7 @@ def bound(
     team = reduce(objective.combine, chosen, nobody)
     value = value_of(objective, belief, team) - value_of(objective, belief, nobody)
     ceiling = sum(slack_of(objective, belief, nobody, own) for own in candidates)
-    above = value + sum(slack_of(objective, belief, team, own) for own in candidates)
+    above = value + objective.price(team) + sum(slack_of(objective, belief, team, own) for own in candidates)
     return tightest(value, ceiling, above)
 
 

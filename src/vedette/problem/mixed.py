@@ -67,6 +67,11 @@ class WeightedSum(Objective[Parts, Parts]):
         parts = zip(self.objectives, self.weights, belief, impact, strict=True)
         return float(sum(weight * part.value(of, x) for part, weight, of, x in parts))
 
+    def price(self, impact: Parts) -> float:
+        """Return the weighted sum of what is a price."""
+        parts = zip(self.objectives, self.weights, impact, strict=True)
+        return float(sum(weight * part.price(x) for part, weight, x in parts))
+
     def values(self, belief: Parts, others: Parts, own: Sequence[Parts]) -> NDArray[np.float64]:
         """Return the weighted sums, each part's values in one go."""
         total = np.zeros(len(own))

@@ -19,13 +19,13 @@ class Objective(ABC, Generic[BeliefT, ImpactT]):
     """``J(v) = psi(Y_1(v_1) * ... * Y_n(v_n))``: the team's ``*`` (combine) and ``psi`` (value).
 
     A subclass states three laws-abiding functions; ``vedette.testing.check_objective`` checks the laws.
-    Impacts are values: no function may change its arguments. The flags declare what the value promises for
-    any impacts a platform may have; with both, a negotiation reports a bound on the optimum.
-    Source: paper, eq. (15); docs/theory.md (V1).
+    Impacts are values: no function may change its arguments. The flags declare what ``gross``, the value
+    with prices not taken off, promises for any impacts a platform may have; with both, a negotiation reports
+    a bound on the optimum. Source: paper, eq. (15); docs/theory.md (V1), (V190).
     """
 
-    monotone: bool = False  # value(a * x) >= value(a)
-    submodular: bool = False  # value(a * x) - value(a) >= value(a * b * x) - value(a * b)
+    monotone: bool = False  # gross(a * x) >= gross(a)
+    submodular: bool = False  # gross(a * x) - gross(a) >= gross(a * b * x) - gross(a * b)
 
     @abstractmethod
     def nothing(self, belief: BeliefT) -> ImpactT:
@@ -38,6 +38,14 @@ class Objective(ABC, Generic[BeliefT, ImpactT]):
     @abstractmethod
     def value(self, belief: BeliefT, impact: ImpactT) -> float:
         """Return ``psi(impact)``, the gain over doing nothing: ``value(belief, nothing(belief)) == 0``."""
+
+    def price(self, impact: ImpactT) -> float:
+        """Return what of ``value`` is a price, taken off: ``price(a * b) = price(a) + price(b) >= 0``."""
+        return 0.0
+
+    def gross(self, belief: BeliefT, impact: ImpactT) -> float:
+        """Return what an impact is worth with its price not taken off."""
+        return self.value(belief, impact) + self.price(impact)
 
     def values(self, belief: BeliefT, others: ImpactT, own: Sequence[ImpactT]) -> NDArray[np.float64]:
         """Return ``value(others * own[k])`` for every k, shape (K,); override where one pass can do all."""

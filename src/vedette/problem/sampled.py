@@ -49,6 +49,10 @@ class Sampled(Objective[BeliefT, tuple[ImpactT, ...]]):
         """Return the mean of the samples' values."""
         return float(np.mean([self._one.value(belief, each) for each in impact]))
 
+    def price(self, impact: tuple[ImpactT, ...]) -> float:
+        """Return the mean of the samples' prices."""
+        return float(np.mean([self._one.price(each) for each in impact]))
+
     def values(
         self, belief: BeliefT, others: tuple[ImpactT, ...], own: Sequence[tuple[ImpactT, ...]]
     ) -> Float:

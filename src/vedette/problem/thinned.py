@@ -74,6 +74,10 @@ class Thinned(Objective[BeliefT, tuple[ImpactT, ...]]):
         """Return the potential."""
         return float(self._weights @ [self._one.value(belief, each) for each in impact])
 
+    def price(self, impact: tuple[ImpactT, ...]) -> float:
+        """Return what of the potential is a price."""
+        return float(self._weights @ [self._one.price(each) for each in impact])
+
     def values(
         self, belief: BeliefT, others: tuple[ImpactT, ...], own: Sequence[tuple[ImpactT, ...]]
     ) -> Float:

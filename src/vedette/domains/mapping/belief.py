@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from vedette.domains.mapping.frontier_worth import frontier_areas, spread_behind
 from vedette.domains.mapping.layers import TimeLayers, rate
 from vedette.domains.mapping.outlook import mean_promise
+from vedette.domains.mapping.price import FREE, EndPrice
 from vedette.domains.mapping.prior import Foresight, PriorMap, block_sum, foresee
 from vedette.domains.mapping.priorities import Priorities, priority_factors, pull
 from vedette.kernels.coverage import CellWeights
@@ -42,6 +43,7 @@ class MapBelief:
     counts: NDArray[np.int64]  # (4, BINS) the team's sightings
     gathering: bool  # so little is left that robots gather up what was left behind, by tours
     foresight: Foresight | None = None  # of an old map; None: there is none, or it says nothing here
+    end_price: EndPrice = FREE  # of tours
 
     @property
     def to_see(self) -> NDArray[np.uint16] | NDArray[np.float32]:
@@ -84,6 +86,7 @@ def freeze(
     hidden: float,
     return_price: float = 0.0,
     turn: float = math.inf,
+    end_price: EndPrice = FREE,
     layers: TimeLayers,
     counts: NDArray[np.int64],
     known: Extent = EVERYWHERE,
@@ -105,6 +108,7 @@ def freeze(
         hidden: area expected behind a frontier [m^2].
         return_price: more for a frontier that is far from others [m^2 a metre].
         turn: gather up what was left behind, at these prices, once frontiers promise less than this [m^2].
+        end_price: of tours, once what was left behind is gathered up.
         layers: the time layers of the objective.
         counts: (4, BINS) the team's sightings.
         known: rows and columns outside of which nothing is known.
@@ -152,6 +156,7 @@ def freeze(
         counts,
         gathering,
         foresight,
+        end_price if gathering else FREE,
     )
 
 

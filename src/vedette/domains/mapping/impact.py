@@ -1,14 +1,18 @@
-"""The impact of a mapping strategy: quantised log-misses per planning cell and time layer, sparse."""
+"""The impact of a mapping strategy: what it shows, and what it costs.
+
+What it shows are quantised log-misses per planning cell and time layer, sparse; what it costs is one integer.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vedette.kernels.coverage import LAYERS
-from vedette.kernels.misses import CERTAIN, STEPS_PER_NAT, Misses, MissesCodec, SparseMisses
+from vedette.kernels.misses import CERTAIN, STEPS_PER_NAT, Keys, Misses, MissesCodec, SparseMisses
 from vedette.maps import GridFrame
 from vedette.maps.swept import most_cells_swept
 from vedette.number import many
@@ -18,9 +22,25 @@ from vedette.team import Most
 _LEVELS = np.array([round(-np.log1p(-k / 8) * STEPS_PER_NAT) for k in range(8)] + [64], np.uint8)
 MIN_SHARE = 1 / 16  # a smaller share rounds to nothing
 _EVEN_ODDS = 11  # log-misses from which a cell is more likely seen than missed
+PRICE_STEPS = 1 << 16  # of a price, to the unit of the objective
+_PRICE_BYTES = 7  # of a price that travels
+_PRICED = 1 << 7  # in an encoding's fourth byte, the highest of the number of runs: a price comes last
 
 
-Impact: TypeAlias = SparseMisses
+@dataclass(frozen=True, eq=False)
+class MapImpact(SparseMisses):
+    """What strategies show, and what they cost together: ``*`` multiplies misses and adds prices."""
+
+    price: int = 0  # in steps of 1/65536 of the objective's unit, never below 0
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, MapImpact) and self.price == other.price and super().__eq__(other)
+
+    def __hash__(self) -> int:
+        return hash((super().__hash__(), self.price))
+
+
+Impact: TypeAlias = MapImpact
 NOTHING = Impact(np.empty(0, np.uint32), np.empty(0, np.uint8))
 
 
@@ -57,7 +77,7 @@ def moved(impact: Impact, planning: GridFrame, onto: GridFrame) -> Impact:
     row = np.floor((y - onto.origin_y) / onto.resolution).astype(np.int64)
     inside = (row >= 0) & (row < onto.rows) & (col >= 0) & (col < onto.cols)
     keys = ((row * onto.cols + col) * LAYERS + layers)[inside].astype(np.uint32)
-    return Impact(keys, impact.misses[inside])
+    return Impact(keys, impact.misses[inside], impact.price)
 
 
 def promised(impact: Impact, edges: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
@@ -83,15 +103,20 @@ def _first_of_each(cells: NDArray[np.int64] | NDArray[np.uint32]) -> NDArray[np.
 
 
 def discounted(impact: Impact, halvings: int) -> Impact:
+    """Return an impact that shows each cell with so many times half its chance, at its price."""
+    return Impact(*less_likely(impact, halvings), impact.price)
+
+
+def less_likely(looks: SparseMisses, halvings: int) -> tuple[Keys, Misses]:
     """Return ``1 - (1 - m) / 2**halvings`` for each miss probability m, rounded to log-misses."""
     seen = 1.0 - np.exp(-np.arange(CERTAIN + 1) / STEPS_PER_NAT)
     seen[CERTAIN] = 1.0
-    less = np.round(-np.log1p(-seen / 2**halvings) * STEPS_PER_NAT).astype(np.uint8)[impact.misses]
-    return Impact(impact.keys[less > 0], less[less > 0])
+    less = np.round(-np.log1p(-seen / 2**halvings) * STEPS_PER_NAT).astype(np.uint8)[looks.misses]
+    return looks.keys[less > 0], less[less > 0]
 
 
 def check_claim(
-    impact: Impact, robots: int, most: Most, stops: int, side: float, edges: NDArray[np.float64]
+    impact: SparseMisses, robots: int, most: Most, stops: int, side: float, edges: NDArray[np.float64]
 ) -> None:
     """Raise ``ValueError`` for what so many robots cannot see, wherever they are and whatever the map.
 
@@ -119,15 +144,46 @@ def check_claim(
         raise ValueError(f"impact claims to see more surely than {many(robots, 'robot')} can")
 
 
-def _cells_claimed(impact: Impact) -> NDArray[np.int64]:
+def _cells_claimed(impact: SparseMisses) -> NDArray[np.int64]:
     """Return how many planning cells are looked at by the end of each layer, (LAYERS,)."""
     earliest = _first_of_each(impact.keys // np.uint32(LAYERS))
     cells: NDArray[np.int64] = np.bincount(impact.keys[earliest] % np.uint32(LAYERS), minlength=LAYERS)
     return np.cumsum(cells)
 
 
-class MapImpactCodec(MissesCodec):
-    """Impacts over so many planning cells as bytes, layer by layer."""
+class MapImpactCodec:
+    """Impacts over so many planning cells as bytes, layer by layer, then the price if there is one."""
 
     def __init__(self, cells: int) -> None:
-        super().__init__(cells, LAYERS)
+        """Take the planning grid's size."""
+        self._looks = MissesCodec(cells, LAYERS)
+
+    @property
+    def bound(self) -> int:
+        """Largest encoding of any impact [bytes]; no team size in it."""
+        return self._looks.bound + _PRICE_BYTES
+
+    def encode(self, impact: Impact) -> bytes:
+        """Return at most ``bound`` bytes."""
+        data = self._looks.encode(impact)
+        if not impact.price:
+            return data
+        head, rest = data[:3] + bytes((data[3] | _PRICED,)), data[4:]
+        return head + rest + impact.price.to_bytes(_PRICE_BYTES, "little")
+
+    def decode(self, payload: bytes) -> Impact:
+        """Return the impact.
+
+        Raises:
+            ValueError: the payload is not an impact over these cells.
+        """
+        price = 0
+        if len(payload) > 3 + _PRICE_BYTES and payload[3] & _PRICED:
+            price = int.from_bytes(payload[-_PRICE_BYTES:], "little")
+            payload = payload[:3] + bytes((payload[3] ^ _PRICED,)) + payload[4:-_PRICE_BYTES]
+            if not price:
+                raise ValueError("impact has a price of nothing")
+        looks = self._looks.decode(payload)
+        if isinstance(looks, MapImpact) and looks.price == price:  # it was written in this process
+            return looks
+        return Impact(*looks.sparse, price)

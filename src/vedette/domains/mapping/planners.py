@@ -17,6 +17,7 @@ from vedette.domains.mapping.baselines.team import check_size
 from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.layers import TimeLayers
 from vedette.domains.mapping.platform import MappingPlatform, Tour
+from vedette.domains.mapping.price import FREE, EndPrice
 from vedette.domains.mapping.stops import Stops
 from vedette.domains.mapping.yardsticks import BurgardPlatform, NearestPlatform
 from vedette.errors import brief
@@ -37,6 +38,7 @@ class Planner:
     platform: Callable[[PlatformSpec], MappingPlatform]
     hidden: float = 0.0  # area expected behind a frontier [m^2]
     return_price: float = 0.0  # more for a frontier far from others [m^2 a metre]
+    end_price: EndPrice = FREE  # of tours
     turn: float = math.inf  # prices and tours count once frontiers promise less than this [m^2]; 0: never
     alone: str | None = None  # the planner of a team of one; None: the same
     scheme: str | None = None  # the negotiation that is part of the planner; None: any

@@ -32,6 +32,7 @@ from vedette.domains.mapping.stops import (
 from vedette.domains.mapping.views import by_way, look
 from vedette.kernels import coverage
 from vedette.kernels.coverage import LAYERS, Footprints
+from vedette.kernels.misses import Keys, Misses
 from vedette.team import PlatformSpec
 
 LEAST_AREA = 0.08  # a stop must promise this much [m^2] ...
@@ -68,14 +69,14 @@ class Tour:
         return Tour(self.targets[1:], self.views[1:], self.arrivals[1:], self.unknown[1:], self.stops[1:])
 
 
-def on_the_way(marks: Footprints, tour: Tour, layers: TimeLayers) -> Impact:
+def on_the_way(marks: Footprints, tour: Tour, layers: TimeLayers) -> tuple[Keys, Misses]:
     """Return what a tour shows of what its stops do, each in the layer of its arrival."""
     total = NOTHING.sparse
     for stop, arrival in zip(tour.stops, tour.arrivals, strict=True):
         row = slice(marks.starts[stop], marks.starts[stop + 1])
         keys = marks.cells[row] * np.uint32(LAYERS) + np.uint32(layers.layer(arrival))
         total = coverage.combine(*total, keys, marks.misses[row])
-    return Impact(*total)
+    return total
 
 
 _NONE, _NOWHERE = np.empty(0, np.int64), np.empty((0, 2))
@@ -387,10 +388,19 @@ class MappingPlatform:
 
     def impact(self, belief: MapBelief, strategy: Tour) -> Impact:
         """What the tour would reveal, each stop's footprint in the layer of its arrival; paper, eq. (39)."""
-        if not len(strategy):
-            return NOTHING
         assert self.stops is not None
-        return on_the_way(self.stops.footprints, strategy, belief.layers)
+        shown = on_the_way(self.stops.footprints, strategy, belief.layers)
+        return Impact(*shown, self.price(belief, strategy))
+
+    def price(self, belief: MapBelief, strategy: Tour) -> int:
+        """Return what a tour costs; to stay costs what the farthest single stop does, so it is never better.
+
+        docs/theory.md (V194)
+        """
+        assert self.stops is not None
+        legs = self.stops.first_leg
+        end = strategy.arrivals[-1] if len(strategy) else legs.max(where=np.isfinite(legs), initial=0.0)
+        return belief.end_price.of(float(end))
 
     def reply(self, belief: MapBelief, others: Impact, current: Tour) -> Tour:
         """Best tour found against the rest of the team, if clearly better than the present one.

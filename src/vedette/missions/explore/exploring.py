@@ -201,6 +201,7 @@ class Exploring:
             "hidden": self.planner.hidden,
             "return_price": self.planner.return_price,
             "turn": self.planner.turn,
+            "end_price": self.planner.end_price,
             "layers": self.planner.layers,
             "known": known,
             "leave": self._leave or None,
@@ -279,7 +280,8 @@ class Exploring:
         """Tours lead anywhere."""
 
     def admit(self, belief: MapBelief, impact: Impact, robots: int) -> None:
-        """Refuse more than so many of the team's best robots can see."""
+        """Refuse more than so many of the team's best robots can see, and a price that they cannot have."""
+        belief.end_price.check(impact, robots, belief.layers.edges)
         if self.most is not None:
             side, edges = belief.planning.resolution, belief.layers.edges
             check_claim(impact, robots, self.most, MOST_STOPS, side, edges)  # a tour has no stop twice

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.domains.mapping.belief import MapBelief
+from vedette.domains.mapping.impact import MapImpact
 from vedette.domains.mapping.platform import (
     HYSTERESIS,
     STICKINESS,
@@ -29,7 +30,7 @@ from vedette.missions.seek.options import SeekOptions
 from vedette.missions.seek.spots import good_spots
 
 Belief: TypeAlias = tuple[MapBelief, SearchBelief]
-Impact: TypeAlias = tuple[SparseMisses, SparseMisses]  # of the map, of looks for somebody
+Impact: TypeAlias = tuple[MapImpact, SparseMisses]  # of the map, of looks for somebody
 
 LOOKED_AT = -1  # in the place of the unknown cells near a frontier: this stop is none
 
@@ -127,8 +128,8 @@ class SeekingPlatform(MappingPlatform):
         assert self.looks is not None
         layers = belief[0].layers
         return (
-            on_the_way(self.stops.footprints, strategy, layers),
-            on_the_way(self.looks, strategy, layers),
+            MapImpact(*on_the_way(self.stops.footprints, strategy, layers), self.price(belief[0], strategy)),
+            SparseMisses(*on_the_way(self.looks, strategy, layers)),
         )
 
     def reply(self, belief: Belief, others: Impact, current: Tour) -> Tour:  # type: ignore[override]

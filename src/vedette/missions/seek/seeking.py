@@ -20,6 +20,8 @@ from vedette.domains.mapping.views import MOST_STOPS
 from vedette.domains.search.detectors import Report
 from vedette.domains.search.evidence import LEVELS_PER_NAT
 from vedette.domains.search.objective import SearchObjective
+from vedette.kernels.coverage import LAYERS
+from vedette.kernels.misses import MissesCodec, SparseMisses
 from vedette.maps import FREE, GridFrame
 from vedette.missions.explore.exploring import Exploring
 from vedette.missions.seek.looks import Looker, entropy_of, levels, room_for_somebody, search_belief
@@ -54,7 +56,7 @@ class Seeking(Exploring):
         self._looked = np.zeros(size, np.int64)
         worth = self.seek.worth * entropy_of(self.frame)
         self.objective = WeightedSum((MappingObjective(), SearchObjective()), (1.0, worth))
-        self.codec = PartsCodec((MapImpactCodec(size), MapImpactCodec(size)))
+        self.codec = PartsCodec((MapImpactCodec(size), MissesCodec(size, LAYERS)))
         platform = self._seeker
         platform.seek, platform.worth = self.seek, worth
 
@@ -129,9 +131,9 @@ class Seeking(Exploring):
 
     def admit(self, belief: Belief, impact: Impact, robots: int) -> None:  # type: ignore[override]
         """Refuse more than so many of the team's best robots can see."""
+        super().admit(belief[0], impact[0], robots)
         if self.most is None:
             return
-        super().admit(belief[0], impact[0], robots)
         side, edges = belief[0].planning.resolution, belief[0].layers.edges
         most = Most(self.seek.reach, self.most.speed)
         mapping.check_claim(impact[1], robots, most, MOST_STOPS + MOST_SPOTS, side, edges)
@@ -148,7 +150,8 @@ class Seeking(Exploring):
 
     def discounted(self, impact: Impact, halvings: int) -> Impact:  # type: ignore[override]
         """Return an impact that is so many times half as likely."""
-        return super().discounted(impact[0], halvings), super().discounted(impact[1], halvings)
+        looks = SparseMisses(*mapping.less_likely(impact[1], halvings))
+        return super().discounted(impact[0], halvings), looks
 
     # -- driving ------------------------------------------------------------------------------------
 

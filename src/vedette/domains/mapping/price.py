@@ -1,0 +1,58 @@
+"""What a tour costs beside what it shows: a price on when it ends, the second integer of its impact."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vedette.domains.mapping.impact import PRICE_STEPS, Impact
+from vedette.kernels.coverage import LAYERS
+from vedette.number import many
+
+LATEST = 3600.0  # a tour that ends later costs no more [s]
+
+
+@dataclass(frozen=True)
+class EndPrice:
+    """``linear t + quadratic t^2 / 2`` for a tour that ends t seconds after the round's t0.
+
+    In the unit of the objective, which takes it off. Equal for the whole team.  docs/theory.md (V195)
+    """
+
+    linear: float = 0.0  # a second
+    quadratic: float = 0.0  # a second^2
+
+    def of(self, end: float) -> int:
+        """Return the price of an end [s], in steps, rounded to the nearest, halves up."""
+        t = min(end, LATEST)
+        return math.floor((self.linear + 0.5 * self.quadratic * t) * t * PRICE_STEPS + 0.5)
+
+    def check(self, impact: Impact, robots: int, edges: NDArray[np.float64]) -> None:
+        """Raise ``ValueError`` for a price that so many robots, combined, cannot have; (V196).
+
+        One of them sees something in the last layer that anything is seen in, so its tour ends no sooner than
+        that begins; no tour costs more than one that ends at ``LATEST``.
+
+        Args:
+            impact: of so many robots, combined.
+            robots: how many.
+            edges: (LAYERS,) upper edge of each layer [s].
+        """
+        if not impact.price and self == FREE:
+            return
+        begins = 0.0
+        if len(impact.keys) and (last := int((impact.keys % np.uint32(LAYERS)).max())):
+            begins = float(edges[last - 1])
+        least, most = self.of(begins), robots * self.of(LATEST)
+        if not least <= impact.price <= most:
+            said, low, high = (price / PRICE_STEPS for price in (impact.price, least, most))
+            raise ValueError(
+                f"impact has a price of {said:.9g}; tours of {many(robots, 'robot')} that see until"
+                f" {begins:g} s cost {low:.9g} to {high:.9g}"
+            )
+
+
+FREE = EndPrice()
