@@ -75,6 +75,7 @@ class Job:
 
     key: tuple[int, int]
     run: Callable[[], None]
+    beside: bool = False  # works on nothing of the agent's, which goes on meanwhile
 
 
 Motion: TypeAlias = Drive | Fly

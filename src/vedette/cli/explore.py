@@ -8,11 +8,10 @@ from typing import Any
 import click
 
 from vedette.cli.exploring import EXPLORING, exploring_options, team_named, world_named
-from vedette.cli.options import FILE, OneOf, Output, fault_options, orders_option, output_options
+from vedette.cli.options import FILE, Output, fault_options, orders_option, output_options
 from vedette.cli.running import simulate, simulate_watched
 from vedette.cli.windows import beside_of, watch_options, watched
 from vedette.errors import InputError
-from vedette.missions.explore.options import FRAMES
 from vedette.record.explore.log import ExploreSnapshot
 from vedette.run import Explore
 from vedette.run.inputs import files_of
@@ -27,13 +26,6 @@ from vedette.window.picture import Picture, picture
     "--continue", "saved", type=FILE, metavar="RUN_DIR", help="Start from the map that an earlier run left."
 )
 @orders_option
-@click.option(
-    "--frames",
-    type=OneOf(FRAMES),
-    default="known",
-    show_default=True,
-    help="unknown: each robot's frame is its own, and the team finds how they lie.",
-)
 @fault_options
 @watch_options
 @output_options

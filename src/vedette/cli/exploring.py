@@ -17,6 +17,7 @@ from vedette.domains.mapping.planners import DEFAULT, PLANNER
 from vedette.errors import InputError, InputWarning
 from vedette.maps.area import Area
 from vedette.missions.explore.assemble import FUSIONS
+from vedette.missions.explore.options import FRAMES
 from vedette.missions.pairs import SCHEME
 from vedette.negotiation import SCHEMES
 from vedette.number import many
@@ -124,6 +125,13 @@ def exploring_options(command: CommandT) -> CommandT:
             type=FILE,
             metavar="MAP",
             help="An old map of the building, which may be out of date: what it shows is expected.",
+        ),
+        click.option(
+            "--frames",
+            type=OneOf(FRAMES),
+            default="known",
+            show_default=True,
+            help="unknown: each robot's frame is its own, and the team finds how they lie.",
         ),
         click.option("--return-home", is_flag=True, help="The robots drive back to their starts in the end."),
     )

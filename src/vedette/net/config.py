@@ -68,7 +68,8 @@ class BodySettings(Struct, forbid_unknown_fields=True, frozen=True):
     ros2: Ros2Settings | None = None  # how a real one is reached; its lidar is what it tells of it
     own: OwnSettings | None = None  # a class of one's own for a robot of any kind
     map: str | None = None  # the world: a map_server .yaml beside this file, or an image
-    start: tuple[float, float, float] | None = None  # x, y, heading [m, m, deg], team frame
+    start: tuple[float, float, float] | None = None  # x, y, heading [m, m, deg], the world's frame
+    frame: tuple[float, float, float] | None = None  # a simulated robot's own; None: that
     resolution: float | None = None  # of an image [m]
     seed: Annotated[int, Meta(ge=0)] = 0  # of the lidar's noise
     speed: float = 0.5  # [m/s]
@@ -190,11 +191,7 @@ def _check_explore(config: AgentConfig) -> None:
     _check_scheme("explore", options.scheme)
     _check_word("explore.fusion", options.fusion, list(FUSIONS))
     _ = options.negotiates_by
-    if options.frames != "known":
-        raise InputError(
-            f"explore.frames: {options.frames!r} is for simulated teams (vedette explore --frames unknown); "
-            "robots on a network share a frame; leave it out"
-        )
+    _check_frames(config.body, options)
     _check_ground(config.body, options)
     real = config.body.ros2
     if real is not None and real.evidence == "map" and options.fusion == "channel":
@@ -210,6 +207,18 @@ def _check_explore(config: AgentConfig) -> None:
         raise InputError("links.delay: is for vehicles, which reckon with it; leave it out")
     if config.faults is not None and config.begins is None:
         raise InputError("begins: missing; faults need the time at which the mission begins")
+
+
+def _check_frames(body: BodySettings, options: ExploreOptions) -> None:
+    try:
+        options.check()
+    except InputError as error:
+        raise InputError(f"explore: {error}") from error
+    if options.frames == "unknown" and body.ros2 is not None:
+        raise InputError("explore.frames: robots that run ROS 2 are told how their maps lie; leave it out")
+    if body.frame is not None and (options.frames == "known" or body.map is None):
+        why = "robots that share a frame" if options.frames == "known" else "a real robot"
+        raise InputError(f"body.frame: is not for {why}; leave it out")
 
 
 def _check_kind(body: BodySettings) -> None:
@@ -258,7 +267,7 @@ def _check_flight(config: AgentConfig) -> None:
     for name in ("ros2", "own"):
         if getattr(config.body, name) is not None:
             raise InputError(f"body.{name}: is for robots that explore; vehicles are simulated: leave it out")
-    for name in ("resolution", *OF_BODY):
+    for name in ("resolution", "frame", *OF_BODY):
         if getattr(config.body, name) != getattr(BodySettings(), name):
             raise InputError(f"body.{name}: the scenario says how each vehicle is; leave it out")
     if config.best is not None:

@@ -16,7 +16,7 @@ from vedette.errors import InputError
 from vedette.maps import OCCUPIED
 from vedette.maps.area import Area
 from vedette.missions.explore.exploring import Exploring
-from vedette.missions.sense import Grounds, forbidden_by
+from vedette.missions.sense import Grounds, forbidden_by, names_a_place
 from vedette.net.config import AgentConfig
 from vedette.net.credentials import Credentials
 from vedette.net.endpoints import is_loopback
@@ -87,6 +87,8 @@ def _objection(agent: Agent, mission: Exploring, order: Order) -> str | None:
     """Say in a line why an order makes no sense, as far as this robot knows the ground; None: it does."""
     if order.robot_number > agent.rounds.admitted:
         return f"there is no robot {order.robot_number} in a team of {agent.rounds.admitted} at most"
+    if agent.framing is not None and names_a_place(order):
+        return "the robots share no frame, so a place means nothing to them; give orders without one"
     match order:
         case Remove():
             return agent.orders.unknown_area(order)

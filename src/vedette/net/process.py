@@ -90,7 +90,10 @@ class AgentProcess:
         if self.judge is not None:
             self.transport.answer_orders(self.inbox.put)
         self.mission.start(self.clock())
-        with ThreadPoolExecutor(1, thread_name_prefix="planning") as self._worker:
+        with (
+            ThreadPoolExecutor(1, thread_name_prefix="planning") as self._worker,
+            ThreadPoolExecutor(1, thread_name_prefix="errands") as self._errands,
+        ):
             while not self.stopped:
                 self._turn()
         self.body.stop(self.mission.shows(self.clock()))
@@ -140,8 +143,9 @@ class AgentProcess:
             case _Done(job, error):
                 if error is not None:
                     raise error
-                self.node.hold = False
-                self._do(partial(self.node.step, [JobDone(job.key)], now))
+                if not job.beside:
+                    self.node.hold = False
+                    self._do(partial(self.node.step, [JobDone(job.key)], now))
 
     def _tick(self, now: float) -> None:
         """Move the body, and let the agent know what it senses."""
@@ -215,6 +219,8 @@ class AgentProcess:
                     self.staged.put(to, payload, self.clock())
                 case Datagram(to, payload):
                     self.transport.send(to, payload)
+                case Job(beside=True):
+                    self._errands.submit(self._run, output)
                 case Job():
                     self.node.hold = True
                     self._worker.submit(self._run, output)
@@ -225,7 +231,10 @@ class AgentProcess:
     def _run(self, job: Job) -> None:
         error: BaseException | None = None
         try:
-            self.witness.clock.run(self.node.agent.robot, job)
+            if job.beside:
+                job.run()
+            else:
+                self.witness.clock.run(self.node.agent.robot, job)
         except BaseException as raised:  # raised again where somebody sees it
             error = raised
         self.inbox.put(_Done(job, error))

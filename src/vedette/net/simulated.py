@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from vedette.align import FramePose
 from vedette.maps.area import Area
 from vedette.maps.world import World
 from vedette.missions.flights import FlightCase
@@ -21,6 +22,7 @@ from vedette.net.names import robot_name
 from vedette.sim.domain import Domain as Domain
 from vedette.sim.domains import domain_of as domain_of
 from vedette.sim.faults import StagedLinks, Timeline, load_faults
+from vedette.sim.framed import frames_of as frames_of
 from vedette.sim.own_body import OwnBody
 from vedette.sim.own_vehicle import OwnVehicle
 from vedette.sim.search.hidden import Hidden, Searchers
@@ -40,7 +42,11 @@ def simulated_robot(config: AgentConfig, world: World, area: Area | None) -> Own
     spec = config.body.spec(robot_name(robot))
     start = choose_starts(world, [spec], np.random.default_rng(0), area)[0]
     rng = np.random.default_rng([config.body.seed, robot])
-    return OwnBody.put(world, spec, start, robot, max(MOST_BODIES, robot + 1), rng)
+    frame = None
+    if config.body.frame is not None:
+        x, y, heading = config.body.frame
+        frame = FramePose.of(x, y, radians(heading))
+    return OwnBody.put(world, spec, start, robot, max(MOST_BODIES, robot + 1), rng, frame)
 
 
 def simulated_tracker(config: AgentConfig, team: TrackTeam) -> OwnVehicle:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,12 +12,11 @@ from numpy.typing import NDArray
 from vedette.agent.effects import Drive, Motion, Route
 from vedette.agent.events import Event, Pose, Scan
 from vedette.align import FramePose
-from vedette.maps import GridFrame
+from vedette.align.turned import turned
 from vedette.maps.world import World
 from vedette.sim.robots import Robots
 from vedette.team import PlatformSpec
 
-CellT = TypeVar("CellT", np.bool_, np.uint8)
 AWAY = 20.0  # a frame's origin lies so far from the world's at most, along either axis [m]
 
 
@@ -73,21 +71,3 @@ class FramedRobots(Robots):
         facing = None if route.facing is None else route.facing + there.angle
         passable = turned(route.passable, route.frame, back, frame)
         return replace(route, path=there.places(route.path), passable=passable, frame=frame, facing=facing)
-
-
-def turned(grid: NDArray[CellT], frame: GridFrame, back: FramePose, onto: GridFrame) -> NDArray[CellT]:
-    """Return ``(R, C)`` over the frame ``onto``: what a grid of another frame has under each middle, or 0.
-
-    ``back``: T_grid_onto.
-    """
-    col = onto.origin_x + (np.arange(onto.cols) + 0.5) * onto.resolution
-    row = onto.origin_y + (np.arange(onto.rows) + 0.5) * onto.resolution
-    (cos, _), (sin, _) = back.rotation
-    x = cos * col[None, :] - sin * row[:, None] + back.x
-    y = sin * col[None, :] + cos * row[:, None] + back.y
-    j = np.floor((x - frame.origin_x) / frame.resolution).astype(np.int64)
-    i = np.floor((y - frame.origin_y) / frame.resolution).astype(np.int64)
-    inside = (i >= 0) & (i < frame.rows) & (j >= 0) & (j < frame.cols)
-    out = np.zeros(onto.shape, grid.dtype)
-    out[inside] = grid[i[inside], j[inside]]
-    return out

@@ -12,7 +12,7 @@ from vedette.agent.orders import Exclude, LookThere, NoGo, Order, Priority, Reca
 from vedette.errors import InputError, nearest_name
 from vedette.maps.area import Area
 from vedette.maps.world import World, standable
-from vedette.missions.sense import Grounds, forbidden_by
+from vedette.missions.sense import Grounds, forbidden_by, names_a_place
 from vedette.scenario import as_scenario, load_scenario
 from vedette.team import PlatformSpec
 
@@ -43,8 +43,7 @@ def load_orders(path: Path | str) -> tuple[OrderAt, ...]:
 def check_places(orders: Sequence[OrderAt], frames: str) -> None:
     """Raise InputError for an order with a place, where nobody has the frame that it would be in."""
     for each in orders:
-        about = [getattr(each.what, name, None) for name in ("at", "to", "corners")]
-        if frames == "unknown" and any(place is not None for place in about):
+        if frames == "unknown" and names_a_place(each.what):
             raise InputError(
                 "orders: frames unknown, so a place means nothing to the robots; give orders without one"
             )

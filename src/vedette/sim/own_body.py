@@ -10,7 +10,9 @@ import numpy as np
 from vedette.agent.body import TICK, BodyFigures
 from vedette.agent.effects import Drive, Motion
 from vedette.agent.events import Event
+from vedette.align import FramePose
 from vedette.maps.world import World
+from vedette.sim.framed import FramedRobots
 from vedette.sim.robots import Robots
 from vedette.sim.shown import ShownBody, decode, encode
 from vedette.team import PlatformSpec
@@ -40,17 +42,29 @@ class OwnBody:
         robot: int,
         robots: int,
         rng: np.random.Generator,
+        frame: FramePose | None = None,
     ) -> OwnBody:
-        """Put robot ``robot`` of at most ``robots`` at its start: x, y [m], heading [rad], team frame."""
+        """Put robot ``robot`` of at most ``robots`` at its start: x, y [m], heading [rad], the world's frame.
+
+        ``frame``: where the one lies that it reckons in (T_world_own); None: it reckons in the world's.
+        """
         starts = np.full((robots, 3), ELSEWHERE)
         starts[robot] = start
-        body = cls(spec, robot, Robots(world, [spec] * robots, starts, [rng] * robots))
+        team = world, [spec] * robots, starts, [rng] * robots
+        body = cls(spec, robot, Robots(*team) if frame is None else FramedRobots(*team, [frame] * robots))
         body._robots.bodies.alive[np.arange(robots) != robot] = False
         return body
 
     @property
     def pose(self) -> tuple[float, float, float]:
-        """Where it is in truth."""
+        """Where it is in truth, in the frame that it reckons in."""
+        if isinstance(self._robots, FramedRobots):
+            own = self._robots.frames[self.robot].inverse().after(FramePose(*self._in_world))
+            return own.x, own.y, own.angle
+        return self._in_world
+
+    @property
+    def _in_world(self) -> tuple[float, float, float]:
         return self._robots.pose(self.robot)
 
     @property
@@ -103,6 +117,6 @@ class OwnBody:
 
     @property
     def _shown(self) -> ShownBody:
-        x, y, heading = self.pose
+        x, y, heading = self._in_world
         vx, vy = self._robots.bodies.velocities[self.robot].tolist()
         return ShownBody(x, y, heading, vx, vy, self.hull.radius)

@@ -38,6 +38,8 @@ class ExploreOptions(Struct, forbid_unknown_fields=True, frozen=True):
             )
         if not planner(self.planner).negotiates:
             raise InputError(f"frames unknown: planner {self.planner} does not negotiate; choose another")
+        if self.prior is not None:
+            raise InputError("frames unknown: an old map lies in a frame that nobody has; leave it out")
         if self.area is not None or self.unbounded:
             what = "an area" if self.area is not None else "unbounded"
             raise InputError(f"frames unknown: {what} would be in a frame that nobody has; leave it out")

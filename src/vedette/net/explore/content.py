@@ -15,11 +15,14 @@ from vedette import wire
 from vedette.agent import Agent, GroundBehaviour
 from vedette.domains.mapping.impact import MapImpactCodec
 from vedette.domains.mapping.leftovers import Leftover, Why
+from vedette.fusion.frame_edges import MOST_AWAY
 from vedette.maps import OCCUPIED, GridFrame
 from vedette.maps.bounds import Extent
+from vedette.maps.transform import TURN, Transform
 from vedette.missions.explore.exploring import Exploring
+from vedette.missions.explore.frames.exploring import FramedExploring
 from vedette.net.gather import figures_of, path_of
-from vedette.net.report import FARTHEST, MOST_BYTES, Condition, Count, Real, inflated
+from vedette.net.report import FARTHEST, MOST_BYTES, Condition, Count, Real, Word, inflated
 from vedette.net.witness import Known
 from vedette.outcome import Outcome
 from vedette.record.explore.log import Ahead, RobotSample
@@ -29,6 +32,7 @@ MOST_CELLS = 1 << 26
 UNTOUCHED = GroundFigures().min_clearance_m  # [m]
 Cells = Annotated[int, Meta(ge=0, le=MOST_CELLS)]
 Grid = Annotated[bytes, Meta(max_length=MOST_BYTES)]
+Millimetres = Annotated[int, Meta(ge=-MOST_AWAY, le=MOST_AWAY)]
 
 
 class Spot(NamedTuple):
@@ -49,6 +53,32 @@ class StopAhead(NamedTuple):
     reveals: Real  # [m^2]
 
 
+class PlacedTold(NamedTuple):
+    """Where a contributor's frame lies, as ``vedette.missions.explore.frames.graph.Placed``."""
+
+    robot: Count
+    boot: Count
+    anchor: tuple[Count, Count]  # robot and boot of the one whose frame is that of all that are joined
+    x: Millimetres
+    y: Millimetres
+    angle: Annotated[int, Meta(ge=0, lt=TURN)]
+
+    @property
+    def there(self) -> Transform:
+        """T_anchor_contributor."""
+        return Transform(self.x, self.y, self.angle)
+
+
+class Found(msgspec.Struct, frozen=True, array_like=True):
+    """What a robot that shares no frame has found out about others'."""
+
+    graph: Annotated[tuple[PlacedTold, ...], Meta(max_length=1024)] = ()  # in order
+    refused: Annotated[dict[Word, Count], Meta(max_length=64)] = {}  # pairs of maps not believed, by why
+
+
+NOTHING_FOUND = Found()
+
+
 class MapContent(msgspec.Struct, frozen=True, array_like=True, tag=5):
     """A robot's map: the part of the team's lattice outside of which it knows nothing."""
 
@@ -66,6 +96,7 @@ class MapContent(msgspec.Struct, frozen=True, array_like=True, tag=5):
     left_out: Annotated[tuple[Spot, ...], Meta(max_length=1024)] = ()
     tour: Annotated[tuple[StopAhead, ...], Meta(max_length=64)] = ()
     way_left: Real | None = None  # that its energy is good for [m]; None: nobody says
+    found: Found = NOTHING_FOUND
 
 
 _CONTENTS: msgspec.msgpack.Decoder[MapContent] = msgspec.msgpack.Decoder(MapContent)
@@ -108,7 +139,10 @@ class ExploreTeller:
         tour = tuple(StopAhead(*stop) for stop in mission.ahead(now))
         budget = mission.platform.budget
         left = budget.left if budget.limited else None
-        return content(mission.frame, mission.known, *grids, impact, spots[-1024:], tour, left)
+        found = NOTHING_FOUND if not isinstance(mission, FramedExploring) else _found(mission)
+        if found.graph:
+            impact = None  # it is over the rounds' plane, where nobody's map lies
+        return content(mission.frame, mission.known, *grids, impact, spots[-1024:], tour, left, found)
 
 
 def content(
@@ -120,6 +154,7 @@ def content(
     left: tuple[Spot, ...] = (),
     tour: tuple[StopAhead, ...] = (),
     way_left: float | None = None,
+    found: Found = NOTHING_FOUND,
 ) -> bytes:
     """Return a map as bytes; ``classes`` and ``seen`` are ``(R, C)``, the known rows and columns."""
     (rows, cols), part = known, lattice.window(*known)
@@ -128,8 +163,14 @@ def content(
     corner, place = (rows.start, cols.start), (part.resolution, part.origin_x, part.origin_y)
     size = part.rows, part.cols
     return _encode(
-        MapContent(*corner, *size, packed, bits, impact, *place, lattice.shape, left, tour, way_left)
+        MapContent(*corner, *size, packed, bits, impact, *place, lattice.shape, left, tour, way_left, found)
     )
+
+
+def _found(mission: FramedExploring) -> Found:
+    graph = sorted(mission.frames.graph.items())[:1024]
+    placed = tuple(PlacedTold(*key, anchor, *there) for key, (anchor, there) in graph)
+    return Found(placed, dict(mission.matcher.refused))
 
 
 def read_content(payload: bytes) -> MapContent:

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from vedette.align import FramePose
 from vedette.domains.mapping.leftovers import Leftover
+from vedette.net.explore.apart import side_by_side
 from vedette.net.explore.content import MapContent, read_content, sample_of
 from vedette.net.explore.reported import ReportedMaps
 from vedette.net.gather import links_among, vehicle_name
@@ -14,6 +16,8 @@ from vedette.net.report import Condition, Report
 from vedette.net.results import lasted
 from vedette.record.explore.log import ExploreScene, ExploreSnapshot, RobotSample
 from vedette.record.explore.mcap import ExploreMcapWriter
+from vedette.record.explore.summary import LeftOut
+from vedette.record.explore.turned import sample_turned, spots_turned
 from vedette.record.explore.views import left_out
 from vedette.record.mcap import Medium, Place
 from vedette.window.picture import Beside, Picture, picture
@@ -70,14 +74,20 @@ def picture_of(
         ValueError: a report is malformed.
     """
     contents = [read_content(report.content) for report in reports.values()]
-    ground = (maps or ReportedMaps()).of(contents)
+    shown, there = contents, dict[int, FramePose]()
+    if any(each.found.graph for each in contents):
+        shown, there = side_by_side(dict(zip(reports, contents, strict=True)))
+    ground = (maps or ReportedMaps()).of(shown)
     names = tuple(map(name, reports))
     scene = ExploreScene(name=team, vehicles=names, frame=ground.frame, planning=ground.planning)
     told = [report.condition for report in reports.values()]
     snapshot = ExploreSnapshot(
         t=max((lasted(each) for each in told), default=0.0),
         robots=tuple(
-            replace(_sample(report, states.get(robot), content, name(robot)), trust=_trust(robot, told, name))
+            replace(
+                _sample(report, states.get(robot), content, name(robot), there.get(robot)),
+                trust=_trust(robot, told, name),
+            )
             for (robot, report), content in zip(reports.items(), contents, strict=True)
         ),
         coverage=None,
@@ -88,8 +98,8 @@ def picture_of(
         links=links_among(reports, [robot + 1 for robot in reports]),
         left_out=tuple(
             spot
-            for name, each in zip(names, contents, strict=True)
-            for spot in left_out([Leftover(*leaves) for leaves in each.left_out], name)
+            for (robot, by), each in zip(zip(reports, names, strict=True), contents, strict=True)
+            for spot in _left_out(each, by, there.get(robot))
         ),
         known_m2=ground.known_m2,
         expected=max(told, key=lambda each: each.known_m2 or 0.0).expected if told else None,
@@ -106,6 +116,15 @@ def _trust(robot: int, told: Sequence[Condition], name: Callable[[int], str]) ->
     return "believed" if any(each.signs for each in told) else ""
 
 
-def _sample(report: Report, state: str | None, content: MapContent, name: str) -> RobotSample:
+def _sample(
+    report: Report, state: str | None, content: MapContent, name: str, there: FramePose | None
+) -> RobotSample:
     sample = sample_of(report.condition, content, name)
+    if there is not None:
+        sample = sample_turned(sample, there)
     return replace(sample, state=state or report.condition.state, alive=state is None)
+
+
+def _left_out(content: MapContent, by: str, there: FramePose | None) -> tuple[LeftOut, ...]:
+    spots = left_out([Leftover(*leaves) for leaves in content.left_out], by)
+    return spots if there is None else spots_turned(spots, there)

@@ -13,6 +13,7 @@ from vedette.domains.mapping.belief import planning_factor
 from vedette.domains.mapping.impact import MapImpactCodec
 from vedette.maps import GridFrame
 from vedette.net.explore.content import view_of
+from vedette.net.explore.frames import FramesSeen
 from vedette.net.explore.plan import ExplorePlan
 from vedette.net.report import Condition
 from vedette.net.team import Fates, Links, as_it_is
@@ -33,15 +34,17 @@ class ExploreWatcher:
         self, plan: ExplorePlan, setting: Setting, sinks: Sequence[Sink[ExploreSnapshot]] = ()
     ) -> None:
         """Prepare to watch; the ``sinks`` follow the mission."""
+        shared = plan.lattice if plan.options.frames == "known" else None  # else all is laid on the world
         self._observer = ExploreObserver(
-            plan.world, plan.specs, plan.starts, plan.options, setting, sinks, plan.lattice
+            plan.world, plan.specs, plan.starts, plan.options, setting, sinks, shared
         )
         self._frame = plan.lattice.frame
         self._codec = MapImpactCodec(self._frame.coarse(planning_factor(self._frame.resolution)).size)
         self._views = [
-            _unheard(spec.name, start, self._frame)
+            unheard(spec.name, start, self._frame)
             for spec, start in zip(plan.specs, plan.starts.tolist(), strict=True)
         ]
+        self._frames: FramesSeen | None = None if shared else FramesSeen(plan)
         self._ways: dict[int, float] = {}  # of each robot by now [m]
         self._agreement = Agreement()
         self._moved = (0.0, 0.0)  # way of all robots [m], and when it last grew [s]
@@ -54,16 +57,19 @@ class ExploreWatcher:
     def take(self, condition: Condition, content: bytes) -> None:
         """Take a robot's map."""
         name = self._views[condition.robot].sample.name  # as the team's file has it
-        self._views[condition.robot] = view_of(condition, content, self._frame, self._codec, name)
+        view = view_of(condition, content, self._frame, self._codec, name)
+        if self._frames is not None:
+            self._frames.take(condition, content)
+        self._views[condition.robot] = view
         self._ways[condition.robot] = condition.travelled
 
     def look(self, now: float, fates: Fates, links: Links) -> None:
         """Measure the team's map."""
-        self._observer.look(now, self._seen(fates), links)
+        self._observer.look(now, self._seen(now, fates), links)
 
     def finish(self, now: float, fates: Fates, links: Links) -> None:
         """Measure it as it is in the end."""
-        self._observer.finish(now, self._seen(fates), links)
+        self._observer.finish(now, self._seen(now, fates), links)
 
     def over(self, now: float, heard: Sequence[Condition], silent: bool) -> Outcome | None:
         """Tell whether all are done and agree, or nobody gets on."""
@@ -84,14 +90,21 @@ class ExploreWatcher:
         """Return what ``vedette explore`` would."""
         return self._observer.report(outcome, timing)
 
-    def _seen(self, fates: Fates) -> list[RobotView]:
-        return [
+    def _seen(self, now: float, fates: Fates) -> list[RobotView]:
+        views = [
             replace(view, sample=as_it_is(view.sample, fate))
             for view, fate in zip(self._views, fates, strict=True)
         ]
+        if self._frames is None:
+            return views
+        views = self._frames.in_world(views)
+        living = [robot for robot, fate in enumerate(fates) if fate is None]
+        self._observer.frames = self._frames.look(now, views, living) or self._observer.frames
+        return views
 
 
-def _unheard(name: str, start: Sequence[float], frame: GridFrame) -> RobotView:
+def unheard(name: str, start: Sequence[float], frame: GridFrame) -> RobotView:
+    """Return what can be told of a robot that has told nothing, over a lattice with this frame."""
     x, y, heading = start
     sample = RobotSample(x, y, heading, "starting", True, np.empty((0, 2)), name, None)
     nothing, nowhere = np.zeros((0, 0), np.uint8), slice(0, 0)

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.align.turned import turned
 from vedette.domains.mapping.leftovers import Leftover
 from vedette.kernels.motion import remaining
 from vedette.maps.world import World
@@ -18,7 +19,7 @@ from vedette.record.explore.views import GroundFigures, RobotView, held, left_ou
 from vedette.record.log import Sink
 from vedette.sim.explore.frames import FrameWatch
 from vedette.sim.explore.simulation import ExploreSetup, ExploreSimulation
-from vedette.sim.framed import FramedRobots, turned
+from vedette.sim.framed import FramedRobots
 from vedette.sim.starts import choose_starts
 from vedette.sim.views import NOWHERE, figures, setting, state
 from vedette.sim.watched import Watched

@@ -85,7 +85,7 @@ class FramedExploring(Exploring):
         if run is None:
             return None
         self._errands += 1
-        return Job((ERRAND, self._errands), run)
+        return Job((ERRAND, self._errands), run, beside=True)
 
     # -- frames -------------------------------------------------------------------------------------
 

@@ -53,11 +53,12 @@ class Matcher:
     _attempts: dict[Pair, _Attempts] = field(default_factory=dict)
     _done: list[Callable[[], None]] = field(default_factory=list)  # what a job has found, to be taken in
     _due: float = 0.0
+    _at_work: bool = False  # a job is on its way
 
     def errand(self, graph: Graph, living: Collection[int], now: float) -> Callable[[], None] | None:
         """Return what to work out beside all else, if it is time for it."""
         self.take()
-        if now < self._due:
+        if now < self._due or self._at_work:
             return None
         self._due = now + EVERY
         for pair in self._mine(graph, living):
@@ -71,6 +72,7 @@ class Matcher:
             if _ground(a) + _ground(b) < grown * attempts.ground:
                 continue
             attempts.ground = _ground(a) + _ground(b)
+            self._at_work = True
             if there is not None:
                 return partial(self._fit, pair, a, b, there)
             return partial(self._look, pair, a, b)
@@ -80,6 +82,7 @@ class Matcher:
         """Take in what the latest job has found."""
         while self._done:
             self._done.pop(0)()
+            self._at_work = False
 
     def drop(self, pair: Pair) -> None:
         """Take an edge back that evidence has come to contradict; the pair is looked at anew."""
@@ -124,9 +127,9 @@ class Matcher:
         fit = fitted(a, b, guess, FINELY)
         shift, turn = fit.pose.apart(guess, np.zeros(2))
         place = weighed(a, b, fit)
-        if shift <= BESIDE[0] and turn <= BESIDE[1] and WHERE_JOINED.doubt(Alignment((place,))) is None:
-            better = _edge(pair, place.pose, place.same)
-            self._done.append(lambda: self.found.update({pair: better}))
+        fits = shift <= BESIDE[0] and turn <= BESIDE[1] and WHERE_JOINED.doubt(Alignment((place,))) is None
+        better = {pair: _edge(pair, place.pose, place.same)} if fits else {}
+        self._done.append(lambda: self.found.update(better))
 
 
 def _between(graph: Graph, a: Key, b: Key) -> Transform | None:
