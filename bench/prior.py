@@ -1,7 +1,8 @@
-"""``python -m bench.prior``: what an old map of the building brings, of this one or of another.
+"""``python -m bench.prior``: what an old map brings, of this building or another, and what prediction does.
 
 Missions in generated worlds: without an old map, with the right one, with that of another world of its kind,
-and by another planner to compare with. Times are compared in the same world, as ratios.
+by what the building itself shows, and by another planner to compare with. Times are compared in the same
+world, as ratios.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from bench.crowds import known_world
 from bench.missions import tabulate
 from bench.table import markdown
 from vedette.domains.mapping.prior import PriorMap
+from vedette.errors import check_word
 from vedette.maps import FREE, OCCUPIED
 from vedette.maps.world import World
 from vedette.record.summary import SCHEMA_VERSION
@@ -31,8 +33,15 @@ from vedette.team import PlatformSpec
 
 ELSEWHERE = 1000  # the other world's seed is so much larger
 TIMES = ("t90_s", "t99_s", "time_s")
-WAYS = ("none", "right", "wrong", "burgard")  # old maps; and the other planner, without one
-PAIRS = (("right", "none"), ("wrong", "none"), ("none", "burgard"), ("right", "burgard"))
+WAYS = ("none", "right", "wrong", "predicted", "burgard")  # old maps; and other planners, without one
+PAIRS = (
+    ("right", "none"),
+    ("wrong", "none"),
+    ("predicted", "none"),
+    ("none", "burgard"),
+    ("right", "burgard"),
+    ("predicted", "burgard"),
+)
 
 
 @dataclass(frozen=True)
@@ -92,7 +101,7 @@ def run_case(case: Case, commit: str) -> Expected:
     if case.way in ("right", "wrong"):
         other = case.seed + ELSEWHERE * (case.way == "wrong")
         prior = old_map(make(np.random.default_rng(other)))
-    planner = "burgard" if case.way == "burgard" else "tours"
+    planner = case.way if case.way in ("predicted", "burgard") else "tours"
     setup = ExploreSetup(planner=planner, seed=case.seed, prior=prior)
     summary = explore(prepare(world, specs, setup), curves_only=True).summary
     times = summary.t90_s, summary.t99_s, summary.time_s
@@ -104,19 +113,28 @@ def run_case(case: Case, commit: str) -> Expected:
 @click.option("--worlds", default="office,cave,maze", show_default=True, help="Kinds of worlds, with commas.")
 @click.option("--robots", type=command.WholeNumbers(1), default="3", show_default=True)
 @click.option("--seeds", type=command.WholeNumbers(0), default="400-405", show_default=True, help="Of each.")
+@click.option("--ways", default=",".join(WAYS), show_default=True, help="Of them these, with commas.")
 @click.option("--jobs", type=click.IntRange(min=1), default=2, show_default=True, help="Processes.")
 @click.option("--fresh", is_flag=True, help="Run the missions anew that were run before.")
 @click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for results and table.")
 def prior(
-    worlds: str, robots: tuple[int, ...], seeds: tuple[int, ...], jobs: int, fresh: bool, out: Path
+    worlds: str,
+    robots: tuple[int, ...],
+    seeds: tuple[int, ...],
+    ways: str,
+    jobs: int,
+    fresh: bool,
+    out: Path,
 ) -> None:
-    """Tell what an old map brings; missions that are in the results file already are not run again.
+    """Tell what an old map brings, and prediction; missions in the results file already are not run again.
 
     Exit status 0 if all missions ran, however well, and 1 if one broke.
     """
-    kinds = [known_world(world) for world in worlds.split(",")]
+    kinds, chosen = [known_world(world) for world in worlds.split(",")], ways.split(",")
+    for way in chosen:
+        check_word("ways", way, WAYS)
     cases = [
-        Case(world, team, way, seed) for seed in seeds for world in kinds for team in robots for way in WAYS
+        Case(world, team, way, seed) for seed in seeds for world in kinds for team in robots for way in chosen
     ]
     tabulate(cases, out, "prior", jobs, fresh, run_case, Expected, prior_table)
 

@@ -127,7 +127,8 @@ class Showing:
         whole, part = mission.frame.coarse(factor), frame.coarse(factor)
         for topic, impact in (("impact", rounds.impact), ("team_impact", rounds.team_impact)):
             if impact is not None:
-                share = 1.0 - final_miss(moved(impact, whole, part), part.size).reshape(part.shape)
+                shown = moved(mission.on_map(impact), whole, part)
+                share = 1.0 - final_miss(shown, part.size).reshape(part.shape)
                 yield topic, "nav_msgs/msg/OccupancyGrid", self._messages.share_grid(stamp, part, share)
 
     def _rest(self, stamp: int) -> Iterator[tuple[str, str, Any]]:

@@ -14,6 +14,7 @@ from vedette.domains.mapping.outlook import mean_promise
 from vedette.domains.mapping.price import FREE, EndPrice
 from vedette.domains.mapping.prior import Foresight, PriorMap, block_sum, foresee
 from vedette.domains.mapping.priorities import Priorities, priority_factors, pull
+from vedette.domains.mapping.worlds import Worlds, imagine, in_each, to_see, trust_in
 from vedette.kernels.coverage import CellWeights
 from vedette.kernels.frontier import find_frontiers
 from vedette.maps import UNKNOWN, GridFrame
@@ -36,24 +37,36 @@ class MapBelief:
     factor: int  # side of a planning cell [cells]
     first: tuple[int, int]  # planning cell (row, col) at the window's corner
     unknown: NDArray[np.uint16]  # (r, c) unknown cells of each planning cell in the window
-    weights: CellWeights  # of each planning cell of the whole map
+    weights: CellWeights  # of each planning cell of the whole map in each world
     frontier_cells: NDArray[np.int64]  # (M,) flat cells of the window, by cluster
     frontier_starts: NDArray[np.int64]  # (K + 1,)
     layers: TimeLayers
     counts: NDArray[np.int64]  # (4, BINS) the team's sightings
     gathering: bool  # so little is left that robots gather up what was left behind, by tours
-    foresight: Foresight | None = None  # of an old map; None: there is none, or it says nothing here
+    worlds: Worlds = (None,)  # what is foreseen in each
     end_price: EndPrice = FREE  # of tours
 
     @property
+    def foresight(self) -> Foresight | None:
+        """Of an old map in the only world there is; None: there are more, or it says nothing here."""
+        return self.worlds[0] if len(self.worlds) == 1 else None
+
+    @property
+    def trust(self) -> NDArray[np.float32]:
+        """Return ``(r, c K)`` with what probability what is foreseen in each world is right."""
+        return trust_in(self.worlds, self.unknown.shape)
+
+    @property
     def to_see(self) -> NDArray[np.uint16] | NDArray[np.float32]:
-        """Return ``(r, c)`` how many unknown cells there are to be seen in each planning cell, on average."""
-        return self.unknown if self.foresight is None else self.foresight.expected(self.unknown)
+        """Return ``(r, c K)`` how many unknown cells there are to be seen, a K-th of those of each world."""
+        return to_see(self.unknown, self.worlds)
 
     def planning_cells(self, local: NDArray[np.uint32]) -> NDArray[np.uint32]:
-        """Map the window's flat planning cells to those of the whole map."""
-        row, col = np.divmod(local, self.unknown.shape[1])
-        return ((row + self.first[0]) * self.planning.cols + col + self.first[1]).astype(np.uint32)
+        """Map flat planning cells of the window, each in each world, to those of the whole map."""
+        count = len(self.worlds)
+        row, col = np.divmod(local, self.unknown.shape[1] * count)
+        first = (row + self.first[0]) * (self.planning.cols * count) + self.first[1] * count
+        return (first + col).astype(np.uint32)
 
 
 def planning_factor(resolution: float) -> int:
@@ -93,6 +106,7 @@ def freeze(
     leave: Leave | None = None,
     priorities: Priorities = (),
     prior: PriorMap | None = None,
+    worlds: int = 1,
 ) -> MapBelief:
     """Snapshot a team map for a round.
 
@@ -115,6 +129,7 @@ def freeze(
         leave: where there is nothing to see and no way for want of it; None: everywhere is the team's.
         priorities: areas in which all is worth so many times as much.
         prior: an old map of the building; None: there is none.
+        worlds: what is unknown is taken as it may be, in so many ways.
     """
     factor = planning_factor(frame.resolution)
     planning = frame.coarse(factor)
@@ -127,21 +142,25 @@ def freeze(
         crop = leave.close(crop, window)
     cells, starts = find_frontiers(crop, *frontier_limits(extent, frame.resolution, shortest))
     unknown = block_sum(crop == UNKNOWN, factor)
-    foresight = None if prior is None else foresee(crop, window, factor, prior)
-    to_see = unknown if foresight is None else foresight.expected(unknown)
-    local = to_see.astype(np.float32) * LN2
     frontiers = cells, starts
+    first = (rows.start // factor, cols.start // factor)
+    if worlds == 1:
+        each: Worlds = (None if prior is None else foresee(crop, window, factor, prior),)
+    else:
+        each = imagine(crop, window, factor, first, frontiers, prior, worlds)
+    local = to_see(unknown, each).astype(np.float32) * LN2
     gathering = turn == math.inf or (
         turn > 0.0 and mean_promise(crop, frame.resolution, frontiers, counts, unknown, factor) < turn
     )
     areas = frontier_areas(window, cells, starts, hidden, return_price)
     areas += pull(window, crop, (cells, starts), priorities, factor)
     if gathering and areas.any():
-        local += LN2 / frame.resolution**2 * spread_behind(crop, cells, starts, areas, factor)
-    first = (rows.start // factor, cols.start // factor)
+        behind = LN2 / frame.resolution**2 * spread_behind(crop, cells, starts, areas, factor)
+        local += in_each(behind, worlds)
     if priorities:
-        local *= priority_factors(window.coarse(factor), priorities)
-    weights = CellWeights(local, first, planning.shape, _all_unknown(frame, factor))
+        local *= np.repeat(priority_factors(window.coarse(factor), priorities), worlds, axis=1)
+    shape = planning.rows, planning.cols * worlds
+    weights = CellWeights(local, (first[0], first[1] * worlds), shape, _all_unknown(frame, factor, worlds))
     return MapBelief(
         window,
         crop,
@@ -155,7 +174,7 @@ def freeze(
         layers if gathering else rate(),
         counts,
         gathering,
-        foresight,
+        each,
         end_price if gathering else FREE,
     )
 
@@ -187,10 +206,10 @@ def _paste(part: NDArray[np.uint8], onto: NDArray[np.uint8], corner: tuple[int, 
         onto[low[0] : high[0], low[1] : high[1]] = inside
 
 
-def _all_unknown(frame: GridFrame, factor: int) -> tuple[float, float, float, float]:
+def _all_unknown(frame: GridFrame, factor: int, worlds: int) -> tuple[float, float, float, float]:
     """Worth of a planning cell where nothing is known: inside the map, in its last column, last row, both."""
     rows, cols = (np.float32(min(factor, size - (size - 1) // factor * factor)) for size in frame.shape)
-    side, worth = np.float32(factor), np.float32(LN2)
+    side, worth = np.float32(factor), np.float32(LN2 / worlds)
     return (
         float(side * side * worth),
         float(side * cols * worth),

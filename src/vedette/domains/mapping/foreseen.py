@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.impact import quantise
-from vedette.domains.mapping.prior import Foresight, Shares
-from vedette.domains.mapping.stops import Ground, Stops, legs_between, shown_if_right, unknown_near
+from vedette.domains.mapping.prior import Shares
+from vedette.domains.mapping.stops import Ground, Stops, in_worlds, legs_between, unknown_near
 from vedette.kernels.coverage import Footprints
 from vedette.kernels.misses import STEPS_PER_NAT
 from vedette.maps import FREE, UNKNOWN
@@ -23,17 +23,19 @@ MOST_PLACES = 24  # ... and so many are taken at most
 LONG_TOUR = 12  # stops, where tours lead on into what is foreseen
 
 
-def supposed(belief: MapBelief, foresight: Foresight) -> MapBelief:
-    """Return a belief in which what an old map is trusted to say is free is known to be."""
+def supposed(belief: MapBelief) -> MapBelief:
+    """Return a belief in which is known what is free, and trusted to be, in at least half of the worlds."""
     rows, cols = belief.classes.shape
-    trusted = np.repeat(np.repeat(foresight.trust >= TRUSTED, belief.factor, 0), belief.factor, 1)
-    open_ = trusted[:rows, :cols] & (belief.classes == UNKNOWN) & (foresight.classes == UNKNOWN)
-    return replace(belief, classes=np.where(open_, np.uint8(FREE), belief.classes))
+    open_ = np.zeros(belief.classes.shape, np.int64)
+    for world in belief.worlds:
+        if world is not None:
+            trusted = np.repeat(np.repeat(world.trust >= TRUSTED, belief.factor, 0), belief.factor, 1)
+            open_ += trusted[:rows, :cols] & (world.classes == UNKNOWN)
+    free = (belief.classes == UNKNOWN) & (2 * open_ >= len(belief.worlds))
+    return replace(belief, classes=np.where(free, np.uint8(FREE), belief.classes))
 
 
-def with_foreseen(
-    belief: MapBelief, foresight: Foresight, ground: Ground, spec: PlatformSpec, stops: Stops
-) -> Stops:
+def with_foreseen(belief: MapBelief, ground: Ground, spec: PlatformSpec, stops: Stops) -> Stops:
     """Return the stops at frontiers, and after them those that are foreseen.
 
     Nobody can drive to a foreseen one yet: the way leads by the frontier stop that makes it shortest, and
@@ -41,16 +43,15 @@ def with_foreseen(
 
     Args:
         belief: of the round.
-        foresight: the belief's.
-        ground: where the robot could drive if the old map were right.
+        ground: where the robot could drive if it were as supposed.
         spec: the robot.
         stops: at frontiers.
     """
     places = _places(belief, ground)
     if not len(places):
         return stops
-    looks = shown_if_right(belief, foresight, spec, places, _away_from(ground, places, belief.frame.cols))
-    left = (belief.to_see * foresight.trust).ravel().astype(np.float64)
+    looks = in_worlds(belief, spec, places, _away_from(ground, places, belief.frame.cols))
+    left = (belief.to_see * belief.trust).ravel().astype(np.float64)
     shown, missed = _shown(belief, stops.footprints)
     left[shown] *= missed
     chosen = _cover(looks, left, WORTH_A_PLACE / belief.frame.resolution**2)
@@ -112,7 +113,7 @@ def _cover(looks: Shares, left: NDArray[np.float64], least: float) -> list[int]:
 
     Args:
         looks: what each shows.
-        left: (N,) what is to be seen of each planning cell of the window [cells]; less and less is.
+        left: (N,) what is to be seen of each planning cell in each world [cells]; less and less is.
         least: [cells].
     """
     starts, cells, shares = looks
@@ -129,11 +130,13 @@ def _cover(looks: Shares, left: NDArray[np.float64], least: float) -> list[int]:
 
 
 def _shown(belief: MapBelief, marks: Footprints) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Return the planning cells of the window that stops show, and how likely all of them miss each."""
+    """Return what of the window stops show, in each world, and how likely all of them miss it."""
     cells, where = np.unique(marks.cells, return_inverse=True)
     missed = np.exp(-np.bincount(where, marks.misses, len(cells)) / STEPS_PER_NAT)
-    row, col = np.divmod(cells.astype(np.int64), belief.planning.cols)
-    return (row - belief.first[0]) * belief.unknown.shape[1] + col - belief.first[1], missed
+    worlds = len(belief.worlds)
+    row, col = np.divmod(cells.astype(np.int64), belief.planning.cols * worlds)
+    wide = belief.unknown.shape[1] * worlds
+    return (row - belief.first[0]) * wide + col - belief.first[1] * worlds, missed
 
 
 def _cells_of(belief: MapBelief, places: NDArray[np.float64]) -> NDArray[np.int64]:

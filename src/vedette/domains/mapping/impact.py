@@ -67,6 +67,26 @@ def cells_missed(impact: Impact) -> tuple[NDArray[np.uint32], NDArray[np.float32
     return cell[first], np.where(total >= CERTAIN, 0.0, np.exp(-total / STEPS_PER_NAT)).astype(np.float32)
 
 
+def on_map(impact: Impact, worlds: int) -> Impact:
+    """Return an impact over planning cells in so many worlds as one over planning cells: its mean in them.
+
+    A cell that is seen in some of the worlds only is seen as likely as there are such; rounded to log-misses.
+    """
+    if worlds == 1 or not len(impact.keys):
+        return impact
+    keys, misses = impact.keys.astype(np.int64), impact.misses.astype(np.float64)
+    cell, layer = np.divmod(keys, LAYERS)
+    cells, owner = np.unique(cell // worlds, return_inverse=True)
+    added = np.zeros((len(cells), worlds, LAYERS))
+    added[owner, cell % worlds, layer] = misses
+    missed = np.exp(-np.minimum(np.cumsum(added, axis=2), CERTAIN) / STEPS_PER_NAT).mean(axis=1)
+    levels = np.rint(np.minimum(-np.log(missed) * STEPS_PER_NAT, CERTAIN))
+    steps = np.diff(levels, axis=1, prepend=0.0)
+    row, layer = np.nonzero(steps)
+    mean = (cells[row] * LAYERS + layer).astype(np.uint32), steps[row, layer].astype(np.uint8)
+    return Impact(*mean, impact.price)
+
+
 def moved(impact: Impact, planning: GridFrame, onto: GridFrame) -> Impact:
     """Return an impact over planning cells as one over those of another grid, without what lies outside."""
     if planning == onto:
@@ -80,8 +100,10 @@ def moved(impact: Impact, planning: GridFrame, onto: GridFrame) -> Impact:
     return Impact(keys, impact.misses[inside], impact.price)
 
 
-def promised(impact: Impact, edges: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Return the planning cells that are more likely seen than missed, and by when [s].
+def promised(
+    impact: Impact, edges: NDArray[np.float64], worlds: int = 1
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Return the planning cells that are more likely seen than missed in all worlds, and by when [s].
 
     That is by the end of the first layer by which it is so, ``edges`` (LAYERS,).
     """
@@ -92,7 +114,11 @@ def promised(impact: Impact, edges: NDArray[np.float64]) -> tuple[NDArray[np.int
     likely = sums - before >= _EVEN_ODDS
     cells, layers = cells[likely], layers[likely]
     soonest = _first_of_each(cells)
-    return cells[soonest], edges[layers[soonest]]
+    cells, layers = cells[soonest] // worlds, layers[soonest]
+    first = np.flatnonzero(_first_of_each(cells))
+    in_all = np.diff(np.append(first, len(cells))) == worlds
+    last = np.maximum.reduceat(layers, first) if len(first) else layers
+    return cells[first[in_all]], edges[last[in_all]]
 
 
 def _first_of_each(cells: NDArray[np.int64] | NDArray[np.uint32]) -> NDArray[np.bool_]:
@@ -116,7 +142,13 @@ def less_likely(looks: SparseMisses, halvings: int) -> tuple[Keys, Misses]:
 
 
 def check_claim(
-    impact: SparseMisses, robots: int, most: Most, stops: int, side: float, edges: NDArray[np.float64]
+    impact: SparseMisses,
+    robots: int,
+    most: Most,
+    stops: int,
+    side: float,
+    edges: NDArray[np.float64],
+    worlds: int = 1,
 ) -> None:
     """Raise ``ValueError`` for what so many robots cannot see, wherever they are and whatever the map.
 
@@ -130,9 +162,10 @@ def check_claim(
         stops: in a tour, at most.
         side: of a planning cell [m].
         edges: (LAYERS,) upper edge of each layer [s]; the last takes all later arrivals.
+        worlds: in each of which a cell is one.
     """
-    discs = stops * most_cells_swept(most.range, 0.0, side)
-    seen = np.minimum(most_cells_swept(most.range, most.speed * edges, side), discs)
+    discs = worlds * stops * most_cells_swept(most.range, 0.0, side)
+    seen = np.minimum(worlds * most_cells_swept(most.range, most.speed * edges, side), discs)
     seen[-1] = discs
     if len(impact.keys) > robots * seen.min():  # else there are not as many cells as are allowed by any edge
         claimed = _cells_claimed(impact)

@@ -27,6 +27,8 @@ from vedette.team import PlatformSpec
 
 HIDDEN_AREA = 0.5  # expected behind a frontier [m^2]
 RETURN_PRICE = 0.3  # more for a frontier that somebody will have to come back for [m^2 a metre]
+WORLDS = 3  # of a planner that predicts; what it sends and works out grows with them
+MOST_WORLDS = 8
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,7 @@ class Planner:
     hidden: float = 0.0  # area expected behind a frontier [m^2]
     return_price: float = 0.0  # more for a frontier far from others [m^2 a metre]
     end_price: EndPrice = FREE  # of tours
+    worlds: int = 1  # ways at once in which what is unknown may be, by what the building showed
     turn: float = math.inf  # prices and tours count once frontiers promise less than this [m^2]; 0: never
     alone: str | None = None  # the planner of a team of one; None: the same
     scheme: str | None = None  # the negotiation that is part of the planner; None: any
@@ -53,6 +56,7 @@ def _tours(
     alone: str | None = None,
     kind: type[MappingPlatform] = MappingPlatform,
     scheme: str | None = None,
+    worlds: int = 1,
 ) -> Planner:
     """Return a planner that makes tours once frontiers promise less than ``turn``, until then as ``rate``."""
     return Planner(
@@ -61,6 +65,7 @@ def _tours(
         lambda spec: kind(spec, max_stops=6, measured="unknown", foresees=True),
         hidden=HIDDEN_AREA,
         return_price=return_price,
+        worlds=worlds,
         turn=turn,
         alone=alone,
         scheme=scheme,
@@ -75,6 +80,9 @@ def _single(spec: PlatformSpec) -> MappingPlatform:
 PLANNERS = {
     "tours": _tours(
         "tours of frontiers with arrival times, negotiated; alone, a route (default)", alone="makespan"
+    ),
+    "predicted": _tours(
+        "as tours, by what may lie behind frontiers, as this building showed", alone="makespan", worlds=WORLDS
     ),
     "information": _tours("information first; then tours of what was left behind", turn=1.4),
     "completion": _tours("completion first: tours, dearer to come back to what is left", return_price=2.0),
@@ -144,6 +152,8 @@ def _wrong(part: Any) -> str | None:
         value = getattr(part, name)
         if not (is_number(value) and value >= 0.0) and not (name == "turn" and value == math.inf):
             return f"has {brief(value)} as {name}, not a number >= 0"
+    if not (is_whole(part.worlds) and 1 <= part.worlds <= MOST_WORLDS):
+        return f"has {brief(part.worlds)} as worlds, not a whole number from 1 to {MOST_WORLDS}"
     if part.most_robots is not None and not (is_whole(part.most_robots) and part.most_robots > 0):
         return f"has {brief(part.most_robots)} as most_robots, not a whole number > 0 or None"
     return None

@@ -117,7 +117,7 @@ class MappingPlatform:
     max_stops: int = 6
     measured: str = "unknown"  # sighting model: "unknown" length or "distance" (the paper's), or "beam"
     stall: float = 0.0  # how often it gets stuck for good [1/m]
-    foresees: bool = False  # tours may lead on into what an old map says
+    foresees: bool = False  # tours may lead on into what is foreseen
     x: float = 0.0
     y: float = 0.0
     obstacles: list[Disc] = field(default_factory=list)
@@ -194,13 +194,12 @@ class MappingPlatform:
         self.patience *= 2 if self.cut_short and not self.daring else 1
 
     def _foresee(self, belief: MapBelief) -> None:
-        """Let tours lead on to places that nobody has seen yet, where an old map is trusted."""
-        if not self.foresees or belief.foresight is None or self.ahead == 1 or self.budget.limited:
+        """Let tours lead on to places that nobody has seen yet, where they are trusted to be."""
+        if not self.foresees or not any(belief.worlds) or self.ahead == 1 or self.budget.limited:
             return
         assert self.stops is not None
-        trusting = supposed(belief, belief.foresight)
-        ground = survey(trusting, self.spec, self.x, self.y, self.obstacles, CLEARANCES[0])
-        self.stops = with_foreseen(belief, belief.foresight, ground, self.spec, self.stops)
+        ground = survey(supposed(belief), self.spec, self.x, self.y, self.obstacles, CLEARANCES[0])
+        self.stops = with_foreseen(belief, ground, self.spec, self.stops)
         self.ahead = LONG_TOUR
 
     def _finds_anything(self, belief: MapBelief, model: SightingModel) -> bool:

@@ -103,6 +103,20 @@ def foresee(classes: NDArray[np.uint8], frame: GridFrame, factor: int, prior: Pr
         prior: the old map.
     """
     said = laid(prior.classes, prior.frame, frame)
+    return as_told(classes, said, trust(classes, said, frame.resolution), factor)
+
+
+def as_told(
+    classes: NDArray[np.uint8], said: NDArray[np.uint8], believed: Any, factor: int
+) -> Foresight | None:
+    """Return what follows for the unknown from what is said of it; None if nothing is.
+
+    Args:
+        classes: (R, C) the team map in the window.
+        said: (R, C) FREE or OCCUPIED, UNKNOWN where nothing is said.
+        believed: (R, C), or for all of it, with what probability that is right.
+        factor: side of a planning cell [cells].
+    """
     unseen = classes == UNKNOWN
     told = unseen & (said != UNKNOWN)
     if not told.any():
@@ -110,9 +124,8 @@ def foresee(classes: NDArray[np.uint8], frame: GridFrame, factor: int, prior: Pr
     parts = components((classes == FREE) | (unseen & (said == FREE)))
     reached = np.isin(parts, np.unique(parts[classes == FREE])) & (parts >= 0)
     right = np.where(told & ~reached, np.uint8(OCCUPIED), classes)
-    believed = np.where(told, trust(classes, said, frame.resolution), 0.0)
     unknown = block_sum(unseen, factor)
-    share = block_sum(believed, factor) / np.maximum(unknown, 1)
+    share = block_sum(np.where(told, believed, 0.0), factor) / np.maximum(unknown, 1)
     seeable = block_sum(right == UNKNOWN, factor)
     return Foresight(right, seeable.astype(np.uint16), share.astype(np.float32))
 

@@ -15,6 +15,7 @@ from vedette.domains.mapping.impact import MIN_SHARE, quantise
 from vedette.domains.mapping.looks import LooksTaken
 from vedette.domains.mapping.prior import Foresight, Shares
 from vedette.domains.mapping.sightings import SightingModel
+from vedette.domains.mapping.worlds import over_worlds
 from vedette.kernels import coverage, distance, frontier
 from vedette.kernels.coverage import Footprints, Viewpoints
 from vedette.maps import FREE, UNKNOWN, GridFrame
@@ -26,6 +27,7 @@ LEAST_SHARE = 0.0008  # of the area known to be free that a stop must promise ..
 ENOUGH = 0.35  # ... but no more than this [m^2]
 NEARBY = 0.6  # along either axis from a frontier's middle, a cell is near it [m]
 LEAST_OF_SIGHT = 0.05  # of the area that one scan can see at most: enough for any stop
+PROMISED = 0.08  # an area that an old map promises is worth a stop [m^2]
 GAP = 2.0  # a gap that the body does not fit through must promise so many times as much
 LEFT_ALONE = 0.5  # what holds for a place holds for frontiers this near it [m] ...
 LEFT_ALONE_AT_LAST = 0.25  # ... or this near, for a robot with nothing else left: a visit opens others [m]
@@ -143,9 +145,9 @@ def find_stops(
     area = _by_look(seen, starts)
     lengths = np.diff(belief.frontier_starts)[found.clusters] * frame.resolution
     least = _least(belief, lengths <= 2.0 * spec.radius + 1e-9, least_area)
-    if (foresight := belief.foresight) is not None:  # what an old map promises is there
-        sure = _by_look(seen * foresight.trust.ravel()[cells], starts) / np.maximum(area, 1e-6)
-        least = sure * least_area + (1.0 - sure) * least
+    if belief.foresight is not None:  # what an old map promises is there
+        sure = _by_look(seen * belief.trust.ravel()[cells], starts) / np.maximum(area, 1e-6)
+        least = sure * np.minimum(max(PROMISED, least_area), least) + (1.0 - sure) * least
     asked = np.maximum(np.minimum(least, enough_of_sight(spec)), dare if ground.dared else 0.0)
     enough = area * frame.resolution**2 >= asked
     starts, cells, shares = _select(starts, cells, shares, enough)
@@ -193,26 +195,35 @@ def _to_be_seen(
     targets: NDArray[np.int64],
     views: NDArray[np.int64],
 ) -> Shares:
-    """Return what looks from the views are expected to reveal, the mean over whether an old map is right."""
+    """Return what looks from the views are expected to reveal in each world."""
     cols = belief.frame.cols
     toward = np.arctan2(targets // cols - views // cols, targets % cols - views % cols)
     sharp = _footprints(belief, belief.classes, spec, model, views, toward)
     plain = blurred(sharp, belief.unknown, spec.pose_std / belief.planning.resolution)
-    if (foresight := belief.foresight) is None:
-        return plain
-    return foresight.mean(plain, _if_right(belief, foresight, spec, views, toward), belief.unknown)
+    return in_worlds(belief, spec, views, toward, plain)
 
 
-def shown_if_right(
+def in_worlds(
     belief: MapBelief,
-    foresight: Foresight,
     spec: PlatformSpec,
     views: NDArray[np.int64],
     toward: NDArray[np.float64],
+    plain: Shares | None = None,
 ) -> Shares:
-    """Return what looks are expected to reveal from where nobody gets unless an old map is right."""
-    nothing = np.zeros(len(views) + 1, np.int64), np.empty(0, np.uint32), np.empty(0, np.float32)
-    return foresight.mean(nothing, _if_right(belief, foresight, spec, views, toward), belief.unknown)
+    """Return what looks reveal in each world, the mean over whether what is foreseen in it is right.
+
+    ``plain``: what they do of what is not foreseen; None: nobody gets there then, so nothing.
+    """
+    if plain is None:
+        plain = np.zeros(len(views) + 1, np.int64), np.empty(0, np.uint32), np.empty(0, np.float32)
+    return over_worlds(
+        [
+            plain
+            if foresight is None
+            else foresight.mean(plain, _if_right(belief, foresight, spec, views, toward), belief.unknown)
+            for foresight in belief.worlds
+        ]
+    )
 
 
 def _if_right(
@@ -245,8 +256,7 @@ def _footprints(
             model.table, model.by_distance, rays, belief.factor, MIN_SHARE,
         )  # fmt: skip
 
-    if_right = classes is not belief.classes
-    lidar = if_right, reach, view, model.table.tobytes(), model.by_distance, rays
+    lidar = id(classes), reach, view, model.table.tobytes(), model.by_distance, rays
     looks = list(zip(views.tolist(), toward.tolist(), strict=True))
     seen = LooksTaken.at(belief).reveal(lidar, looks, work_out)
     sensor = CheckedSensor.of(spec)

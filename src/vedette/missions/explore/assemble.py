@@ -46,6 +46,7 @@ def terms_of(lattice: Lattice, options: ExploreOptions, prior: PriorMap | None =
         **dict(flat("map", lattice.frame)),
         **({} if lattice.area is None else dict(flat("area", lattice.area))),
         **({} if prior is None else {"prior": f"{prior.identity:016x}"}),
+        **({} if how.worlds == 1 else {"worlds": f"{how.worlds}"}),
         "planning cell": f"{resolution * planning_factor(resolution):g}",
         **{f"objective.{name}": f"{value:g}" for name, value in objective.items()},
         "scheme": options.negotiates_by,
@@ -102,8 +103,9 @@ def assemble(
     relay = Relay(nearby(most.range, most.speed) if places else inf)
     forks = how.negotiates and how.scheme is None  # where the order of turns is no part of the planner
     agent = Agent(robot, boot, spec, behaviour, options.negotiates_by, forks=forks, relay=relay)
-    if prior is not None:
-        agent.rounds.mandate = lambda: agent.orders.digest ^ prior.identity
+    if prior is not None or how.worlds > 1:
+        said = (0 if prior is None else prior.identity) ^ (how.worlds - 1)
+        agent.rounds.mandate = lambda: agent.orders.digest ^ said
     return agent
 
 

@@ -22,7 +22,7 @@ from vedette.domains.mapping.belief import (
 )
 from vedette.domains.mapping.budget import needed
 from vedette.domains.mapping.frozen import Frozen
-from vedette.domains.mapping.impact import Impact, MapImpactCodec, check_claim, discounted, promised
+from vedette.domains.mapping.impact import Impact, MapImpactCodec, check_claim, discounted, on_map, promised
 from vedette.domains.mapping.leftovers import Leftover, given_up, leftovers
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.planners import Planner
@@ -89,7 +89,7 @@ class Exploring:
     _at_work: bool = True  # as of the last round; a robot that is kept from work ends nothing
 
     def __post_init__(self) -> None:
-        self.codec = MapImpactCodec(self.frame.coarse(planning_factor(self.frame.resolution)).size)
+        self.codec = MapImpactCodec(self.planning.size * self.planner.worlds)
         self.platform = self.planner.platform(self.spec)
         self.own = OwnEvidence(self.lattice, self.spec)
         self._looking = Looking(self.spec, self.frame.resolution)
@@ -104,6 +104,11 @@ class Exploring:
     def frame(self) -> GridFrame:
         """Where the cells lie that there can be."""
         return self.lattice.frame
+
+    @property
+    def planning(self) -> GridFrame:
+        """Where the planning cells lie."""
+        return self.frame.coarse(planning_factor(self.frame.resolution))
 
     @property
     def signed(self) -> SignedEvidence | None:
@@ -195,7 +200,7 @@ class Exploring:
         classes = shown.classes.window(*known)
         counts = self._sightings(shown)
         about: dict[str, Any] = {
-            "reach": max(self.spec.range, NEARBY + self.frame.resolution),
+            "reach": max(self._range, NEARBY + self.frame.resolution),
             "extent": longest_frontier(self.spec.range),
             "shortest": shortest_frontier(self.spec.radius),
             "hidden": self.planner.hidden,
@@ -207,12 +212,19 @@ class Exploring:
             "leave": self._leave or None,
             "priorities": self._priorities,
             "prior": self.prior,
+            "worlds": self.planner.worlds,
         }
         return Frozen.once(
             (classes, counts),
             (self.frame, *about.values()),
             lambda: freeze(classes, self.frame, counts=counts, **about),
         )
+
+    @property
+    def _range(self) -> float:
+        """How far it sees [m]; where worlds are imagined all need one window: how far anybody does."""
+        alone = self.most is None or self.planner.worlds == 1
+        return self.spec.range if alone else max(self.spec.range, self.most.range)
 
     def _sightings(self, shown: ShownMap) -> NDArray[np.int64]:
         """``(4, BINS)`` the team's sightings; where they are signed nobody's outweigh all others'."""
@@ -284,11 +296,16 @@ class Exploring:
         belief.end_price.check(impact, robots, belief.layers.edges)
         if self.most is not None:
             side, edges = belief.planning.resolution, belief.layers.edges
-            check_claim(impact, robots, self.most, MOST_STOPS, side, edges)  # a tour has no stop twice
+            stops = MOST_STOPS  # a tour has no stop twice
+            check_claim(impact, robots, self.most, stops, side, edges, self.planner.worlds)
 
     def promised(self, belief: MapBelief, impact: Impact) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         """Return the planning cells that are more likely seen than not, and after how long each [s]."""
-        return promised(impact, belief.layers.edges)
+        return promised(impact, belief.layers.edges, len(belief.worlds))
+
+    def on_map(self, impact: Impact) -> Impact:
+        """Return an impact as one over planning cells, to be shown."""
+        return on_map(impact, self.planner.worlds)
 
     def unseen(self, belief: MapBelief, cells: NDArray[np.int64]) -> NDArray[np.bool_]:
         """Tell of which planning cells at least half is unknown."""

@@ -36,6 +36,9 @@ class ExploreOptions(Struct, forbid_unknown_fields=True, frozen=True):
                 f"frames unknown: fusion {self.fusion} cannot move what it has added up into another frame; "
                 "leave it out"
             )
+        if planner(self.planner).worlds > 1:
+            what = f"planner {self.planner} predicts on a map that all have in one frame"
+            raise InputError(f"frames unknown: {what}; choose another")
         if not planner(self.planner).negotiates:
             raise InputError(f"frames unknown: planner {self.planner} does not negotiate; choose another")
         if self.prior is not None:

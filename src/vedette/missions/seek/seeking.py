@@ -22,7 +22,7 @@ from vedette.domains.search.evidence import LEVELS_PER_NAT
 from vedette.domains.search.objective import SearchObjective
 from vedette.kernels.coverage import LAYERS
 from vedette.kernels.misses import MissesCodec, SparseMisses
-from vedette.maps import FREE, GridFrame
+from vedette.maps import FREE
 from vedette.missions.explore.exploring import Exploring
 from vedette.missions.seek.looks import Looker, entropy_of, levels, room_for_somebody, search_belief
 from vedette.missions.seek.options import SeekOptions
@@ -52,17 +52,13 @@ class Seeking(Exploring):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        size = self._planning.size
+        size = self.planning.size
         self._looked = np.zeros(size, np.int64)
         worth = self.seek.worth * entropy_of(self.frame)
         self.objective = WeightedSum((MappingObjective(), SearchObjective()), (1.0, worth))
         self.codec = PartsCodec((MapImpactCodec(size), MissesCodec(size, LAYERS)))
         platform = self._seeker
         platform.seek, platform.worth = self.seek, worth
-
-    @property
-    def _planning(self) -> GridFrame:
-        return self.frame.coarse(planning_factor(self.frame.resolution))
 
     @property
     def _seeker(self) -> SeekingPlatform:
@@ -96,7 +92,7 @@ class Seeking(Exploring):
             return
         seen = looker.seen(row * looker.classes.shape[1] + col)
         tops, lefts = np.divmod(seen, -(-looker.classes.shape[1] // factor))
-        cells = (tops + rows.start // factor) * self._planning.cols + lefts + cols.start // factor
+        cells = (tops + rows.start // factor) * self.planning.cols + lefts + cols.start // factor
         self._looked[cells] += levels(self.seek.detection)
 
     def _own_counts(self) -> NDArray[np.int64]:

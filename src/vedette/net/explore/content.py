@@ -133,7 +133,8 @@ class ExploreTeller:
     def content(self, now: float) -> bytes:
         """Return its map."""
         mission, decided = self._mission, self.agent.rounds.impact
-        impact = None if decided is None else mission.codec.encode(decided)
+        shown = MapImpactCodec(mission.planning.size)
+        impact = None if decided is None else shown.encode(mission.on_map(decided))
         spots = tuple(Spot(each.x, each.y, each.unknown, each.why) for each in mission.left_out)
         grids = held(mission.fusion.classes, mission.own.log_odds, mission.known)
         tour = tuple(StopAhead(*stop) for stop in mission.ahead(now))

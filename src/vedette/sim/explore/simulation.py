@@ -117,7 +117,7 @@ class ExploreSimulation(Simulation):
     def promised(self, robot: int) -> Impact | None:
         """Return what a robot's strategy is to show of the map; None: it has none."""
         impact: Impact | None = self.network.agents[robot].rounds.impact
-        return impact
+        return None if impact is None else self.missions[robot].on_map(impact)
 
     @property
     def missions(self) -> list[Exploring]:
