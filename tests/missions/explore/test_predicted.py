@@ -1,4 +1,4 @@
-"""Missions by what may lie behind frontiers: equal maps, equal worlds, and the building gets known all the same."""
+"""Missions by what may lie behind frontiers: equal maps, equal worlds, and the whole building gets known."""
 
 from __future__ import annotations
 

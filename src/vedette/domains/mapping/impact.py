@@ -115,10 +115,10 @@ def promised(
     cells, layers = cells[likely], layers[likely]
     soonest = _first_of_each(cells)
     cells, layers = cells[soonest] // worlds, layers[soonest]
-    first = np.flatnonzero(_first_of_each(cells))
-    in_all = np.diff(np.append(first, len(cells))) == worlds
-    last = np.maximum.reduceat(layers, first) if len(first) else layers
-    return cells[first[in_all]], edges[last[in_all]]
+    bounds = np.flatnonzero(_first_of_each(cells))
+    in_all = np.diff(np.append(bounds, len(cells))) == worlds
+    last = np.maximum.reduceat(layers, bounds) if len(bounds) else layers
+    return cells[bounds[in_all]], edges[last[in_all]]
 
 
 def _first_of_each(cells: NDArray[np.int64] | NDArray[np.uint32]) -> NDArray[np.bool_]:

@@ -52,7 +52,7 @@ def imagine(
 def to_see(unknown: NDArray[np.uint16], worlds: Worlds) -> NDArray[np.uint16] | NDArray[np.float32]:
     """Return ``(r, c K)`` how many of ``(r, c)`` unknown cells there are to be seen, over K, by worlds."""
     each = [unknown if world is None else world.expected(unknown) for world in worlds]
-    return each[0] if len(each) == 1 else interleaved(each) / np.float32(len(each))
+    return each[0] if len(each) == 1 else (interleaved(each) / len(each)).astype(np.float32)
 
 
 def trust_in(worlds: Worlds, shape: tuple[int, int]) -> NDArray[np.float32]:

@@ -223,8 +223,9 @@ class Exploring:
     @property
     def _range(self) -> float:
         """How far it sees [m]; where worlds are imagined all need one window: how far anybody does."""
-        alone = self.most is None or self.planner.worlds == 1
-        return self.spec.range if alone else max(self.spec.range, self.most.range)
+        if self.most is None or self.planner.worlds == 1:
+            return self.spec.range
+        return max(self.spec.range, self.most.range)
 
     def _sightings(self, shown: ShownMap) -> NDArray[np.int64]:
         """``(4, BINS)`` the team's sightings; where they are signed nobody's outweigh all others'."""
