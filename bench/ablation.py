@@ -11,11 +11,16 @@ import click
 from rich.console import Console
 
 from bench import RESULTS, command, machine
+from bench.steps.late import LatePlatform
+from bench.steps.regions import RegionPlatform
+from bench.steps.sure import SurePlatform
+from bench.steps.way import WayPlatform
 from bench.table import figure, markdown
 from vedette.domains.mapping import layers, planners
 from vedette.domains.mapping.baselines.greedy import GreedyPlatform
 from vedette.domains.mapping.planners import Planner
 from vedette.domains.mapping.platform import MappingPlatform
+from vedette.domains.mapping.price import FREE
 from vedette.record.files import write_text
 from vedette.sim.explore.simulation import ExploreSetup
 from vedette.study.compare import difference, mean
@@ -43,6 +48,9 @@ def variants() -> Mapping[str, Planner]:
     def with_platform(kind: type[MappingPlatform], stops: int, measured: str) -> Planner:
         return replace(whole, platform=lambda spec: kind(spec, max_stops=stops, measured=measured))
 
+    def with_kind(kind: type[MappingPlatform]) -> Planner:
+        return with_platform(kind, 6, "unknown")
+
     return {
         "rate until 0.7 m2": replace(whole, turn=0.7),
         "rate until 1.4 m2": replace(whole, turn=1.4),
@@ -56,6 +64,12 @@ def variants() -> Mapping[str, Planner]:
         "no time layers": replace(whole, layers=layers.plain()),
         "one pass from nothing": replace(with_platform(GreedyPlatform, 6, "unknown"), scheme="token"),
         "all replying at once": replace(whole, scheme="jacobi"),
+        "late frontiers at once": with_kind(LatePlatform),
+        "a certain bonus a frontier": with_kind(SurePlatform),
+        "seen on the way": with_kind(WayPlatform),
+        "regions": with_kind(RegionPlatform),
+        "long tours, no price": replace(planners.PLANNERS["long"], alone=None, end_price=FREE),
+        "long tours, a price on their end": replace(planners.PLANNERS["long"], alone=None),
         "sightings by distance": with_platform(MappingPlatform, 6, "distance"),
         "sightings by the beam model": with_platform(MappingPlatform, 6, "beam"),
     }
@@ -104,15 +118,20 @@ def _ratio(interval: Interval) -> str:
     "--seeds", type=command.WholeNumbers(0), default="100-103", show_default=True, help="Of the worlds."
 )
 @click.option("--robots", type=click.IntRange(1, 64), default=3, show_default=True, help="In every team.")
+@click.option(
+    "--only", default="", help="Exchange only the parts whose names hold one of these, with commas."
+)
 @click.option("--jobs", type=click.IntRange(min=1), default=2, show_default=True, help="Processes.")
 @click.option("--out", type=Path, default=RESULTS / "ablation", metavar="DIR", help="Folder for the results.")
-def ablation(seeds: tuple[int, ...], robots: int, jobs: int, out: Path) -> None:
+def ablation(seeds: tuple[int, ...], robots: int, only: str, jobs: int, out: Path) -> None:
     """Exchange the parts of the planner one at a time and print what each is worth.
 
     Missions that this code has carried out before are not carried out again.
     Exit status 0 if all missions ran, 1 if one broke or was interrupted.
     """
-    runs = cases(seeds, robots, (WHOLE, *variants()))
+    planners.PLANNERS.update(variants())
+    names = [name for name in variants() if any(part.strip() in name for part in only.split(","))]
+    runs = cases(seeds, robots, (WHOLE, *names))
     store = Store.open(out, fingerprint() + Path(__file__).read_text(encoding="utf-8"))
     done = conduct(runs, store, Workers(jobs, work=carry_out_variant), Console())
     if not done.missing:

@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 
 use footprint::{footprints, Sensor};
 use impact::{combine, marginal, miss_table};
-use tours::{best_tour, most_any_tour_adds, number_cells, Stops};
+use tours::{best_tour, most_any_tour_adds, number_cells, EndPrice, Stops};
 use viewpoints::{viewpoints, Ground};
 use worth::Worth;
 
@@ -162,7 +162,8 @@ fn py_best_tour<'py>(
     legs: PyReadonlyArray2<'py, f32>,
     current: PyReadonlyArray1<'py, i64>,
     max_stops: usize,
-    stickiness: f64,
+    turning: (f64, f64),
+    end_price: (f64, f64),
 ) -> PyResult<PyReply<'py>> {
     let stops = Stops {
         starts: starts.as_slice()?,
@@ -175,7 +176,9 @@ fn py_best_tour<'py>(
     };
     let (worth, layer_weights) = (worth_of(&worth)?, layer_weights.as_slice()?);
     let (others, current) = ((others_keys.as_slice()?, others_misses.as_slice()?), current.as_slice()?);
-    let reply = py.detach(|| best_tour(stops, &worth, layer_weights, others, current, max_stops, stickiness));
+    let price = EndPrice { linear: end_price.0, quadratic: end_price.1 };
+    let reply =
+        py.detach(|| best_tour(stops, &worth, layer_weights, others, current, max_stops, turning, price));
     Ok((reply.tour.into_pyarray(py), reply.gain, reply.current_gain))
 }
 

@@ -161,7 +161,8 @@ def best_tour(
     legs: NDArray[np.float32],
     current: NDArray[np.int64],
     max_stops: int,
-    stickiness: float,
+    turning: tuple[float, float],
+    end_price: tuple[float, float],
 ) -> tuple[NDArray[np.int64], float, float]: ...
 def most_any_tour_adds(
     worth: _Worth,

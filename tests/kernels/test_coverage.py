@@ -24,6 +24,7 @@ from vedette.maps import FREE, OCCUPIED, UNKNOWN
 seeds = st.integers(0, 2**32 - 1)
 CELLS = 30
 ENDLESS = 2**63
+END_PRICES = [(0.0, 0.0), (0.02, 0.0), (0.5, 0.001), (0.0, 0.05)]
 
 
 def random_map(rng: np.random.Generator) -> NDArray[np.uint8]:
@@ -296,6 +297,27 @@ def test_greedy_insertion_at_exact_prices_seldom_beats_best_tour_and_on_average_
     assert sum(ratio > 1.001 for ratio in ratios) <= 4
 
 
+@settings(deadline=None, max_examples=100)
+@given(seeds, st.integers(1, 4), st.sampled_from(END_PRICES))
+def test_a_priced_tour_is_worth_what_it_shows_less_its_price_and_no_single_stop_is_worth_more(
+    seed: int, max_stops: int, end_price: tuple[float, float]
+) -> None:
+    rng = np.random.default_rng(seed)
+    problem = dataclasses.replace(random_problem(rng, 6), end_price=end_price)
+    reached = np.flatnonzero(np.isfinite(problem.first_leg)).tolist()
+    stay = max((float(problem.first_leg[stop]) for stop in reached), default=0.0)
+
+    def net(tour: list[int]) -> float:
+        end = float(reference.arrivals(problem, tour)[-1]) if tour else stay
+        return reference.tour_gain(problem, tour) - end * (end_price[0] + end_price[1] * end / 2.0)
+
+    tour, gain, _ = reply(problem, [], max_stops)
+    assert gain == pytest.approx(net(tour), rel=1e-4, abs=1e-3)
+    showing = [stop for stop in reached if reference.tour_gain(problem, [stop]) > 1e-3]
+    assert bool(tour) or not showing  # staying never beats a tour that shows something
+    assert gain >= max([net([stop]) for stop in showing], default=-np.inf) - 1e-3 * (1.0 + abs(gain))
+
+
 def test_stops_that_cannot_be_reached_are_never_in_a_tour() -> None:
     for seed in range(40):
         problem = random_problem(np.random.default_rng(seed), 8)
@@ -362,9 +384,15 @@ def test_a_frontier_whose_middle_nobody_can_see_is_seen_by_another_of_its_cells(
 
 
 @settings(deadline=None, max_examples=150)
-@given(seeds, st.integers(1, 6), st.booleans(), st.sampled_from([0.0, 0.1]))
+@given(
+    seeds,
+    st.integers(1, 6),
+    st.booleans(),
+    st.sampled_from([(0.0, 0.0), (0.1, 0.0), (0.0, 0.5)]),
+    st.sampled_from(END_PRICES),
+)
 def test_best_tour_prices_stops_only_where_they_can_matter_and_finds_what_pricing_all_finds(
-    seed: int, max_stops: int, alike: bool, stickiness: float
+    seed: int, max_stops: int, alike: bool, turning: tuple[float, float], end_price: tuple[float, float]
 ) -> None:
     rng = np.random.default_rng(seed)
     problem = random_problem(rng, 8)
@@ -375,6 +403,7 @@ def test_best_tour_prices_stops_only_where_they_can_matter_and_finds_what_pricin
         near = np.where(np.isfinite(problem.first_leg), 2, np.inf).astype(np.float32)
         legs = np.where(np.isfinite(problem.legs), 4, np.inf).astype(np.float32)
         problem = dataclasses.replace(problem, weights=whole, footprints=marks, first_leg=near, legs=legs)
+    problem = dataclasses.replace(problem, end_price=end_price)
     current = random_tour(problem, rng, max_stops)
-    tour, gain, present = coverage.best_tour(problem, np.array(current, np.int64), max_stops, stickiness)
-    assert (tour.tolist(), gain, present) == EagerTours(problem, max_stops).best(current, stickiness)
+    tour, gain, present = coverage.best_tour(problem, np.array(current, np.int64), max_stops, *turning)
+    assert (tour.tolist(), gain, present) == EagerTours(problem, max_stops).best(current, *turning)

@@ -82,8 +82,26 @@ struct Tours<'a> {
     sums: Vec<f32>,                // (row of `discounts`) scratch: zeros
     rows: Vec<u32>,                // scratch: rows in use
     max_stops: usize,
+    price: EndPrice,
+    stay: f32,     // when a tour without stops ends, for its price [s]
     held: usize,   // stops at the head of a tour that a search leaves where they are
     budget: usize, // shared footprint entries that a search may still visit to improve a tour
+}
+
+/// What the end of a tour costs: `linear t + quadratic t^2 / 2`; one that ends after an hour costs no more.
+#[derive(Clone, Copy)]
+pub struct EndPrice {
+    pub linear: f64,    // a second
+    pub quadratic: f64, // a second^2
+}
+
+impl EndPrice {
+    pub const FREE: Self = Self { linear: 0.0, quadratic: 0.0 };
+
+    fn of(self, end: f32) -> f64 {
+        let t = f64::from(end).min(3600.0);
+        (self.linear + 0.5 * self.quadratic * t) * t
+    }
 }
 
 /// Bounds the time of a reply where footprints are vast; in an office it is never used up.
@@ -98,6 +116,7 @@ impl<'a> Tours<'a> {
         layer_weights: &[f64],
         others: (&[u32], &[u8]),
         max_stops: usize,
+        price: EndPrice,
     ) -> Self {
         let miss = miss_table();
         let weight: Vec<f32> = stops.cells.iter().map(|&cell| worth.of(cell)).collect();
@@ -128,7 +147,24 @@ impl<'a> Tours<'a> {
         }
         let seen = miss.map(|miss| (1.0 - miss) as f32);
         let (left, sums, rows) = (weight.clone(), vec![0.0; discounts.len()], Vec::new());
-        Tours { stops, seen, weight, left, discount, discounts, sums, rows, max_stops, held: 0, budget: 0 }
+        let reached = stops.first_leg.iter().copied().filter(|leg| leg.is_finite());
+        let stay = reached.fold(0.0, larger);
+        let (held, budget) = (0, 0);
+        Tours {
+            stops,
+            seen,
+            weight,
+            left,
+            discount,
+            discounts,
+            sums,
+            rows,
+            max_stops,
+            price,
+            stay,
+            held,
+            budget,
+        }
     }
 
     fn entries(&self, stop: usize) -> std::ops::Range<usize> {
@@ -199,7 +235,8 @@ impl<'a> Tours<'a> {
         }
     }
 
-    /// The exact marginal value of a tour against the rest of the team, and when it ends [s].
+    /// The exact marginal value of a tour against the rest of the team, and when it ends [s], for its price: to stay
+    /// costs what the farthest stop does.
     fn value(&mut self, tour: &[usize]) -> (f64, f32) {
         let (mut value, mut now, mut from) = (0.0_f64, 0.0_f32, None);
         for &stop in tour {
@@ -220,12 +257,18 @@ impl<'a> Tours<'a> {
             from = Some(stop);
         }
         self.forget(tour);
-        (value, now)
+        (value, if tour.is_empty() { self.stay } else { now })
     }
 
     fn score(&mut self, tour: &[usize]) -> f64 {
         let (value, end) = self.value(tour);
-        score(value, end)
+        score(value, end) - self.price.of(end)
+    }
+
+    /// The exact marginal value of a tour, less its price.
+    fn net(&mut self, tour: &[usize]) -> f64 {
+        let (value, end) = self.value(tour);
+        value - self.price.of(end)
     }
 
     /// Complete and improve a tour, leaving its first `held` stops in place.
@@ -272,10 +315,14 @@ impl<'a> Tours<'a> {
             self.observe(stop);
             from = Some(stop);
         }
-        let (stops, held) = (self.stops, self.held);
+        let (stops, held, price) = (self.stops, self.held, self.price);
+        let end = arrivals.last().copied().unwrap_or(self.stay);
         let place = |stop: usize, table: &[f32; LAYERS]| match tour.contains(&stop) {
             true => (0.0, 0),
-            false => best_place(&stops, stop, table, tour, held, &arrivals, &present),
+            false => {
+                let dearer = |other: f32| (price.of(other) - price.of(end)) as f32;
+                best_place(&stops, stop, table, tour, held, &arrivals, &present, dearer)
+            }
         };
         let mut best: Vec<(f32, usize)> =
             tables.iter().enumerate().map(|(stop, table)| place(stop, table)).collect();
@@ -360,8 +407,8 @@ impl<'a> Tours<'a> {
         }
         let most = |place: usize| f64::from(parts[order[place]].most[layers[place]]);
         let mut value: f64 = (0..order.len()).map(most).sum();
-        let mut done = 0;
-        while done < order.len() && score(value, now) > floor {
+        let (mut done, price) = (0, self.price.of(now));
+        while done < order.len() && score(value, now) - price > floor {
             let (part, layer) = (&parts[order[done]], layers[done]);
             let mut sum = part.alone[layer];
             for &(cell, seen) in &part.shared {
@@ -376,15 +423,16 @@ impl<'a> Tours<'a> {
         for &(cell, _) in order[..done].iter().flat_map(|&k| &parts[k].shared) {
             self.left[cell as usize] = self.weight[cell as usize];
         }
-        score(value, now)
+        score(value, now) - price
     }
 
     fn keep_better(&mut self, parts: &[Part], order: &mut Vec<usize>, other: Vec<usize>, best: f64) -> f64 {
         if self.budget == 0 {
             return best;
         }
-        let score = self.score_of(parts, &other, best * (1.0 + 1e-9));
-        if score > best * (1.0 + 1e-9) {
+        let better = best + 1e-9 * best.abs();
+        let score = self.score_of(parts, &other, better);
+        if score > better {
             *order = other;
             return score;
         }
@@ -410,6 +458,15 @@ struct Part {
 /// Value with ties inside a time layer broken towards the tour that ends [s] sooner.
 fn score(value: f64, end: f32) -> f64 {
     value * (1.0 - 1e-4 * f64::from(end.min(1e3)) / 1e3)
+}
+
+/// ``f32::max`` of numbers, without a thought for what is none.
+fn larger(a: f32, b: f32) -> f32 {
+    if a > b {
+        a
+    } else {
+        b
+    }
 }
 
 /// Hashes a few bytes, fast; nobody chooses them to collide who could not do worse by lying.
@@ -448,6 +505,7 @@ fn suffix_sums(layer_weights: &[f64], added: &[u8; LAYERS], miss: &[f64; 256]) -
 }
 
 /// Where in a tour a stop adds most, and how much: what it sees, less what it delays.
+/// `dearer`: how much dearer the tour becomes by an end [s].
 fn best_place(
     stops: &Stops,
     stop: usize,
@@ -456,6 +514,7 @@ fn best_place(
     held: usize,
     arrivals: &[f32],
     present: &[[f32; LAYERS]],
+    dearer: impl Fn(f32) -> f32,
 ) -> (f32, usize) {
     let mut best = (0.0_f32, 0);
     for place in held..=tour.len() {
@@ -465,18 +524,23 @@ fn best_place(
         if !arrival.is_finite() {
             continue;
         }
-        let mut gain = table[stops.layer(arrival)];
+        let (mut gain, mut end) = (table[stops.layer(arrival)], arrival);
+        if gain <= 0.0 {
+            continue; // cheap as it may be to go there
+        }
         if let Some(&next) = tour.get(place) {
             let delay = arrival + stops.leg(Some(stop), next) - arrivals[place];
             if !delay.is_finite() {
                 continue;
             }
+            end = arrivals[tour.len() - 1] + delay;
             for (later, worth) in arrivals[place..].iter().zip(&present[place..]) {
                 gain += worth[stops.layer(later + delay)] - worth[stops.layer(*later)];
             }
         }
         // A hair less for a later arrival: inside a layer the nearer stop comes first.
         gain *= 1.0 - 1e-4 * arrival.min(1e3) / 1e3;
+        gain -= dearer(end);
         if gain > best.0 {
             best = (gain, place);
         }
@@ -486,14 +550,14 @@ fn best_place(
 
 pub struct Reply {
     pub tour: Vec<i64>,
-    pub gain: f64,         // marginal value of `tour`
-    pub current_gain: f64, // marginal value of the current tour
+    pub gain: f64,         // marginal value of `tour`, less its price
+    pub current_gain: f64, // of the current tour
 }
 
 /// The best tour found against the rest of the team, by greedy insertion and 2-opt.
 ///
 /// One search starts from nothing, another from the current tour and leaves its first stop in place: the
-/// robot is on its way there, so to turn away must pay by the share `stickiness`.
+/// robot is on its way there, so to turn away must pay by the share `stickiness` of what it shows, and by `margin`.
 pub fn best_tour(
     stops: Stops,
     worth: &Worth,
@@ -501,20 +565,22 @@ pub fn best_tour(
     others: (&[u32], &[u8]),
     current: &[i64],
     max_stops: usize,
-    stickiness: f64,
+    (stickiness, margin): (f64, f64),
+    price: EndPrice,
 ) -> Reply {
-    let mut tours = Tours::new(stops, worth, layer_weights, others, max_stops);
+    let mut tours = Tours::new(stops, worth, layer_weights, others, max_stops, price);
     let current: Vec<usize> = current.iter().map(|&stop| stop as usize).collect();
-    let current_gain = tours.value(&current).0;
+    let current_gain = tours.net(&current);
     let mut alone: Vec<_> = tours.ceilings().iter().map(|gain| [gain * OVER; LAYERS]).collect();
     let mut best = tours.search(Vec::new(), 0, &mut alone);
     if !current.is_empty() {
         let kept = tours.search(current, 1, &mut alone);
-        if tours.score(&best) <= tours.score(&kept) * (1.0 + stickiness) {
+        let (shown, end) = tours.value(&kept);
+        if tours.score(&best) <= score(shown, end) * (1.0 + stickiness) - price.of(end) + margin {
             best = kept;
         }
     }
-    let gain = tours.value(&best).0;
+    let gain = tours.net(&best);
     Reply { tour: best.iter().map(|&stop| stop as i64).collect(), gain, current_gain }
 }
 
@@ -526,5 +592,5 @@ pub fn most_any_tour_adds(
     team: (&[u32], &[u8]),
     max_stops: usize,
 ) -> f64 {
-    Tours::new(stops, worth, layer_weights, team, max_stops).relaxed()
+    Tours::new(stops, worth, layer_weights, team, max_stops, EndPrice::FREE).relaxed()
 }

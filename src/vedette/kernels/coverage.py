@@ -102,6 +102,7 @@ class TourProblem:
     footprints: Footprints  # what each stop reveals
     first_leg: NDArray[np.float32]  # (K,) travel time to each stop [s], inf where it cannot be reached
     legs: NDArray[np.float32]  # (K, K) travel time between stops [s]
+    end_price: tuple[float, float] = (0.0, 0.0)  # linear and quadratic, of when a tour ends [1/s], [1/s^2]
 
     @property
     def arrays(self) -> _Arrays:
@@ -207,7 +208,11 @@ def marginals(
 
 
 def best_tour(
-    problem: TourProblem, current: NDArray[np.int64], max_stops: int, stickiness: float = 0.0
+    problem: TourProblem,
+    current: NDArray[np.int64],
+    max_stops: int,
+    stickiness: float = 0.0,
+    margin: float = 0.0,
 ) -> tuple[NDArray[np.int64], float, float]:
     """The best tour found against the rest of the team, by greedy insertion and 2-opt.
 
@@ -215,12 +220,15 @@ def best_tour(
         problem: what to choose from.
         current: stops of the present tour, in order.
         max_stops: longest tour.
-        stickiness: a tour with another first stop than the present one's must gain this share more.
+        stickiness: a tour with another first stop than the present one's must gain more by this share of what
+            that shows, and by
+        margin: so much [nats].
 
     Returns:
-        the tour, its marginal value, and the marginal value of the present tour.
+        the tour, its marginal value less its price, and that of the present tour. To stay costs what the
+        farthest single stop does.  docs/theory.md (V194)
     """
-    return _kernels.best_tour(*problem.arrays, current, max_stops, stickiness)
+    return _kernels.best_tour(*problem.arrays, current, max_stops, (stickiness, margin), problem.end_price)
 
 
 def most_any_tour_adds(problem: TourProblem, max_stops: int) -> float:

@@ -2,21 +2,31 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.ndimage import binary_dilation
 
 from tests.support.mapping_scenes import CORRIDOR, FRAME, SPEC, explored, placed
 from vedette.domains.mapping import layers
 from vedette.domains.mapping.baselines.cost_utility import expected_areas
 from vedette.domains.mapping.belief import MapBelief, freeze
 from vedette.domains.mapping.impact import MIN_SHARE
-from vedette.domains.mapping.outlook import RAYS, SIGHT, mean_promise, members_in_the_middle
+from vedette.domains.mapping.outlook import (
+    RAYS,
+    SIGHT,
+    known_share,
+    mean_promise,
+    members_in_the_middle,
+    promises,
+)
 from vedette.domains.mapping.planners import DEFAULT, PLANNERS, planner
 from vedette.domains.mapping.platform import LEAST_AREA, LEFT_ALONE, STAY, MappingPlatform
+from vedette.domains.mapping.price import EndPrice
 from vedette.domains.mapping.sightings import empty_counts, measured_model
 from vedette.domains.mapping.stops import (
     CLEARANCES,
@@ -28,7 +38,7 @@ from vedette.domains.mapping.stops import (
     survey,
 )
 from vedette.domains.mapping.views import look
-from vedette.kernels.coverage import LAYERS
+from vedette.kernels.coverage import LAYERS, CellWeights, Footprints, TourProblem, best_tour
 from vedette.kernels.frontier import find_frontiers
 from vedette.kernels.reference import coverage as reference_coverage
 from vedette.kernels.reference.coverage import dense
@@ -54,14 +64,14 @@ def at_turn(turn: float, classes: NDArray[np.uint8] | None = None) -> MapBelief:
 
 def promised(belief: MapBelief) -> float:
     """Return what the frontiers of a belief promise on average [m^2]."""
-    return mean_promise(
-        belief.classes,
-        belief.frame.resolution,
-        (belief.frontier_cells, belief.frontier_starts),
-        belief.counts,
-        belief.unknown,
-        belief.factor,
-    )
+    return mean_promise(of_each(belief), belief.frontier_starts)
+
+
+def of_each(belief: MapBelief) -> NDArray[np.float64]:
+    """Return what each frontier of a belief promises [m^2]."""
+    frontiers = belief.frontier_cells, belief.frontier_starts
+    about = belief.counts, belief.unknown, belief.factor
+    return promises(belief.classes, belief.frame.resolution, frontiers, *about)
 
 
 def test_the_mean_promise_is_that_of_looks_from_all_frontier_cells_by_the_twin() -> None:
@@ -99,6 +109,64 @@ def test_a_team_turns_when_its_frontiers_promise_less() -> None:
     assert at_turn(promise * 1.001).gathering
     assert at_turn(math.inf).gathering
     assert not at_turn(0.0).gathering
+
+
+def test_the_known_share_is_the_shortest_tree_against_what_is_promised_over_a_swath() -> None:
+    belief = at_turn(math.inf)
+    places = [
+        belief.frame.centres(belief.frontier_cells[low:high]).mean(axis=0)
+        for low, high in itertools.pairwise(belief.frontier_starts)
+    ]
+    tree, joined, left = 0.0, places[:1], places[1:]
+    while left:  # Prim
+        away, k = min((math.dist(a, b), k) for a in joined for k, b in enumerate(left))
+        tree += away
+        joined.append(left.pop(k))
+    hidden = of_each(belief).sum() / 6.0
+    frontiers = belief.frontier_cells, belief.frontier_starts
+    share = known_share(belief.frame, frontiers, of_each(belief))
+    assert share == pytest.approx(tree / (tree + hidden))
+    assert 0.0 < share < 1.0
+    assert known_share(belief.frame, frontiers, 0.0 * of_each(belief)) == 1.0
+
+
+def priced(classes: NDArray[np.uint8]) -> MapBelief:
+    """Return the belief of a round in which the end of tours has a price of 1 m^2/s where all is known."""
+    about = {"reach": SPEC.range, "extent": 2.5, "hidden": 0.5, "counts": empty_counts()}
+    return freeze(classes, FRAME, end_price=EndPrice(1.0), layers=layers.fading(60.0, 10.0), **about)
+
+
+def test_the_end_has_its_price_to_the_share_of_the_work_that_is_known() -> None:
+    for places in (CORRIDOR, ROOMS):
+        belief = priced(explored(places))
+        share = known_share(belief.frame, (belief.frontier_cells, belief.frontier_starts), of_each(belief))
+        assert belief.end_price.linear == pytest.approx(share * np.log(2.0) / FRAME.resolution**2)
+    seen = explored(CORRIDOR)
+    shallow = np.where((seen == UNKNOWN) & ~binary_dilation(seen == FREE, iterations=2), OCCUPIED, seen)
+    assert priced(shallow.astype(np.uint8)).end_price.linear > 1.3 * priced(seen).end_price.linear
+
+
+@pytest.mark.parametrize(("share", "order", "why"), [(0.0, [0, 1], "soonest"), (1.0, [1, 0], "shortest")])
+def test_each_lean_wins_by_its_own_measure(share: float, order: list[int], why: str) -> None:
+    """A room 20 s one way, a scrap 10 s the other: room first, more is known soon; else it ends sooner."""
+    footprints = Footprints(np.array([0, 1, 2]), np.array([0, 1], np.uint32), np.array([255, 255], np.uint8))
+    worth, time = np.array([30.0, 6.0], np.float32), layers.fading(60.0, 10.0)
+    first_leg, legs = np.array([20, 10], np.float32), np.array([[0, 30], [30, 0]], np.float32)
+    nothing = np.empty(0, np.uint32), np.empty(0, np.uint8)
+    price = EndPrice(1.0).times(share)
+    problem = TourProblem(
+        CellWeights.whole(worth), time.weights, time.edges, nothing, footprints, first_leg, legs,
+        (price.linear, price.quadratic),
+    )  # fmt: skip
+    tour, _, _ = best_tour(problem, np.empty(0, np.int64), 2)
+    assert tour.tolist() == order
+    known = {key: sum(w * math.exp(-t / 60.0) for w, t in zip(worth, at, strict=True))
+             for key, at in (((0, 1), (20.0, 50.0)), ((1, 0), (40.0, 10.0)))}  # fmt: skip
+    ends = {(0, 1): 50.0, (1, 0): 40.0}
+    best = (
+        max(known, key=lambda key: known[key]) if why == "soonest" else min(ends, key=lambda key: ends[key])
+    )
+    assert tuple(tour.tolist()) == best
 
 
 @pytest.mark.parametrize("seed", range(10))

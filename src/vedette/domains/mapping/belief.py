@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from vedette.domains.mapping.frontier_worth import frontier_areas, spread_behind
 from vedette.domains.mapping.layers import TimeLayers, rate
-from vedette.domains.mapping.outlook import mean_promise
+from vedette.domains.mapping.outlook import known_share, mean_promise, promises
 from vedette.domains.mapping.price import FREE, EndPrice
 from vedette.domains.mapping.prior import Foresight, PriorMap, block_sum, foresee
 from vedette.domains.mapping.priorities import Priorities, priority_factors, pull
@@ -122,7 +122,8 @@ def freeze(
         hidden: area expected behind a frontier [m^2].
         return_price: more for a frontier that is far from others [m^2 a metre].
         turn: gather up what was left behind, at these prices, once frontiers promise less than this [m^2].
-        end_price: of tours, once what was left behind is gathered up.
+        end_price: of tours [m^2/s], [m^2/s^2], once what was left behind is gathered up; to the share of the
+            work left that is known.  docs/theory.md (V230)
         layers: the time layers of the objective.
         counts: (4, BINS) the team's sightings.
         known: rows and columns outside of which nothing is known.
@@ -149,9 +150,12 @@ def freeze(
     else:
         each = imagine(crop, window, factor, first, frontiers, prior, worlds)
     local = to_see(unknown, each).astype(np.float32) * LN2
-    gathering = turn == math.inf or (
-        turn > 0.0 and mean_promise(crop, frame.resolution, frontiers, counts, unknown, factor) < turn
-    )
+    gathering, priced = turn == math.inf, end_price != FREE
+    if priced or 0.0 < turn < math.inf:
+        promised = promises(crop, frame.resolution, frontiers, counts, unknown, factor)
+        gathering |= mean_promise(promised, starts) < turn
+        if priced:
+            end_price = end_price.times(LN2 / frame.resolution**2 * known_share(window, frontiers, promised))
     areas = frontier_areas(window, cells, starts, hidden, return_price)
     areas += pull(window, crop, (cells, starts), priorities, factor)
     if gathering and areas.any():

@@ -55,6 +55,22 @@ def rate(start: float = 0.0) -> TimeLayers:
     return _layers(1.0 / (start + _edges()))
 
 
+def fading(within: float, rest: float) -> TimeLayers:
+    """Worth ``exp(-t / within) + rest``: soon is better, and late far better than never.
+
+    docs/mapping.md (V231)
+
+    Raises:
+        InputError: ``within`` [s] is no number > 0, or ``rest`` none >= 0.
+    """
+    for name, value, least in (("within", within, "> 0 s"), ("rest", rest, ">= 0")):
+        if not (is_number(value) and (value > 0.0 or (value == 0.0 and name == "rest"))):
+            raise InputError(f"layers.fading: {name} must be a number {least}; got {brief(value)}")
+    edges = _edges()
+    middles = (np.concatenate(([0.0], edges[:-1])) + edges) / 2.0
+    return _layers(np.exp(-middles / within) + rest)
+
+
 def plain() -> TimeLayers:
     """Worth 1 whenever it is made: the paper's expected posterior entropy, eq. (41)."""
     return _layers(np.ones(LAYERS))

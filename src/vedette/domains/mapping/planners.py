@@ -19,6 +19,7 @@ from vedette.domains.mapping.layers import TimeLayers
 from vedette.domains.mapping.platform import MappingPlatform, Tour
 from vedette.domains.mapping.price import FREE, EndPrice
 from vedette.domains.mapping.stops import Stops
+from vedette.domains.mapping.views import MOST_STOPS
 from vedette.domains.mapping.yardsticks import BurgardPlatform, NearestPlatform
 from vedette.errors import brief
 from vedette.number import is_number, is_whole
@@ -40,7 +41,7 @@ class Planner:
     platform: Callable[[PlatformSpec], MappingPlatform]
     hidden: float = 0.0  # area expected behind a frontier [m^2]
     return_price: float = 0.0  # more for a frontier far from others [m^2 a metre]
-    end_price: EndPrice = FREE  # of tours
+    end_price: EndPrice = FREE  # of tours [m^2/s], [m^2/s^2]
     worlds: int = 1  # ways at once in which what is unknown may be, by what the building showed
     turn: float = math.inf  # prices and tours count once frontiers promise less than this [m^2]; 0: never
     alone: str | None = None  # the planner of a team of one; None: the same
@@ -86,6 +87,14 @@ PLANNERS = {
     ),
     "information": _tours("information first; then tours of what was left behind", turn=1.4),
     "completion": _tours("completion first: tours, dearer to come back to what is left", return_price=2.0),
+    "long": Planner(
+        "tours of all frontiers within reach, whose end has a price",
+        layers.fading(60.0, 10.0),
+        lambda spec: MappingPlatform(spec, max_stops=MOST_STOPS, measured="unknown", foresees=True),
+        hidden=HIDDEN_AREA,
+        end_price=EndPrice(0.03, 0.001),
+        alone="makespan",
+    ),
     "rate": Planner(
         "one frontier each by the rate of uncertainty reduction, negotiated (the paper, eq. 42)",
         layers.rate(),

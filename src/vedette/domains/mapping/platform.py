@@ -13,7 +13,8 @@ from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.budget import WayLeft
 from vedette.domains.mapping.foreseen import LONG_TOUR, by_way_of_frontier, supposed, with_foreseen
 from vedette.domains.mapping.impact import NOTHING, Impact
-from vedette.domains.mapping.layers import TimeLayers
+from vedette.domains.mapping.layers import STEP, TimeLayers
+from vedette.domains.mapping.price import FREE
 from vedette.domains.mapping.sightings import SightingModel, beam_model, measured_model
 from vedette.domains.mapping.stops import (
     CLEARANCES,
@@ -39,6 +40,7 @@ LEAST_AREA = 0.08  # a stop must promise this much [m^2] ...
 WORTH_A_DARE = 1.0  # ... and behind what is doubtful so much, twice as much after every doubt in vain [m^2]
 HYSTERESIS = 0.03  # a new strategy must gain this share more than the present one
 STICKINESS = 0.1  # to turn away from the stop under way must gain this share more
+WORTH_A_CHANGE, TURNING_BACK = 2.0, 3.0  # where the end of a tour has a price, so much must be saved [s]
 PATIENCE = 4  # times the usual work, if that finds nothing; twice as much each time that is not enough
 ELSEWHERE = 1.5  # who was in the way is so no longer when it is this far from where it was [m]
 SAME_PLACE = 1.2  # a frontier this near a stop of the last round is the same one [m]
@@ -407,12 +409,35 @@ class MappingPlatform:
         Source: paper, eq. (30).
         """
         problem = self._problem(belief, others)
-        order, gain, present = coverage.best_tour(problem, current.stops, self.ahead, STICKINESS)
+        if belief.end_price != FREE:
+            return self._priced_reply(problem, current)
+        tour, gain, present = self._best(problem, current, STICKINESS)
+        return tour if gain > present * (1.0 + HYSTERESIS) else current
+
+    def _priced_reply(self, problem: coverage.TourProblem, current: Tour) -> Tour:
+        """As `reply`, but better is what saves seconds: of long tours a share says little.
+
+        What a second is worth is told by the present tour, set off later.
+        """
+        later = replace(problem, first_leg=problem.first_leg + np.float32(STEP))
+        lost = self._worth(problem, current) - self._worth(later, current) if len(current) else 0.0
+        second = max(lost, 0.0) / STEP
+        tour, gain, present = self._best(problem, current, margin=TURNING_BACK * second)
+        return tour if gain > present + WORTH_A_CHANGE * second else current
+
+    def _best(
+        self, problem: coverage.TourProblem, current: Tour, stickiness: float = 0.0, margin: float = 0.0
+    ) -> tuple[Tour, float, float]:
+        """Return the best tour found that leaves enough to come home, its gain, and the present one's."""
+        order, gain, present = coverage.best_tour(problem, current.stops, self.ahead, stickiness, margin)
         tour = self.tour(order)
         if len(tour) < len(order):  # too dear: what is cut off has been counted in the gain
-            order, gain, present = coverage.best_tour(problem, current.stops, 1, STICKINESS)
+            order, gain, present = coverage.best_tour(problem, current.stops, 1, stickiness, margin)
             tour = self.tour(order)
-        return tour if gain > present * (1.0 + HYSTERESIS) else current
+        return tour, gain, present
+
+    def _worth(self, problem: coverage.TourProblem, tour: Tour) -> float:
+        return coverage.best_tour(problem, tour.stops, 0)[2]
 
     def slack(self, belief: MapBelief, team: Impact) -> float:
         """No strategy of this robot adds more to the team's impact [nats]; docs/mapping.md (V26).
@@ -429,7 +454,8 @@ class MappingPlatform:
         """Return the choice of a tour against the others' impact."""
         stops = self.stops
         assert stops is not None
-        worth, layers = belief.weights, belief.layers
+        worth, layers, price = belief.weights, belief.layers, belief.end_price
         return coverage.TourProblem(
-            worth, layers.weights, layers.edges, others.sparse, stops.footprints, stops.first_leg, stops.legs
-        )
+            worth, layers.weights, layers.edges, others.sparse, stops.footprints, stops.first_leg, stops.legs,
+            (price.linear, price.quadratic),
+        )  # fmt: skip

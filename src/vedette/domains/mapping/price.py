@@ -25,6 +25,10 @@ class EndPrice:
     linear: float = 0.0  # a second
     quadratic: float = 0.0  # a second^2
 
+    def times(self, factor: float) -> EndPrice:
+        """Return so many times the price."""
+        return EndPrice(factor * self.linear, factor * self.quadratic)
+
     def of(self, end: float) -> int:
         """Return the price of an end [s], in steps, rounded to the nearest, halves up."""
         t = min(end, LATEST)

@@ -140,7 +140,7 @@ def find_stops(
     Legs between stops are worked out for ``tours`` only; else they are infinite.
     """
     frame, targets, views = belief.frame, found.targets, found.views
-    starts, cells, shares = _to_be_seen(belief, spec, model, targets, views)
+    starts, cells, shares = to_be_seen(belief, spec, model, targets, views)
     seen = shares * belief.to_see.ravel()[cells]
     area = _by_look(seen, starts)
     lengths = np.diff(belief.frontier_starts)[found.clusters] * frame.resolution
@@ -188,7 +188,7 @@ def _by_look(values: NDArray[np.float32], starts: NDArray[np.int64]) -> NDArray[
     return total * (np.diff(starts) > 0)
 
 
-def _to_be_seen(
+def to_be_seen(
     belief: MapBelief,
     spec: PlatformSpec,
     model: SightingModel,

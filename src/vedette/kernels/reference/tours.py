@@ -14,7 +14,7 @@ from vedette.kernels.misses import CERTAIN, STEPS_PER_NAT
 
 Singles = NDArray[np.float32]
 ZERO, ONE, HAIR, LATEST = np.float32(0.0), np.float32(1.0), np.float32(1e-4), np.float32(1e3)
-BETTER = 1.0 + 1e-9  # so many times as good, a tour is better
+HARDLY = 1e-9  # a tour is better that is so by more than this share
 ROUNDS = 4  # of moves and turns
 _MISS = np.array([math.exp(-q / STEPS_PER_NAT) for q in range(CERTAIN)] + [0.0])
 _SEEN = (1.0 - _MISS).astype(np.float32)
@@ -32,16 +32,21 @@ class EagerTours:
             cell: tuple(int(others.get(cell * LAYERS + layer, 0)) for layer in range(LAYERS))
             for cell in cells.tolist()
         }
+        reached = problem.first_leg[np.isfinite(problem.first_leg)]
+        self._stay = reached.max(initial=ZERO)
         self._discounts = {added: _suffix_sums(problem, added) for added in set(self._added.values())}
 
-    def best(self, current: Sequence[int], stickiness: float) -> tuple[list[int], float, float]:
+    def best(
+        self, current: Sequence[int], stickiness: float, margin: float = 0.0
+    ) -> tuple[list[int], float, float]:
         """Return the best tour found, its marginal value, and that of the present one."""
         best = self._search([], 0)
         if current:
             kept = self._search(list(current), 1)
-            if self._score(best) <= self._score(kept) * (1.0 + stickiness):
+            shown = _score(self._value(kept), self._end(kept))
+            if self._score(best) <= shown * (1.0 + stickiness) - self._price(self._end(kept)) + margin:
                 best = kept
-        return best, self._value(best), self._value(current)
+        return best, self._net(best), self._net(current)
 
     def _search(self, tour: list[int], held: int) -> list[int]:
         self._insert(tour, held)
@@ -82,14 +87,18 @@ class EagerTours:
             arrival = start + self._leg(tour[place - 1] if place else None, stop)
             if not np.isfinite(arrival):
                 continue
-            gain = table[self._layer(arrival)]
+            gain, end = table[self._layer(arrival)], arrival
+            if gain <= 0.0:
+                continue
             if place < len(tour):
                 delay = arrival + self._leg(stop, tour[place]) - arrivals[place]
                 if not np.isfinite(delay):
                     continue
+                end = arrivals[-1] + delay
                 for later, worth in zip(arrivals[place:], present[place:], strict=True):
                     gain += worth[self._layer(later + delay)] - worth[self._layer(later)]
             gain *= ONE - HAIR * min(arrival, LATEST) / LATEST
+            gain -= np.float32(self._price(end) - self._price(self._end(tour)))
             if gain > best[0]:
                 best = (gain, place)
         return best
@@ -110,7 +119,7 @@ class EagerTours:
                         else:
                             other.insert(j, other.pop(i))
                         score = self._order_score(tour, other)
-                        if score > best * BETTER:
+                        if score > best + HARDLY * abs(best):
                             tour, best = other, score
             if best <= before:
                 break
@@ -138,7 +147,8 @@ class EagerTours:
                 self._left[cell] -= part
             value += float(total) - alone_at_most
         self._left = dict(self._weight)
-        return _score(value, arrivals[-1] if len(arrivals) else ZERO)
+        end = arrivals[-1] if len(arrivals) else ZERO
+        return _score(value, end) - self._price(end)
 
     def _value(self, tour: Sequence[int]) -> float:
         value = 0.0
@@ -156,8 +166,21 @@ class EagerTours:
         return value
 
     def _score(self, tour: Sequence[int]) -> float:
-        arrivals = self._arrivals(tour)
-        return _score(self._value(tour), arrivals[-1] if len(arrivals) else ZERO)
+        end = self._end(tour)
+        return _score(self._value(tour), end) - self._price(end)
+
+    def _net(self, tour: Sequence[int]) -> float:
+        return self._value(tour) - self._price(self._end(tour))
+
+    def _end(self, tour: Sequence[int]) -> np.float32:
+        end: np.float32 = self._arrivals(tour)[-1] if len(tour) else self._stay
+        return end
+
+    def _price(self, end: np.float32) -> float:
+        """Return what a tour costs that ends then [s]; to stay costs what the farthest stop does."""
+        linear, quadratic = self._problem.end_price
+        t = min(float(end), 3600.0)
+        return (linear + 0.5 * quadratic * t) * t
 
     def _by_layer(self, entries: Sequence[tuple[int, np.float32]]) -> Singles:
         """Return what entries add in every layer; cells that the others see alike are summed first."""
