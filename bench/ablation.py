@@ -119,7 +119,7 @@ def _ratio(interval: Interval) -> str:
 )
 @click.option("--robots", type=click.IntRange(1, 64), default=3, show_default=True, help="In every team.")
 @click.option(
-    "--only", default="", help="Exchange only the parts whose names hold one of these, with commas."
+    "--only", default="", help="Only the parts whose names hold one of these, with commas."
 )
 @click.option("--jobs", type=click.IntRange(min=1), default=2, show_default=True, help="Processes.")
 @click.option("--out", type=Path, default=RESULTS / "ablation", metavar="DIR", help="Folder for the results.")
