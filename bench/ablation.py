@@ -118,9 +118,7 @@ def _ratio(interval: Interval) -> str:
     "--seeds", type=command.WholeNumbers(0), default="100-103", show_default=True, help="Of the worlds."
 )
 @click.option("--robots", type=click.IntRange(1, 64), default=3, show_default=True, help="In every team.")
-@click.option(
-    "--only", default="", help="Only the parts whose names hold one of these, with commas."
-)
+@click.option("--only", default="", help="Only the parts whose names hold one of these, with commas.")
 @click.option("--jobs", type=click.IntRange(min=1), default=2, show_default=True, help="Processes.")
 @click.option("--out", type=Path, default=RESULTS / "ablation", metavar="DIR", help="Folder for the results.")
 def ablation(seeds: tuple[int, ...], robots: int, only: str, jobs: int, out: Path) -> None:
