@@ -22,8 +22,10 @@ from vedette.interrupt import ending_on_ctrl_c
 from vedette.logs import RecordedLog
 from vedette.maps import write_map
 from vedette.missions.explore.assemble import FUSIONS
+from vedette.missions.explore.options import FRAMES
 from vedette.number import many
 from vedette.outcome import Outcome
+from vedette.record.explore.frames import FramesFound
 from vedette.record.folder import OutputFolder
 from vedette.record.replay.summary import Replayed, ReplayedBuilding, ReplaySummary
 from vedette.sim.explore.run import explore, prepare
@@ -47,6 +49,13 @@ _MISSION = 120.0  # of the simulated robots whose scans are set beside the recor
     show_default=True,
     help="Cut each log into so many shares, one robot each.",
 )
+@click.option(
+    "--frames",
+    type=OneOf(FRAMES),
+    default="known",
+    show_default=True,
+    help="unknown: each share lies in a frame of its own, and the team finds how they lie.",
+)
 @click.option("--resolution", type=float, default=0.1, show_default=True, help="Side of a cell [m].")
 @recording_options
 @click.option(
@@ -57,7 +66,9 @@ _MISSION = 120.0  # of the simulated robots whose scans are set beside the recor
     help="How the robots share what they see.",
 )
 @click.option("--link-loss", type=Share(0.9), default=0.0, show_default=True, help="Share of messages lost.")
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of lost messages.")
+@click.option(
+    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of lost messages and of frames."
+)
 @click.option(
     "--out", type=FILE, metavar="DIR", help="Folder for the results.  [default: a new one under runs/]"
 )
@@ -66,6 +77,7 @@ _MISSION = 120.0  # of the simulated robots whose scans are set beside the recor
 def replay(
     files: tuple[Path, ...],
     robots: int,
+    frames: str,
     resolution: float,
     reach: float,
     no_return: str,
@@ -85,7 +97,9 @@ def replay(
     what its scans saw of the unknown, against distance, beside simulated ones (the paper's Fig. 3).
     Exit status: 0 all went through, 2 bad input, 130 interrupted.
     """
-    setup = ReplaySetup(robots, resolution, reach, no_return, fusion=fusion, link_loss=link_loss, seed=seed)
+    setup = ReplaySetup(
+        robots, resolution, reach, no_return, fusion=fusion, link_loss=link_loss, seed=seed, frames=frames
+    )
     check_in_vain(files, evidence, **names)
     logs = [recording(path, no_return, evidence, **names) for path in files]
     _check_names(logs)
@@ -178,7 +192,15 @@ def _closing(summary: ReplaySummary, folder: Path, measured: bool) -> str:
         agree = "" if len(each.robots) == 1 else ", all of one map" if each.agreed else ", their maps differ"
         lines.append(
             f"{each.log}: {seen} over {each.way_m:.0f} m, {each.known_m2:.0f} m2 known, "
-            f"{each.free_m2:.0f} m2 free, {team}{agree}"
+            f"{each.free_m2:.0f} m2 free, {team}{agree}{_joined(each.frames)}"
         )
     shown = f"; what scans see: {folder / OBSERVATION}.png" if measured else ""
     return "\n".join([*lines, f"maps and pictures: {folder}{shown}"])
+
+
+def _joined(found: FramesFound | None) -> str:
+    """Return who is joined, and how well."""
+    if found is None:
+        return ""
+    off = "" if found.error_m is None else f", {found.error_m:.2f} m off at most"
+    return f", joined: {found.told}{off}"

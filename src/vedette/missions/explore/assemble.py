@@ -65,7 +65,7 @@ def assemble(
     robots: int,
     most: Most,
     waits_for: int = 1,
-    explorer: type[Exploring] = Exploring,
+    explorer: type[Exploring] | None = None,
     notary: Notary | None = None,
     prior: PriorMap | None = None,
 ) -> Agent:
@@ -80,7 +80,7 @@ def assemble(
         robots: in the team.
         most: what none of them exceeds.
         waits_for: so many robots, itself included, before it begins; for a while.
-        explorer: its share of the mission.
+        explorer: its share of the mission; None: what the frames ask for.
         notary: signs its evidence, if that is replicated, and checks everybody's; None: nobody does.
         prior: an old map of the building, the same for the whole team; None: there is none.
 
@@ -93,11 +93,11 @@ def assemble(
     fusion: Fusion
     if unknown:
         fusion = FramedEvidence(robot, boot, lattice.frame, 4 * BINS, robots, mark=lattice.mark)
-        explorer = FramedExploring
     else:
         fusion = _fusion(lattice, options, robot, boot, most, notary)
     how = planner(options.planner, robots)
-    mission = explorer(lattice, spec, how, fusion, most=most, prior=prior)
+    kind = explorer or (FramedExploring if unknown else Exploring)
+    mission = kind(lattice, spec, how, fusion, most=most, prior=prior)
     behaviour = GroundBehaviour(mission, Driver(robot, spec), options.return_home, waits_for)
     places = how.negotiates and not unknown  # of mates tell how near they are, and nobody plans by them
     relay = Relay(nearby(most.range, most.speed) if places else inf)

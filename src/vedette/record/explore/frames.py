@@ -24,6 +24,16 @@ class FramesFound:
     undone: int  # joins that were taken back
     refused: Mapping[str, int]  # by why: pairs of maps that were looked at, and not believed
     components: tuple[tuple[str, ...], ...]  # living robots that are joined, by name
+    error_m: float | None  # the largest of those who are joined now; None: nobody is
+    error_deg: float | None
+
+    @property
+    def joined_after(self) -> str:
+        """When maps were joined, to go on after what the picture is of."""
+        if not self.joins:
+            return ", no maps joined"
+        times = dict.fromkeys(f"{join.time_s:.0f} s" for join in self.joins)
+        return f", maps joined after {', '.join(times)}"
 
     @property
     def told(self) -> str:

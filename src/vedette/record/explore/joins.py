@@ -64,16 +64,26 @@ class JoinWatch:
             for one, other in combinations(latest, 2)
             if graph[one[0]].anchor == graph[other[0]].anchor
         }
-        for (i, _), (j, _) in sorted(joined - self._joined):
-            error = _error(true[i], true[j], graph[i].there.inverse().after(graph[j].there))
-            self._joins.append(FrameJoin(now, (self.names[i], self.names[j]), *error))
+        errors = {
+            pair: _error(true[i], true[j], graph[i].there.inverse().after(graph[j].there))
+            for pair in sorted(joined)
+            for (i, _), (j, _) in (pair,)
+        }
+        for pair in sorted(joined - self._joined):
+            (i, _), (j, _) = pair
+            self._joins.append(FrameJoin(now, (self.names[i], self.names[j]), *errors[pair]))
         self._undone += sum(one in latest and other in latest for one, other in self._joined - joined)
         self._joined = joined
         parts: dict[Hashable, list[str]] = {}
         for i in living:
             parts.setdefault(graph[i].anchor if i in graph else i, []).append(self.names[i])
         return FramesFound(
-            tuple(self._joins), self._undone, dict(sorted(refused.items())), tuple(map(tuple, parts.values()))
+            tuple(self._joins),
+            self._undone,
+            dict(sorted(refused.items())),
+            tuple(map(tuple, parts.values())),
+            max((shift for shift, _ in errors.values()), default=None),
+            max((turn for _, turn in errors.values()), default=None),
         )
 
 

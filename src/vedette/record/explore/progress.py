@@ -41,7 +41,8 @@ def progress_png(log: ExploreLog, path: Path | str) -> None:
         figure = layout.figure()
         for corner, stage in zip(layout.corners, stages, strict=True):
             _panel(figure, corner, layout, log, window, stage)
-        layout.head(figure, f"{log.scene.name}: {many(len(log.scene.vehicles), 'robot')}{_joins(stages[-1])}")
+        joins = "" if stages[-1].frames is None else stages[-1].frames.joined_after
+        layout.head(figure, f"{log.scene.name}: {many(len(log.scene.vehicles), 'robot')}{joins}")
         metres = window.frame.cols * window.frame.resolution
         scale_bar(figure, MARGIN, layout.lowest - 0.16, metres, layout.panel[0])
         _legend(figure, layout, stages[-1])
@@ -85,16 +86,6 @@ def _panel(
     disc = ROBOT.among(len(stage.robots))
     for i, robot in enumerate(stage.robots):
         draw_disc(axes, i, robot, disc)
-
-
-def _joins(last: ExploreSnapshot) -> str:
-    """Say when maps of unknown frames were joined."""
-    if last.frames is None:
-        return ""
-    if not last.frames.joins:
-        return ", no maps joined"
-    times = dict.fromkeys(f"{join.time_s:.0f} s" for join in last.frames.joins)
-    return f", maps joined after {', '.join(times)}"
 
 
 def _ways(

@@ -38,10 +38,13 @@ def map_png(replayed: Replayed, path: Path | str) -> None:
         axes.set(xticks=(), yticks=())
         for i, (name, way) in enumerate(zip(replayed.names, replayed.ways, strict=True)):
             colour = palette.unit(palette.robot_colour(i))
-            axes.plot(*way.T, color=colour, lw=1.0, alpha=0.8, label=name)
+            apart = name in replayed.unjoined
+            told = f"{name}, not joined" if apart else name
+            axes.plot(*way.T, color=colour, lw=1.0, ls=":" if apart else "-", alpha=0.8, label=told)
             axes.plot(*way[:1].T, "o", color=colour, ms=5)
         seen = many(replayed.sights, "map" if replayed.maps else "scan")
-        title = f"{replayed.name}: {seen}, {replayed.known_m2[-1]:.0f} m² known"
+        joins = "" if replayed.frames is None else replayed.frames.joined_after
+        title = f"{replayed.name}: {seen}, {replayed.known_m2[-1]:.0f} m² known{joins}"
         axes.set_title(title, loc="left", fontsize=11, fontweight="bold")
         if len(replayed.names) > 1:
             axes.legend(loc="best", fontsize=8, framealpha=0.9)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from vedette.domains.mapping.sightings import BIN
 from vedette.maps import FREE, UNKNOWN, GridFrame
+from vedette.record.explore.frames import FramesFound
 from vedette.record.summary import Figures
 
 
@@ -18,7 +19,7 @@ class Replayed:
 
     name: str  # of the log
     frame: GridFrame
-    classes: NDArray[np.uint8]  # (R, C) map of who knows most
+    classes: NDArray[np.uint8]  # (R, C) map of who knows most, frame of the log
     counts: NDArray[np.int64]  # (4, BINS) unknown cells tried and seen, as `count_sightings` counts them
     times: tuple[float, ...]  # [s]
     known_m2: tuple[float, ...]  # area that the robot knew then that knew most
@@ -29,7 +30,17 @@ class Replayed:
     reach_m: float
     agreed: bool  # all robots hold one map
     names: tuple[str, ...]  # of the robots
+    whose: str  # robot it is that knows most
     ways: tuple[NDArray[np.float64], ...]  # (L, 2) of each robot [m]
+    frames: FramesFound | None = None  # how the robots found each other's; None: all are the log's
+
+    @property
+    def unjoined(self) -> frozenset[str]:
+        """Names of robots whose evidence is not in the map, because nobody knows where it lies."""
+        if self.frames is None:
+            return frozenset()
+        joined = next(each for each in self.frames.components if self.whose in each)
+        return frozenset(self.names) - frozenset(joined)
 
     @property
     def complete(self) -> bool:
@@ -63,6 +74,7 @@ class ReplayedBuilding:
     known_m2: float
     agreed: bool
     observation: tuple[Sighting, ...]  # as far as anything was tried
+    frames: FramesFound | None  # None: all robots' frames are the log's
 
     @classmethod
     def of(cls, replayed: Replayed) -> ReplayedBuilding:
@@ -86,6 +98,7 @@ class ReplayedBuilding:
                 for k, (tried, seen) in enumerate(replayed.counts[:2].T.tolist())
                 if tried
             ),
+            replayed.frames,
         )
 
 

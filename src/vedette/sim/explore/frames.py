@@ -1,32 +1,34 @@
-"""Watches how simulated robots find each other's frames: it knows the truth, they do not."""
+"""Watches how robots find each other's frames in simulation: it knows the truth, they do not."""
 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from typing import cast
 
+from vedette.align import FramePose
 from vedette.missions.explore.frames.exploring import FramedExploring
 from vedette.record.explore.frames import FramesFound
 from vedette.record.explore.joins import Joined, JoinWatch, TrueFrame
-from vedette.sim.explore.simulation import ExploreSimulation
-from vedette.sim.framed import FramedRobots
+from vedette.sim.simulation import Simulation
 
 
 class FrameWatch:
     """What has been seen of a simulated team's joins up to now."""
 
-    def __init__(self, simulation: ExploreSimulation) -> None:
-        self.simulation = simulation
-        self._joins = JoinWatch([spec.name for spec in simulation.specs])
+    def __init__(self, simulation: Simulation, names: Sequence[str], frames: Sequence[FramePose]) -> None:
+        """Watch robots of these names, whose frames lie so in the world, T_world_own."""
+        self.simulation, self._frames = simulation, frames
+        self._joins = JoinWatch(names)
 
     def look(self) -> FramesFound | None:
-        """Return what has come of it by now, as the first living robot sees it; None: all share a frame."""
-        robots, living = self.simulation.robots, self.simulation.living
-        if not isinstance(robots, FramedRobots) or not living:
+        """Return what has come of it by now, as the first living robot sees it; None: nobody lives."""
+        simulation, living = self.simulation, self.simulation.living
+        if not living:
             return None
-        missions = [cast(FramedExploring, mission) for mission in self.simulation.missions]
+        missions = [cast(FramedExploring, agent.mission) for agent in simulation.agents]
         graph = missions[living[0]].frames.graph
         latest = {key[0]: Joined(key[1], *placed) for key, placed in sorted(graph.items())}
-        true = [TrueFrame(frame, robots.pose(i)[:2]) for i, frame in enumerate(robots.frames)]
+        true = [TrueFrame(frame, simulation.pose(i)[:2]) for i, frame in enumerate(self._frames)]
         refused = sum((mission.matcher.refused for mission in missions), Counter[str]())
-        return self._joins.look(self.simulation.now, latest, true, living, refused)
+        return self._joins.look(simulation.now, latest, true, living, refused)

@@ -13,6 +13,7 @@ from vedette.domains.mapping.leftovers import Leftover
 from vedette.kernels.motion import remaining
 from vedette.maps.world import World
 from vedette.outcome import Outcome
+from vedette.record.explore.frames import FramesFound
 from vedette.record.explore.log import Ahead, ExploreSnapshot, RobotSample
 from vedette.record.explore.observer import ExploreObserver, ExploreReport
 from vedette.record.explore.views import GroundFigures, RobotView, held, left_out
@@ -61,22 +62,33 @@ class ExploreRun(Watched[ExploreReport]):
         self.simulation = simulation
         self._curves_only = curves_only
         self._observer = observer_of(simulation, sinks, curves_only=curves_only)
-        self._frames = FrameWatch(simulation)
+        self._frames = _watch(simulation)
         self._next_look = 0.0  # [s]
 
     def _look(self) -> None:
         now = self.simulation.now
         if now >= self._next_look - 1e-9:
-            self._observer.frames = self._frames.look()
+            self._observer.frames = self._frames_found()
             seen = views(self.simulation, ways=not self._curves_only)
             self._observer.look(now, seen, self.simulation.network.links())
             self._next_look += self._observer.period
 
+    def _frames_found(self) -> FramesFound | None:
+        return None if self._frames is None else self._frames.look()
+
     def _report(self, outcome: Outcome) -> ExploreReport:
         now = self.simulation.now
-        self._observer.frames = self._frames.look() or self._observer.frames
+        self._observer.frames = self._frames_found() or self._observer.frames
         self._observer.finish(now, views(self.simulation), self.simulation.network.links())
         return self._observer.report(outcome, self.simulation.clock.timing(now))
+
+
+def _watch(simulation: ExploreSimulation) -> FrameWatch | None:
+    """Return who watches how frames are found; None: all share one."""
+    robots = simulation.robots
+    if not isinstance(robots, FramedRobots):
+        return None
+    return FrameWatch(simulation, [spec.name for spec in simulation.specs], robots.frames)
 
 
 def explore(

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from vedette.agent import Agent
-from vedette.agent.events import Pose, Scan, Sensed
-from vedette.agent.mates import Mate
 from vedette.domains.mapping.planners import DEFAULT
 from vedette.domains.mapping.sightings import BINS
 from vedette.errors import InputError
@@ -20,30 +19,20 @@ from vedette.logs.recorded import way_of
 from vedette.maps import UNKNOWN, GridFrame
 from vedette.maps.bounds import Bounds, Extent
 from vedette.missions.explore.assemble import assemble
-from vedette.missions.explore.exploring import Exploring
 from vedette.missions.explore.options import ExploreOptions
 from vedette.number import many
 from vedette.record.replay.summary import Replayed
+from vedette.sim.explore.frames import FrameWatch
 from vedette.sim.explore.simulation import ExploreSetup
 from vedette.sim.replay.field import RecordedRobots
+from vedette.sim.replay.following import Following, FramedFollowing
+from vedette.sim.replay.frames import laid_back, share_frames
 from vedette.sim.simulation import Simulation
 from vedette.sim.worlds.logged import frame_of
 from vedette.team import Most, PlatformSpec
 
 SETTLING = 15.0  # after its last scan a team has so long to tell each other of it [s]
 LOOK_PERIOD = 1.0  # [s]
-
-
-class Following(Exploring):
-    """Sees what was recorded: no mate was in those scans, and the mission ends with the log."""
-
-    def observe(self, seen: Scan | Sensed, pose: Pose, mates: Sequence[Mate], now: float) -> None:
-        """Add a scan, or take over a map, whoever is said to stand where now."""
-        super().observe(seen, pose, (), now)
-
-    def nothing_left(self, value: float, now: float) -> bool:
-        """Tell that there is more, to the end."""
-        return False
 
 
 @dataclass(frozen=True)
@@ -57,8 +46,9 @@ class ReplaySetup:
     planner: str = DEFAULT
     scheme: str | None = None  # None: the planner's own
     fusion: str = "replicated"
-    seed: int = 0  # of what befalls messages
+    seed: int = 0  # of what befalls messages, and of frames
     link_loss: float = 0.0
+    frames: str = "known"  # as in ``ExploreOptions``: unknown, each share lies in a frame of its own
 
     def shares(self, log: RecordedLog) -> list[tuple[Sight, ...]]:
         """Cut a log into as many pieces of as many scans, or maps.
@@ -83,26 +73,34 @@ class Replay:
 
         Raises:
             InputError: it cannot be cut so, or covers too much; planner, scheme or fusion are unknown, or
-                maps cannot be fused so.
+                maps cannot be fused so, or not in unknown frames.
         """
         self.log, self.setup = log, setup
         if log.maps:
             _check_maps(log, setup)
-        self.robots = RecordedRobots(setup.shares(log), setup.reach, setup.no_return)
         self.specs = [_spec(log, setup.reach, number) for number in range(1, setup.robots + 1)]
-        self._options = ExploreOptions(setup.planner, setup.scheme, setup.fusion, False)
-        self._frame = frame_of(log, setup.resolution, setup.reach)
-        self.lattice = self._options.lattice(setup.resolution, _middle(self._frame))
+        self._options = ExploreOptions(setup.planner, setup.scheme, setup.fusion, frames=setup.frames)
+        self._options.check()
         _ = self._options.negotiates_by
+        self._frame = frame_of(log, setup.resolution, setup.reach)
+        known, shares = setup.frames == "known", setup.shares(log)
+        self.lattice = self._options.lattice(setup.resolution, _middle(self._frame) if known else (0.0, 0.0))
+        ground = setup.reach, setup.seed, self.lattice.frame
+        self.frames = None if known else share_frames(log, shares, *ground)
+        self.robots = RecordedRobots(shares, setup.reach, setup.no_return, self.frames)
         links = ExploreSetup(seed=setup.seed, link_loss=setup.link_loss, scheme=setup.scheme)
         self.simulation = Simulation(self._agent, self.robots, links)
+        self._watch: FrameWatch | None = None
+        if self.frames is not None:
+            self._watch = FrameWatch(self.simulation, [spec.name for spec in self.specs], self.frames)
         self._stopped = False
 
     def _agent(self, robot: int, boot: int) -> Agent:
         spec, most = self.specs[robot], Most.of(self.specs)
         return assemble(
             self.lattice, spec, self._options, robot, boot,
-            robots=len(self.specs), most=most, explorer=Following,
+            robots=len(self.specs), most=most,
+            explorer=Following if self.frames is None else FramedFollowing,
         )  # fmt: skip
 
     @property
@@ -126,6 +124,8 @@ class Replay:
                 due += LOOK_PERIOD
                 times.append(simulation.now)
                 known.append(self._known())
+                if self._watch is not None:
+                    self._watch.look()
                 told(min(simulation.now / end, 1.0))
         return self._replayed(times, known)
 
@@ -146,13 +146,15 @@ class Replay:
 
     def _replayed(self, times: Sequence[float], known: Sequence[float]) -> Replayed:
         missions = self.missions
-        most = max(missions, key=lambda mission: int(np.count_nonzero(mission.fusion.classes.blocks)))
-        extent = self._extent(most)
+        most = max(
+            range(len(missions)), key=lambda i: int(np.count_nonzero(missions[i].fusion.classes.blocks))
+        )
+        frame, classes = self._map(most)
         counts = sum((mission.own.counts for mission in missions), np.zeros((4, BINS), np.int64))
         return Replayed(
             name=self.log.name,
-            frame=self.lattice.frame.window(*extent),
-            classes=most.fusion.classes.window(*extent),
+            frame=frame,
+            classes=classes,
             counts=counts,
             times=tuple(times),
             known_m2=tuple(known),
@@ -163,8 +165,19 @@ class Replay:
             reach_m=self.setup.reach,
             agreed=len({mission.fusion.digest for mission in missions}) == 1,
             names=tuple(spec.name for spec in self.specs),
+            whose=self.specs[most].name,
             ways=tuple(way_of(share) for share in self.robots.shares),
+            frames=None if self._watch is None else self._watch.look(),
         )
+
+    def _map(self, robot: int) -> tuple[GridFrame, NDArray[np.uint8]]:
+        """Return a robot's map in the log's frame, where its own truly lies."""
+        mission, frame = self.missions[robot], self.lattice.frame
+        if self.frames is None:
+            extent = self._extent(mission)
+            return frame.window(*extent), mission.fusion.classes.window(*extent)
+        classes = mission.fusion.classes.window(*mission.known)
+        return laid_back(classes, frame.window(*mission.known), self.frames[robot], self._frame)
 
 
 def _check_maps(log: RecordedLog, setup: ReplaySetup) -> None:
