@@ -27,6 +27,7 @@ from vedette.agent.patience import TeamPatience
 from vedette.agent.round import MAX_FORKS, Round, say, send_news
 from vedette.agent.scrutiny import Scrutiny
 from vedette.agent.silence import Slowness
+from vedette.negotiation import RoundOutcome
 from vedette.number import many
 
 CALL_AGAIN = 1.0  # a call not answered is repeated after so long [s]
@@ -262,15 +263,27 @@ class Rounds:
             )
         self._end(now)
         self.team_impact = round_.team_seen
-        value = self._opinion.of(outcome.value, self._seen(round_, round_.participant))
+        told, seen = self._told(outcome, round_.participant), self._seen(round_, round_.participant)
         approximate = round_.approximate or not took_part
-        self.decided(Decision(now, value, approximate, round_.blocked, lonely))
+        self.decided(Decision(now, self._opinion.of(told, seen), approximate, round_.blocked, lonely))
         if lonely:
             return effects
         self._wanted |= not took_part
         if not took_part:
             return [*effects, *self._fail()]
         return [*effects, *(self._shun() if self._upwards.ends(self.tree, round_.approximate) else [])]
+
+    def _told(self, outcome: RoundOutcome, own: RoundParticipant[Any, Any, Any]) -> float:
+        """Return what the team's choice is told to be worth, which is with prices taken off.
+
+        Where not all of the team is held here, no less than what this robot shows itself; and anything where
+        not all are content.
+        """
+        if self.team_impact is not None:
+            return outcome.value
+        if not outcome.converged:
+            return inf
+        return max(outcome.value, own.value(own.impact) + own.price(own.impact))
 
     def _seen(self, round_: Round, own: RoundParticipant[Any, Any, Any]) -> float | None:
         """Return what this robot sees the team's choice to be worth: nothing, where nobody goes."""

@@ -181,7 +181,7 @@ class FlightTeam(ABC, Generic[CaseT]):
     @property
     def lead(self) -> float:
         """From freezing a round to the start of its plans, at least [s]."""
-        return self.times.lead(self.size)
+        return self.times.lead(self.size, self.options.negotiates_by)
 
     @property
     def terms(self) -> Terms:

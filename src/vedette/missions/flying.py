@@ -120,13 +120,15 @@ class RoundTimes:
     link_delay: float  # one way [s]
     preparing: float  # a robot's, between freezing and negotiating [s]
 
-    def lead(self, vehicles: int) -> float:
+    def lead(self, vehicles: int, scheme: str) -> float:
         """Return how long a round takes from freezing to its end, on a balanced tree [s].
 
-        Freeze, Gather and Stop each go from end to end of the tree, and the token round it in every sweep.
+        Freeze, Gather and Stop each go from end to end of the tree, and the token round it in every sweep;
+        ``multistart`` does all of that but Freeze twice. Other schemes are no slower than the token.
         """
         depth = math.ceil(math.log2(vehicles + 1)) - 1
-        hops = 3 * depth + 2 * (vehicles - 1) * _SWEEPS
+        rounds = 2 if scheme == "multistart" else 1
+        hops = depth + rounds * (2 * depth + 2 * (vehicles - 1) * _SWEEPS)
         return self.preparing + _MARGIN + self.link_delay * hops
 
 

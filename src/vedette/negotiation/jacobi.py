@@ -58,6 +58,8 @@ class JacobiNode(RootedNode[ImpactT]):
         self._ceiling = math.inf  # own part of it
         self._slack = math.inf  # own, against the last iterate that came down
         self._slacks: list[float] = []  # at the root: the team's, at each iterate but the present
+        self._teams: list[ImpactT] = []  # as this platform held it at each iterate but the present
+        self._best: int | None = None  # iterate that the round ended with
         self._first = 0  # at the root: first iterate that counts, everybody having a strategy
         self._lost: list[int] = []  # those cut that the iterate last reported still counts
         self._fewer = -1  # the iterate first reported without those cut last
@@ -102,8 +104,9 @@ class JacobiNode(RootedNode[ImpactT]):
         """Whether the best iterate may have been an earlier one: it is not a fixed point."""
         return self.finished is not None and not self.finished.converged
 
-    def team_held(self) -> None:
-        """Nothing: the round may end with the strategies of an earlier iterate."""
+    def team_held(self) -> ImpactT | None:
+        """Return the impacts held together; see `Negotiator`. None where it ends with the last iterate."""
+        return None if self._best is None or self._best >= len(self._teams) else self._teams[self._best]
 
     def _go_without(self, child: int) -> list[Outgoing[ImpactT]]:
         self._links.cut(child)
@@ -186,7 +189,8 @@ class JacobiNode(RootedNode[ImpactT]):
         before = self._own.impact
         if self._own.reply(others):
             self._links.changed()
-        self._slack = slack_at(self._own, self._own.combine(others, before), before)
+        self._teams.append(self._own.combine(others, before))
+        self._slack = slack_at(self._own, self._teams[-1], before)
         self._strategies.append(self._own.strategy)
         return onwards + self._gather()
 
@@ -194,6 +198,7 @@ class JacobiNode(RootedNode[ImpactT]):
         """Take up the best iterate's strategy again and tell the children."""
         if stop.iterate is None or stop.iterate >= len(self._strategies):
             raise InputError(f"negotiation message Stop at iterate {stop.iterate}, never reached; drop it")
+        self._best = stop.iterate
         self._own.adopt(self._strategies[stop.iterate])
         self.finished = stop.outcome
         return [Outgoing(k, stop) for k in (*self._children, *self._lost)]

@@ -210,7 +210,7 @@ def test_leads_let_rounds_end_in_time_and_hopeless_links_are_refused() -> None:
         for mission, agent in zip(simulation.missions, simulation.agents, strict=True):
             assert mission.plan() is not None
             assert agent.dropped == 0
-    assert RoundTimes(0.02, JOB_TIME).lead(4) < 0.8
+    assert RoundTimes(0.02, JOB_TIME).lead(4, "token") < 0.8
     with pytest.raises(InputError, match=r"round of 3 vehicles takes .* longer horizon"):
         TrackSimulation(scenario(), TrackSetup(link_delay=0.3))
 

@@ -157,6 +157,8 @@ def _wrong(part: Any) -> str | None:
         return f"is {type(part).__name__}, not a Planner"
     if not isinstance(part.layers, TimeLayers) or not callable(part.platform):
         return "needs layers, a TimeLayers, and a platform that can be called with a PlatformSpec"
+    if not isinstance(part.end_price, EndPrice):
+        return f"has {brief(part.end_price)} as end_price, not an EndPrice"
     for name in ("hidden", "return_price", "turn"):
         value = getattr(part, name)
         if not (is_number(value) and value >= 0.0) and not (name == "turn" and value == math.inf):

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.domains.mapping.impact import PRICE_STEPS, Impact
+from vedette.errors import InputError, brief
 from vedette.kernels.coverage import LAYERS
-from vedette.number import many
+from vedette.number import is_number, many
 
 LATEST = 3600.0  # a tour that ends later costs no more [s]
 
@@ -24,6 +25,13 @@ class EndPrice:
 
     linear: float = 0.0  # a second
     quadratic: float = 0.0  # a second^2
+
+    def __post_init__(self) -> None:
+        """Raise ``InputError`` unless both are numbers >= 0."""
+        for name in ("linear", "quadratic"):
+            value = getattr(self, name)
+            if not (is_number(value) and 0.0 <= value < math.inf):
+                raise InputError(f"end_price: {name} must be a number >= 0; got {brief(value)}")
 
     def times(self, factor: float) -> EndPrice:
         """Return so many times the price."""

@@ -62,7 +62,7 @@ class TrackTeam:
     @property
     def lead(self) -> float:
         """From freezing a round to the start of its plans, at least [s]."""
-        return self.times.lead(self.size)
+        return self.times.lead(self.size, self.options.negotiates_by)
 
     @cached_property
     def objective(self) -> TrackingObjective:
