@@ -9,9 +9,10 @@ import pytest
 from msgspec import structs
 
 from tests.support.agent_team import Float, ToyMission
+from tests.support.priced import PRICED
 from tests.support.signing_agents import agent, hears, notary
 from vedette.agent import Agent, messages
-from vedette.agent.account import Claimed, account_of, contradicts, words_of
+from vedette.agent.account import Claimed, account_of, contradicts, print_of, words_of
 from vedette.agent.audit import EVERY, WAITS
 from vedette.agent.effects import Send
 from vedette.agent.messages import MOST_ANSWERED, Account, Audit, Proof
@@ -236,6 +237,48 @@ def test_sums_of_a_round_that_ended_by_strategies_of_earlier_catch_nobody(goes_b
         hears(made, 0, account(0, made, own), now)
         auditor.tick(now + 2.0 * WAITS)
     assert (auditor.caught.keys() == {0}) != goes_back
+
+
+def at(price: float, *seen: int) -> Float:
+    """The last number in the place of the last point."""
+    impact = misses(*seen)
+    impact[-1] = price
+    return impact
+
+
+@pytest.mark.parametrize("told", [0.0, 0.25, 0.5])
+def test_a_sum_with_another_price_than_what_is_signed_behind_it_names_its_teller(told: float) -> None:
+    """It says to see what it signs to see, and for less, or for more."""
+    made = robot(1, (0,))
+    auditor = made.rounds.scrutiny.auditor
+    assert auditor is not None
+    auditor.mission.__class__ = Promising
+    mission: Any = auditor.mission
+    mission.objective = PRICED
+    auditor.standing.notary.admit(0, notary(0).certificate)
+    for sequence in (7, 8):
+        now = 10.0 * sequence
+        auditor.want(now)
+        nothing, heard = at(0.0), {0: at(told, 3, 4)}
+        auditor.decided(Claimed((1, sequence), WORTH, nothing, heard, {}, {}), (0,), now)
+        own = Claimed((1, sequence), WORTH, at(0.25, 3, 4), {1: nothing}, {1: heard[0]}, {})
+        hears(made, 0, account(0, made, own), now)
+        auditor.tick(now + 2.0 * WAITS)
+    assert (auditor.caught.keys() == {0}) == (told != 0.25)
+
+
+def test_who_signs_to_have_told_another_price_than_that_of_what_it_adds_up_is_convicted() -> None:
+    made = robot(1, (0, 2))
+    mission: Any = made.mission
+    mission.objective = PRICED
+    adds_up = Claimed(STAMP, WORTH, at(0.25, 3, 4), {3: at(0.5, 5)}, {}, {})
+    whole, cheap = at(0.75, 3, 4, 5), at(0.5, 3, 4, 5)
+    honest, liar = (
+        account(2, made, adds_up, told=((1, print_of(mission.codec.encode(each))),))
+        for each in (whole, cheap)
+    )
+    assert not contradicts(honest, mission)
+    assert contradicts(liar, mission)
 
 
 def test_an_account_in_a_robots_own_name_keeps_it_from_giving_none() -> None:

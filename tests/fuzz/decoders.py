@@ -126,6 +126,8 @@ def _misses(codec: MappingCodec | SearchCodec) -> list[Any]:
     for size in (0, 3, 200):
         keys = np.sort(rng.choice(CELLS_PLANNED * LAYERS, size, replace=False)).astype(np.uint32)
         impacts.append(Misses(keys, rng.integers(1, 60, size).astype(np.uint8)))
+    if isinstance(codec, MappingCodec):
+        impacts.append(Misses(*impacts[1].sparse, 1 << 30))
     return [codec.decode(codec.encode(impact)) for impact in impacts]
 
 

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import reduce
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.priced import PRICED, priced
 from tests.support.random_teams import Float, Longest, Node, misses
 from vedette import Coverage, InputError, Tree, exhaustive
 from vedette.negotiation import (
@@ -116,8 +118,7 @@ class Round:
 
     def value_of(self, members: set[int], weights: Float) -> float:
         """Brute force: what these platforms' present strategies are worth."""
-        impact = np.prod([np.ones(CELLS), *(self.team[i].impact for i in members)], axis=0)
-        return float(np.sum(weights * (1.0 - impact)))
+        return PRICED.value(weights, together(weights, (self.team[i].impact for i in members)))
 
     def ended(self) -> set[int]:
         """Who has the root's outcome."""
@@ -133,22 +134,19 @@ def reached(tree: Tree, gone: set[int]) -> set[int]:
     return found
 
 
-class Placed(Coverage):
-    """Cell s lies at x = s: so messages can leave out cells that nobody beyond a link changes."""
-
-    def clip(self, belief: Float, impact: Float, reach: Reach) -> Float:
-        """Keep what lies in the boxes."""
-        x = np.arange(CELLS)
-        inside = np.zeros(CELLS, bool)
-        for low, _, high, _ in reach:
-            inside |= (low <= x) & (x <= high)
-        return np.where(inside, impact, 1.0)
+def together(weights: Float, impacts: Iterable[Float]) -> Float:
+    """All of them combined."""
+    return reduce(PRICED.combine, impacts, PRICED.nothing(weights))
 
 
 def round_of(rng: np.random.Generator, n: int, kind: str, tree: Tree | None = None) -> tuple[Round, Float]:
-    """A random team and its weights; "clipped": each sees a few cells, and messages are clipped."""
+    """A random team, in one of two with prices, and its weights.
+
+    "clipped": each sees a few cells, and messages are clipped.
+    """
     tree, weights = tree or Tree.random(n, seed=rng), rng.uniform(0.2, 1.0, size=CELLS)
-    candidates = misses(rng, n, 4, CELLS)
+    dear = float(rng.choice([0.0, 2.0]))
+    candidates = [priced(rng, own, dear) for own in misses(rng, n, 4, CELLS)]
     parents = tree.parents()
     reaches: list[dict[int, Reach]] = [{} for _ in range(n)]
     if "clipped" in kind:
@@ -156,14 +154,13 @@ def round_of(rng: np.random.Generator, n: int, kind: str, tree: Tree | None = No
         own: list[Reach] = [((float(x), 0.0, float(x + 3), 0.0),) for x in first]
         for i in range(n):
             for k, impact in enumerate(candidates[i]):
-                keep = (np.arange(CELLS) >= first[i]) & (np.arange(CELLS) <= first[i] + 3)
-                candidates[i][k] = np.where(keep, impact, 1.0)
+                candidates[i][k] = PRICED.clip(weights, impact, own[i])
         for i in range(n):
             for k in tree.neighbours(i):
                 reaches[i][k] = _reach_beyond(tree, own, i, k)
-    start: list[int | None] = rng.integers(4, size=n).tolist() if rng.uniform() < 0.7 else [None] * n
-    objective = Placed() if "clipped" in kind else Coverage()
-    team = [Chooser(objective, weights, own, start=k) for own, k in zip(candidates, start, strict=True)]
+    begun = dear or rng.uniform() < 0.7  # a first choice may lower the value if it costs something
+    start: list[int | None] = rng.integers(4, size=n).tolist() if begun else [None] * n
+    team = [Chooser(PRICED, weights, own, start=k) for own, k in zip(candidates, start, strict=True)]
     nodes: list[Node] = [
         node_of(kind.split(",")[0], tree.neighbours(i), parents[i], team[i], reaches=reaches[i])
         for i in range(n)
@@ -245,8 +242,8 @@ def test_after_a_cut_the_value_never_falls_and_ends_where_nobody_gains_alone(
     assert (np.diff([*values, outcome.value]) >= -1e-9).all()
     assert outcome.converged
     for i in run.ended():
-        rest = np.prod([np.ones(CELLS), *(run.team[k].impact for k in counted - {i})], axis=0)
-        best = max(float(np.sum(weights * (1.0 - rest * own))) for own in run.candidates[i])
+        rest = together(weights, (run.team[k].impact for k in counted - {i}))
+        best = PRICED.values(weights, rest, run.candidates[i]).max()
         assert best <= outcome.value + 1e-8
 
 
@@ -255,7 +252,7 @@ def test_after_a_cut_the_value_never_falls_and_ends_where_nobody_gains_alone(
 def test_the_bound_after_a_cut_is_above_the_optimum_of_those_left(seed: int, n: int, kind: str) -> None:
     run, weights = round_of(np.random.default_rng(seed), n, kind)
     outcome = play(run)
-    best = exhaustive(Coverage(), weights, [run.candidates[i] for i in sorted(joined(run))]).value
+    best = exhaustive(PRICED, weights, [run.candidates[i] for i in sorted(joined(run))]).value
     assert outcome.bound is not None
     assert outcome.value <= best + 1e-9 <= outcome.bound + 2e-9
 
@@ -265,7 +262,7 @@ def test_who_loses_everybody_decides_alone(kind: str) -> None:
     run, weights = round_of(np.random.default_rng(3), 5, kind, Tree.star(5))
     run.dead.update({1, 2, 3, 4})
     outcome = run.finish()
-    alone = max(float(np.sum(weights * (1.0 - own))) for own in run.candidates[0])
+    alone = max(PRICED.value(weights, own) for own in run.candidates[0])
     assert run.ended() == {0}
     assert outcome.value == outcome.bound == pytest.approx(alone)
 

@@ -1,7 +1,7 @@
 """Exploring teams with one member that lies, or misbehaves in any other way; all of it follows from a seed.
 
-``python -m tests.support.liars MODE ROBOTS FIRST LAST [SCHEME]`` plays many, and the same teams with that
-member dead.
+``python -m tests.support.liars MODE ROBOTS FIRST LAST [SCHEME [PLANNER]]`` plays many, and the same teams
+with that member dead.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from tests.support.lies import MODES, Mode
 from tests.support.misbehaving import Twice
 from tests.support.notaries import PlainNotary
 from vedette.agent import Agent, NetworkedAgent
+from vedette.domains.mapping.planners import DEFAULT
 from vedette.fusion.signed import SignedEvidence
 from vedette.fusion.trust import Comparison
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
@@ -171,7 +172,7 @@ class Ending:
     worst: Comparison  # how far two of the honest contradicted each other at most
 
 
-def play(mode: str, robots: int, seed: int, scheme: str | None = None, **fields: Any) -> Ending:
+def play(mode: str, robots: int, seed: int, scheme: str | None = None, planner: str = DEFAULT) -> Ending:
     """Play one mission."""
     rng = np.random.default_rng([seed, 5])
     world = office(rng, 14.0, 12.0)
@@ -179,9 +180,14 @@ def play(mode: str, robots: int, seed: int, scheme: str | None = None, **fields:
     if how.between:
         liar = robots // 2
     setup = ExploreSetup(
-        seed=seed, max_time=AT_MOST, faults=Schedule(()), unbounded=how.unbounded, scheme=scheme
+        seed=seed,
+        max_time=AT_MOST,
+        faults=Schedule(()),
+        unbounded=how.unbounded,
+        scheme=scheme,
+        planner=planner,
     )
-    specs = [PlatformSpec(name=f"robot-{i + 1}", **fields) for i in range(robots)]
+    specs = [PlatformSpec(name=f"robot-{i + 1}") for i in range(robots)]
     team = LyingTeam(world, specs, setup, how, liar)
     outcome = team.run(team.look, 5.0)
     fusions = [team.missions[i].fusion for i in team.honest]
@@ -190,16 +196,19 @@ def play(mode: str, robots: int, seed: int, scheme: str | None = None, **fields:
 
 
 @cache
-def without(mode: str, robots: int, seed: int, scheme: str | None = None) -> Ending:
+def without(mode: str, robots: int, seed: int, scheme: str | None = None, planner: str = DEFAULT) -> Ending:
     """Play the same team with that member dead."""
-    return play("dead between" if MODES[mode].between else "dead", robots, seed, scheme)
+    return play("dead between" if MODES[mode].between else "dead", robots, seed, scheme, planner)
 
 
-def main(mode: str, robots: int, first: int, last: int, scheme: str | None = None) -> None:
+def main(
+    mode: str, robots: int, first: int, last: int, scheme: str | None = None, planner: str = DEFAULT
+) -> None:
     """Print a line a mission."""
     for seed in range(first, last):
         began = time.monotonic()
-        dead, ending = without(mode, robots, seed, scheme), play(mode, robots, seed, scheme)
+        team = robots, seed, scheme, planner
+        dead, ending = without(mode, *team), play(mode, *team)
         named = ending.named.get(ending.liar)
         others = sorted(set(ending.named) - {ending.liar})
         print(
@@ -214,4 +223,4 @@ def main(mode: str, robots: int, first: int, last: int, scheme: str | None = Non
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], *map(int, sys.argv[2:5]), *sys.argv[5:6])
+    main(sys.argv[1], *map(int, sys.argv[2:5]), *sys.argv[5:7])

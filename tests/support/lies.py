@@ -19,6 +19,7 @@ from vedette.agent.messages import Evidence, Negotiate
 from vedette.agent.networked import Output
 from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.objective import MappingObjective
+from vedette.domains.mapping.price import LATEST
 from vedette.domains.mapping.sightings import BINS
 from vedette.domains.mapping.views import MOST_STOPS
 from vedette.fusion.seals import BEACON
@@ -138,7 +139,7 @@ class Claims(Exploring):
 
 
 def largest_claim(belief: Any, most: Most) -> Impact:
-    """Return the planning cells of most worth, as many and as early as one robot may claim."""
+    """Return the planning cells of most worth, as many and as early as one robot may claim, as cheap."""
     side, edges = belief.planning.resolution, belief.layers.edges
     worth = belief.weights.window
     order = np.argsort(-worth.ravel(), kind="stable")
@@ -151,7 +152,8 @@ def largest_claim(belief: Any, most: Most) -> Impact:
     cells = (row + belief.first[0]) * belief.planning.cols + col + belief.first[1]
     keys = (cells * LAYERS + layer).astype(np.uint32)
     at = np.argsort(keys)
-    return Impact(keys[at], np.full(len(keys), 64, np.uint8))
+    claim = Impact(keys[at], np.full(len(keys), 64, np.uint8))
+    return replace(claim, price=belief.end_price.least(claim, edges))
 
 
 class BoastingObjective(MappingObjective):
@@ -192,10 +194,43 @@ class Inflating(NetworkedAgent):
             belief = rounds.round.belief
             said: Any = negotiation.decode(message.data, mission.codec)
             if getattr(said, "mu", None) is not None:
-                more = mission.objective.combine(said.mu, largest_claim(belief, mission.most))
-                data = negotiation.encode(structs.replace(said, mu=more), mission.codec)
+                other = self._instead(mission, belief, said.mu)
+                data = negotiation.encode(structs.replace(said, mu=other), mission.codec)
                 send = replace(send, payload=messages.encode(structs.replace(message, data=data)))
         return super()._say(send, now)
+
+    def _instead(self, mission: Any, belief: Any, mu: Any) -> Any:
+        return mission.objective.combine(mu, largest_claim(belief, mission.most))
+
+
+class Overcharging(Inflating):
+    """Tells of a higher price than that of the sum, as high as can be believed of one more robot."""
+
+    def _instead(self, mission: Any, belief: Any, mu: Any) -> Any:
+        return replace(mu, price=mu.price + belief.end_price.of(LATEST) // 2)
+
+
+class Underselling(Inflating):
+    """Tells of half the price of the sum, or of the least that can be believed."""
+
+    def _instead(self, mission: Any, belief: Any, mu: Any) -> Any:
+        return replace(mu, price=max(mu.price // 2, belief.end_price.least(mu, belief.layers.edges)))
+
+
+class Unpriced(Exploring):
+    """Its tours cost nothing, it says and signs, whenever they end."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.platform.price = lambda belief, strategy: 0  # type: ignore[method-assign]
+
+
+class Priceless(Exploring):
+    """Whatever it does costs as much as can be believed."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.platform.price = lambda belief, strategy: belief.end_price.of(LATEST)  # type: ignore[method-assign]
 
 
 class Poisoning(NetworkedAgent):
@@ -266,6 +301,13 @@ LIES: Mapping[str, Mode] = {
     "inflate": Mode(program=lambda rng: Inflating, between=True),
 }
 
+PRICES: Mapping[str, Mode] = {  # where tours have any
+    "overcharge": Mode(program=lambda rng: Overcharging),
+    "undersell": Mode(program=lambda rng: Underselling),
+    "unpriced": Mode(Unpriced),
+    "priceless": Mode(Priceless),
+}
+
 MODES: Mapping[str, Mode] = {
     "dead": Mode(program=lambda rng: misbehaving.Dead),
     "dead between": Mode(program=lambda rng: misbehaving.Dead, between=True),
@@ -276,4 +318,5 @@ MODES: Mapping[str, Mode] = {
     "slow": Mode(program=lambda rng: partial(misbehaving.Slow, takes=float(rng.choice(SLOW)))),
     "double": Mode(doubled=True),
     "in the way": Mode(program=lambda rng: Blocking),
+    **PRICES,
 }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,3 +61,4 @@ def _platform(spec: PlatformSpec) -> MappingPlatform:
 
 PRICED = _priced(EndPrice(1.0, 0.05))  # nat/s, as what tours bring: some are worth it
 DEAR = _priced(EndPrice(1e3, 10.0))  # no tour is ever worth it
+WRONG = replace(PRICED, end_price=2.0)  # type: ignore[arg-type]

@@ -151,7 +151,9 @@ class Auditor:
         if signed is None or not isinstance(self.mission, Promising):
             return
         seen, covered = (self.mission.promised(claimed.belief, impact)[0] for impact in (told, signed))
-        if len(np.setdiff1d(seen, covered, assume_unique=True)) < LEAST:
+        price = self.mission.objective.price
+        costs_as_signed = price(told) == price(signed)
+        if costs_as_signed and len(np.setdiff1d(seen, covered, assume_unique=True)) < LEAST:
             self._unlike.pop(link, None)
             return
         self._unlike[link] += 1

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.explorers import explorer
 from tests.support.mapping_scenes import SPEC, frozen, placed
 from vedette.domains.mapping.impact import (
     NOTHING,
@@ -20,8 +22,10 @@ from vedette.domains.mapping.impact import (
 )
 from vedette.domains.mapping.layers import rate
 from vedette.domains.mapping.objective import MappingObjective
+from vedette.domains.mapping.planners import planner
 from vedette.domains.mapping.platform import STAY, MappingPlatform
 from vedette.domains.mapping.price import FREE, LATEST, EndPrice
+from vedette.errors import InputError
 from vedette.kernels.coverage import LAYERS
 from vedette.testing import check_objective
 
@@ -115,3 +119,30 @@ def test_a_tour_costs_by_its_end_and_to_stay_as_much_as_the_farthest_single_stop
     assert not len(robot.impact(belief, STAY).keys)
     assert robot.impact(replace(belief, end_price=FREE), STAY) == NOTHING
     DEAR.check(robot.impact(belief, tour), 1, belief.layers.edges)
+
+
+def test_a_mission_admits_what_its_own_robot_does_and_no_cheaper_or_dearer() -> None:
+    mission = explorer()
+    mission.planner = replace(mission.planner, end_price=DEAR)
+    assert mission._frozen(mission.fusion).end_price == DEAR
+    belief = replace(frozen(), end_price=DEAR)
+    robot = MappingPlatform(SPEC, max_stops=6)
+    placed(robot, belief)
+    assert robot.stops is not None
+    tour = robot.tour(np.argsort(robot.stops.first_leg, kind="stable")[:2])
+    impact = robot.impact(belief, tour)
+    mission.admit(belief, impact, 1)
+    for price in (0, impact.price // 2, 2 * DEAR.of(LATEST)):
+        with pytest.raises(ValueError, match="has a price"):
+            mission.admit(belief, replace(impact, price=price), 1)
+
+
+@pytest.mark.parametrize("wrong", [-1.0, float("nan"), float("inf"), True, "2"])
+def test_what_is_no_end_price_is_refused_in_a_line(wrong: Any) -> None:
+    with pytest.raises(InputError, match="end_price: quadratic must be a number >= 0; got"):
+        EndPrice(0.0, wrong)
+
+
+def test_a_planner_whose_end_price_is_none_is_refused_in_a_line() -> None:
+    with pytest.raises(InputError, match=r"has 2\.0 as end_price, not an EndPrice"):
+        planner("tests.support.priced_planner:WRONG")
