@@ -15,17 +15,18 @@ from vedette.sim.explore.run import explore, prepare
 from vedette.sim.explore.simulation import ExploreSetup, ExploreSimulation
 
 OBJECTIVE = MappingObjective()
+PRICED, DEAR = (f"tests.support.priced_planner:{name}" for name in ("PRICED", "DEAR"))
 
 
 def team(planner: str, seed: int, n: int, scheme: str = "token") -> ExploreSimulation:
     """A team in a small office."""
-    planner = f"tests.support.priced_planner:{planner}"
     setup = ExploreSetup(seed=seed, planner=planner, scheme=scheme, max_time=900.0)
     return prepare(small_office(seed=1 + seed), robots(n), setup)
 
 
+@pytest.mark.parametrize("planner", ["long", PRICED])
 def test_for_hundreds_of_turns_the_token_announces_what_the_team_is_worth_and_that_never_falls(
-    monkeypatch: pytest.MonkeyPatch,
+    planner: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     teams: list[ExploreSimulation] = []
     turns: list[tuple[float, float, float, bool]] = []  # announced before, and after, true, with prices
@@ -43,7 +44,7 @@ def test_for_hundreds_of_turns_the_token_announces_what_the_team_is_worth_and_th
 
     monkeypatch.setattr(TokenNode, "_turn", watched)
     for seed in range(4):
-        teams.append(team("PRICED", seed, 3))
+        teams.append(team(planner, seed, 3))
         check_complete(explore(teams[-1]))
     assert len(turns) > 300
     assert sum(priced for *_, priced in turns) > 0.9 * len(turns)
@@ -55,4 +56,4 @@ def test_for_hundreds_of_turns_the_token_announces_what_the_team_is_worth_and_th
 
 @pytest.mark.parametrize("scheme", ["token", "multistart", "fork", "async", "jacobi"])
 def test_where_no_tour_is_worth_its_price_a_team_goes_on_until_nothing_is_left_to_see(scheme: str) -> None:
-    check_complete(explore(team("DEAR", 0, 2, scheme)))
+    check_complete(explore(team(DEAR, 0, 2, scheme)))

@@ -139,7 +139,7 @@ class Claims(Exploring):
 
 
 def largest_claim(belief: Any, most: Most) -> Impact:
-    """Return the planning cells of most worth, as many and as early as one robot may claim, as cheap."""
+    """Return the planning cells of most worth, as many and as early as one robot may claim."""
     side, edges = belief.planning.resolution, belief.layers.edges
     worth = belief.weights.window
     order = np.argsort(-worth.ravel(), kind="stable")
@@ -152,8 +152,7 @@ def largest_claim(belief: Any, most: Most) -> Impact:
     cells = (row + belief.first[0]) * belief.planning.cols + col + belief.first[1]
     keys = (cells * LAYERS + layer).astype(np.uint32)
     at = np.argsort(keys)
-    claim = Impact(keys[at], np.full(len(keys), 64, np.uint8))
-    return replace(claim, price=belief.end_price.least(claim, edges))
+    return Impact(keys[at], np.full(len(keys), 64, np.uint8))
 
 
 class BoastingObjective(MappingObjective):
@@ -211,10 +210,10 @@ class Overcharging(Inflating):
 
 
 class Underselling(Inflating):
-    """Tells of half the price of the sum, or of the least that can be believed."""
+    """Tells of half the price of the sum."""
 
     def _instead(self, mission: Any, belief: Any, mu: Any) -> Any:
-        return replace(mu, price=max(mu.price // 2, belief.end_price.least(mu, belief.layers.edges)))
+        return replace(mu, price=mu.price // 2)
 
 
 class Unpriced(Exploring):

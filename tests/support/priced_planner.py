@@ -59,6 +59,6 @@ def _platform(spec: PlatformSpec) -> MappingPlatform:
     return PricedPlatform(spec, max_stops=LONGEST, measured="unknown")
 
 
-PRICED = _priced(EndPrice(1.0, 0.05))  # nat/s, as what tours bring: some are worth it
+PRICED = _priced(EndPrice(0.03, 0.001))  # some tours are worth it
 DEAR = _priced(EndPrice(1e3, 10.0))  # no tour is ever worth it
 WRONG = replace(PRICED, end_price=2.0)  # type: ignore[arg-type]

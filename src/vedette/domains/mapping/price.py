@@ -5,13 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from vedette.domains.mapping.impact import PRICE_STEPS, Impact
 from vedette.errors import InputError, brief
-from vedette.kernels.coverage import LAYERS
-from vedette.kernels.misses import SparseMisses
 from vedette.number import is_number, many
 
 LATEST = 3600.0  # a tour that ends later costs no more [s]
@@ -43,33 +38,17 @@ class EndPrice:
         t = min(end, LATEST)
         return math.floor((self.linear + 0.5 * self.quadratic * t) * t * PRICE_STEPS + 0.5)
 
-    def least(self, impact: SparseMisses, edges: NDArray[np.float64]) -> int:
-        """Return what robots pay at least that show so much: one of them drives until the last layer begins.
-
-        Args:
-            impact: of robots, combined.
-            edges: (LAYERS,) upper edge of each layer [s].
-        """
-        last = int((impact.keys % np.uint32(LAYERS)).max(initial=0))
-        return self.of(float(edges[last - 1])) if last else 0
-
-    def check(self, impact: Impact, robots: int, edges: NDArray[np.float64]) -> None:
+    def check(self, impact: Impact, robots: int) -> None:
         """Raise ``ValueError`` for a price that so many robots, combined, cannot have.
 
         No tour costs more than one that ends at ``LATEST``.  docs/theory.md (V196)
-
-        Args:
-            impact: of so many robots, combined.
-            robots: how many.
-            edges: (LAYERS,) upper edge of each layer [s].
         """
-        if not impact.price and self == FREE:
-            return
-        least, most = self.least(impact, edges), robots * self.of(LATEST)
-        if not least <= impact.price <= most:
-            said, low, high = (price / PRICE_STEPS for price in (impact.price, least, most))
-            costs = f"what it shows costs {many(robots, 'robot')} {low:.9g} to {high:.9g}"
-            raise ValueError(f"impact has a price of {said:.9g}; {costs}")
+        most = robots * self.of(LATEST)
+        if not 0 <= impact.price <= most:
+            said, high = (price / PRICE_STEPS for price in (impact.price, most))
+            raise ValueError(
+                f"impact has a price of {said:.9g}; {many(robots, 'robot')} cost 0 to {high:.9g}"
+            )
 
 
 FREE = EndPrice()

@@ -14,6 +14,7 @@ from vedette.agent.events import Pose, Scan, Sensed
 from vedette.agent.mates import Mate
 from vedette.agent.orders import OrderBook
 from vedette.domains.mapping.belief import (
+    LN2,
     MapBelief,
     freeze,
     longest_frontier,
@@ -294,7 +295,7 @@ class Exploring:
 
     def admit(self, belief: MapBelief, impact: Impact, robots: int) -> None:
         """Refuse more than so many of the team's best robots can see, and a price that they cannot have."""
-        belief.end_price.check(impact, robots, belief.layers.edges)
+        self.planner.end_price.times(LN2 / self.frame.resolution**2).check(impact, robots)
         if self.most is not None:
             side, edges = belief.planning.resolution, belief.layers.edges
             stops = MOST_STOPS  # a tour has no stop twice
