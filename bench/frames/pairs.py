@@ -20,7 +20,11 @@ from vedette.sim.worlds import GENERATORS
 
 LOG_REACH = 20.0  # of a log's beams that count [m]
 WAYS = 6.0, 22.0  # how far about its start a robot has explored [m]
+STRETCHES = 0.15, 0.6  # of a log that a robot has
+OVERLAPS = 0.1, 1.0  # of two maps of one place, drawn evenly
+TRIES, NEAR_ENOUGH = 4, 0.05  # second maps made for one overlap, and how near it may be
 SIZES = 20.0, 36.0  # of generated places [m]
+STANDS = 0.25  # room that a start has about it [m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +61,11 @@ class Pair:
         sizes = [np.count_nonzero(m.classes == FREE) * m.frame.resolution**2 for m in (self.a, self.b)]
         return float(min(sizes))
 
+    @property
+    def overlap(self) -> float:
+        """Share of the smaller map's free ground that the other has mapped too, 0..1."""
+        return self.common / self.least if self.least else 0.0
+
 
 @dataclass(frozen=True)
 class Sources:
@@ -73,10 +82,10 @@ class Sources:
     def two_of_one(self, number: int, place: str) -> Pair:
         """Return a pair of one place."""
         rng = np.random.default_rng([1, number])
-        for path in self.logs:
-            if path.name == place:
-                return Pair(place, *_shares(_log(path), rng), True)
-        return Pair(place, *_explored(self._world(place, rng), rng), True)
+        log = self._log(place)
+        if log is not None:
+            return _shares(place, log, rng)
+        return _explored(place, self._world(place, rng), rng)
 
     def two_places(self, number: int) -> Pair:
         """Return a pair of different places: other floors, or other ones of a kind."""
@@ -84,14 +93,25 @@ class Sources:
         first, second = (str(name) for name in rng.choice(self.places, 2, replace=number % 2 == 0))
         if first == second and first not in GENERATORS:
             second = str(rng.choice(list(GENERATORS)))
-        maps = [self.two_of_one(int(rng.integers(1 << 30)), place) for place in (first, second)]
-        return Pair(f"{first} / {second}", maps[0].a, maps[1].b, False)
+        a, b = (self._alone(place, rng) for place in (first, second))
+        return Pair(f"{first} / {second}", a, b, False)
 
     def two_alike(self, number: int) -> Pair:
         """Return a pair of one place that looks alike from afar."""
         rng = np.random.default_rng([3, number])
         kind = list(ALIKE)[number % len(ALIKE)]
-        return Pair(kind, *_explored(ALIKE[kind](rng), rng), True)
+        return _explored(kind, ALIKE[kind](rng), rng, tries=1)
+
+    def _alone(self, place: str, rng: np.random.Generator) -> Mapped:
+        log = self._log(place)
+        if log is not None:
+            return _share(log, 0, rng)
+        world = self._world(place, rng)
+        start = int(rng.choice(np.flatnonzero(standable(world, STANDS))))
+        return mapped(looked(world, start, rng.uniform(*WAYS), rng), REACH, anywhere(rng))
+
+    def _log(self, place: str) -> RecordedLog | None:
+        return next((_log(path) for path in self.logs if path.name == place), None)
 
     def _world(self, place: str, rng: np.random.Generator) -> World:
         for path in self.floors:
@@ -127,29 +147,47 @@ def _log(path: Path) -> RecordedLog:
     return read_carmen(path)
 
 
-def _explored(world: World, rng: np.random.Generator) -> tuple[Mapped, Mapped]:
-    """Return what two robots have mapped about two starts, the second's near the first's reach."""
-    ok = standable(world, 0.25)
+def _explored(place: str, world: World, rng: np.random.Generator, tries: int = TRIES) -> Pair:
+    """Return what two robots have mapped, the second about the best of so many starts for the overlap drawn.
+
+    One try is a start anywhere within what both explore. Where places look alike in parts that is enough: if
+    each robot has seen another of the equal parts, no map can tell.
+    """
+    ok = standable(world, STANDS)
     cells = np.flatnonzero(ok)
     start = int(rng.choice(cells))
-    field = distance_field(ok, start, world.frame.resolution).ravel()
-    reach = rng.uniform(*WAYS) * np.array([1.0, rng.uniform(0.7, 1.4)])
-    apart = min(rng.uniform(0.0, 0.9) * reach.sum(), float(field[cells][np.isfinite(field[cells])].max()))
-    other = int(cells[np.argmin(np.abs(field[cells] - apart) + rng.uniform(0.0, 0.5, len(cells)))])
-    first, second = (
-        mapped(looked(world, at, way, rng), REACH, anywhere(rng))
-        for at, way in zip((start, other), reach.tolist(), strict=True)
-    )
-    return first, second
+    field = distance_field(ok, start, world.frame.resolution).ravel()[cells]
+    near, far = 0.0, float(field[np.isfinite(field)].max())
+    ways = rng.uniform(*WAYS) * np.array([1.0, rng.uniform(0.7, 1.4)])
+    first = mapped(looked(world, start, float(ways[0]), rng), REACH, anywhere(rng))
+    wanted, apart = rng.uniform(*OVERLAPS), rng.uniform(0.0, min(far, 0.9 * float(ways.sum())))
+    pairs: list[Pair] = []
+    for _ in range(tries):
+        other = int(cells[np.argmin(np.abs(field - apart) + rng.uniform(0.0, 0.5, len(cells)))])
+        second = mapped(looked(world, other, float(ways[1]), rng), REACH, anywhere(rng))
+        pairs.append(Pair(place, first, second, True))
+        off = pairs[-1].overlap - wanted
+        if abs(off) <= NEAR_ENOUGH:
+            break
+        near, far = (apart, far) if off > 0.0 else (near, apart)
+        apart = (near + min(far, apart + float(ways.sum()))) / 2.0
+    return min(pairs, key=lambda pair: abs(pair.overlap - wanted))
 
 
-def _shares(log: RecordedLog, rng: np.random.Generator) -> tuple[Mapped, Mapped]:
+def _shares(place: str, log: RecordedLog, rng: np.random.Generator) -> Pair:
     """Return maps of two stretches of a log; where both run, the scans go to them in turn."""
+    first, wanted = _share(log, 0, rng), rng.uniform(*OVERLAPS)
+    pairs: list[Pair] = []
+    for _ in range(TRIES):
+        pairs.append(Pair(place, first, _share(log, 1, rng), True))
+        if abs(pairs[-1].overlap - wanted) <= NEAR_ENOUGH:
+            break
+    return min(pairs, key=lambda pair: abs(pair.overlap - wanted))
+
+
+def _share(log: RecordedLog, parity: int, rng: np.random.Generator) -> Mapped:
+    """Return a map of every other scan of a stretch of a log."""
     count = len(log.scans)
-    length = rng.uniform(0.15, 0.6, 2) * count
-    first = rng.uniform(0.0, count - length)
-    maps = [
-        mapped(log.scans[int(at) + parity : int(at + long) : 2], LOG_REACH, anywhere(rng))
-        for parity, at, long in zip((0, 1), first.tolist(), length.tolist(), strict=True)
-    ]
-    return maps[0], maps[1]
+    length = rng.uniform(*STRETCHES) * count
+    first = int(rng.uniform(0.0, count - length))
+    return mapped(log.scans[first - first % 2 + parity : int(first + length) : 2], LOG_REACH, anywhere(rng))

@@ -9,15 +9,15 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from bench.frames.tables import EDGES
+from bench.frames.tables import EDGES, counted
 from bench.frames.trial import Trial
 from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save, tidy
 
 
 def curve_png(trials: Sequence[Trial], path: Path) -> None:
-    """Draw both shares by overlap, for pairs of one place; the numbers of pairs stand above."""
-    one = [trial for trial in trials if trial.sort == "one"]
+    """Draw both shares by overlap, for pairs that count; the numbers of pairs stand above."""
+    one = counted(trials)
     middles, joined, wrong, counts = [], [], [], []
     for low, high in pairwise(EDGES):
         some = [trial for trial in one if low <= trial.overlap < high]

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from typing import Literal
 
 from bench.frames.pairs import Pair
-from vedette.align import Charted, JoinVerdict, charted, judged
+from vedette.align import Charted, JoinVerdict, align, charted, judged
 from vedette.record.summary import SCHEMA_VERSION
 
 RIGHT = 0.5, math.radians(3.0)  # a join farther from the truth is wrong [m, rad]
+REPETITIVE = 0.5  # of itself a place repeats elsewhere, from which on its pairs are told apart
 
 
 @dataclass(frozen=True)
@@ -28,6 +29,7 @@ class Trial:
     error_m: float | None  # of a join from the truth, at the middle of the second map
     error_deg: float | None
     rivalry: float
+    alike: float | None  # rivalry of the smaller map laid on itself, of one place
     side_m: float  # the longer side of the larger map
     time_s: float  # of CPU, all alignments of the pair
     commit: str
@@ -42,6 +44,11 @@ class Trial:
     def overlap(self) -> float:
         """Share of the smaller map's free ground that the other has mapped too, 0..1."""
         return self.common_m2 / self.least_m2 if self.least_m2 else 0.0
+
+    @property
+    def repetitive(self) -> bool:
+        """Whether it is a maze, or a map of which half fits elsewhere on itself."""
+        return self.place == "maze" or (self.alike is not None and self.alike > REPETITIVE)
 
 
 def tried(sort: str, number: int, pair: Pair, commit: str) -> Trial | None:
@@ -68,10 +75,17 @@ def tried(sort: str, number: int, pair: Pair, commit: str) -> Trial | None:
         error_m=shift,
         error_deg=None if turn is None else math.degrees(turn),
         rivalry=verdict.alignment.rivalry,
+        alike=_alike(a, b) if sort == "one" else None,
         side_m=max(a.side, b.side),
         time_s=spent,
         commit=commit,
     )
+
+
+def _alike(a: Charted, b: Charted) -> float:
+    """Return how well the map with less free ground fits elsewhere on itself, 0..1."""
+    smaller = min((a, b), key=lambda each: len(each.free) * each.cell**2)
+    return align(smaller, smaller).rivalry
 
 
 def _off(verdict: JoinVerdict, pair: Pair, b: Charted) -> tuple[float | None, float | None]:

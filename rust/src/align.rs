@@ -10,6 +10,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rustfft::num_complex::Complex32;
 
+pub mod fit;
 mod fourier;
 
 use fourier::Plane;
@@ -265,5 +266,6 @@ fn align_counts<'py>(
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(align_peaks, m)?)?;
-    m.add_function(wrap_pyfunction!(align_counts, m)?)
+    m.add_function(wrap_pyfunction!(align_counts, m)?)?;
+    m.add_function(wrap_pyfunction!(fit::align_fit, m)?)
 }

@@ -261,6 +261,13 @@ def align_counts(
     faces: tuple[NDArray[np.float64], NDArray[np.uint8]],
     transforms: NDArray[np.float64],
 ) -> NDArray[np.int64]: ...
+def align_fit(
+    grid: tuple[NDArray[np.int32], float, tuple[float, ...]],
+    on: tuple[NDArray[np.float64], ...],
+    moving: tuple[NDArray[np.float64], ...],
+    guess: tuple[float, float, float],
+    reaches: NDArray[np.float64],
+) -> NDArray[np.float64]: ...
 
 # render
 def render_tiles(

@@ -15,12 +15,12 @@ from vedette.align import FramePose
 
 @pytest.fixture(scope="module")
 def pair() -> Pair:
-    return Sources((), ()).two_of_one(1, "cave")
+    return Sources((), ()).two_of_one(5, "cave")
 
 
 @pytest.fixture(scope="module")
 def trial(pair: Pair) -> Trial:
-    made = tried("one", 1, pair, "0000000")
+    made = tried("one", 5, pair, "0000000")
     assert made is not None
     return made
 
@@ -39,9 +39,9 @@ def test_a_pair_of_one_place_is_joined_and_the_same_with_another_truth_is_wrong(
     assert trial.error_m is not None
     assert trial.error_m < 0.05
     elsewhere = replace(pair.b, pose=FramePose.of(1.0, 0.0, 0.0).after(pair.b.pose))
-    assert (other := tried("one", 1, Pair(pair.place, pair.a, elsewhere, True), "0000000")) is not None
+    assert (other := tried("one", 5, Pair(pair.place, pair.a, elsewhere, True), "0000000")) is not None
     assert other.outcome == "wrong"
-    assert (strange := tried("two", 1, Pair(pair.place, pair.a, pair.b, False), "0000000")) is not None
+    assert (strange := tried("two", 5, Pair(pair.place, pair.a, pair.b, False), "0000000")) is not None
     assert (strange.outcome, strange.error_m) == ("wrong", None)
 
 
@@ -59,3 +59,18 @@ def test_the_same_number_gives_the_same_pair() -> None:
     assert first.place == second.place
     assert np.array_equal(first.a.classes, second.a.classes)
     assert first.truth == second.truth
+
+
+def test_what_repeats_itself_is_told_apart_and_what_was_asked_is_met_or_missed(trial: Trial) -> None:
+    assert trial.alike is not None
+    assert not replace(trial, alike=0.5).repetitive
+    maze, hall = replace(trial, place="maze"), replace(trial, alike=0.6, outcome="refused")
+    assert maze.repetitive
+    assert hall.repetitive
+    some = [replace(trial, common_m2=50.0, least_m2=100.0, outcome="joined")] * 49
+    for refused, verdict in ((1, "MET"), (2, "MISSED")):
+        lines = tables([*some, *[replace(some[0], outcome="refused")] * refused, maze, hall]).splitlines()
+        (row,) = [line for line in lines if line.startswith("| joined from an overlap of 0.4")]
+        assert row.split("|")[4].strip() == verdict
+    (wrong,) = [line for line in tables([trial]).splitlines() if line.startswith("| joined wrongly")]
+    assert wrong.split("|")[3].strip() == "0"

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from vedette.kernels.align import ALIKE, ELSE, SAME, Weights, align_counts, align_peaks
+from vedette.kernels.align import ALIKE, ELSE, SAME, Weights, align_counts, align_fit, align_peaks
 from vedette.kernels.reference import align as reference
 
 Floats = NDArray[np.float64]
@@ -106,3 +106,62 @@ def test_masks_of_two_sizes_are_refused() -> None:
     a = np.zeros((4, 4), np.float32), np.zeros((5, 5), np.float32)
     with pytest.raises(ValueError, match="squares of one size"):
         align_peaks(a, (np.zeros((1, 2)), np.zeros((1, 2))), np.zeros(1), Weights(1.0, 1.0, 0.0), 1, 1)
+
+
+def room(seed: int) -> tuple[NDArray[np.int32], Floats, Floats]:
+    """Return the nearest face to each cell of a room of 6 x 4 m, and its faces and normals."""
+    rng = np.random.default_rng(seed)
+    along, up = rng.uniform(0.0, 6.0, 60), rng.uniform(0.0, 4.0, 40)
+    sides = [
+        (np.column_stack([along[:30], np.zeros(30)]), (0.0, 1.0)),
+        (np.column_stack([along[30:], np.full(30, 4.0)]), (0.0, -1.0)),
+        (np.column_stack([np.zeros(20), up[:20]]), (1.0, 0.0)),
+        (np.column_stack([np.full(20, 6.0), up[20:]]), (-1.0, 0.0)),
+    ]
+    faces = np.vstack([places for places, _ in sides])
+    normals = np.vstack([np.tile(normal, (len(places), 1)) for places, normal in sides])
+    row, col = np.mgrid[:60, :80]
+    cells = np.stack([col - 10.0, row - 10.0], axis=-1) * 0.1 + 0.05
+    away = np.hypot(*np.moveaxis(cells[:, :, None] - faces, -1, 0))
+    return away.argmin(axis=2).astype(np.int32), faces, normals
+
+
+@settings(deadline=None, max_examples=40)
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    guess=st.tuples(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5), st.floats(-0.15, 0.15)),
+    reaches=st.lists(st.floats(0.05, 1.0), min_size=1, max_size=4),
+)
+def test_faces_are_fitted_as_the_twin_fits_them(
+    seed: int, guess: tuple[float, float, float], reaches: list[float]
+) -> None:
+    face_at, faces, normals = room(seed)
+    grid = face_at, 0.1, np.array([-1.0, -1.0]), (faces, normals)
+    moving = room(seed + 1)[1:]
+    found = align_fit(*grid, moving, guess, np.array(reaches))
+    expected = reference.align_fit(*grid, moving, guess, np.array(reaches))
+    assert found.paired == expected.paired
+    assert found.pose == pytest.approx(expected.pose, abs=1e-6)
+    assert found.matrix == pytest.approx(expected.matrix, rel=1e-6, abs=1e-6)
+    assert found.squares == pytest.approx(expected.squares, rel=1e-6, abs=1e-9)
+
+
+def test_a_room_moved_and_turned_a_little_is_laid_on_itself() -> None:
+    face_at, faces, normals = room(3)
+    x, y, angle = 0.12, -0.2, 0.05
+    c, s = np.cos(angle), np.sin(angle)
+    back = np.array([[c, s], [-s, c]])
+    moved = (faces - (x, y)) @ back.T, normals @ back.T
+    reaches = np.array([0.8, 0.5, 0.3, 0.3, 0.2])
+    laid = align_fit(face_at, 0.1, np.array([-1.0, -1.0]), (faces, normals), moved, (0.0, 0.0, 0.0), reaches)
+    assert laid.pose == pytest.approx((x, y, angle), abs=1e-3)
+    assert laid.squares < 1e-6
+
+
+def test_a_cell_that_names_no_face_is_refused() -> None:
+    one = np.zeros((1, 2)), np.zeros((1, 2))
+    for face in (-1, 1):
+        with pytest.raises(ValueError, match="name one of the faces"):
+            align_fit(
+                np.full((2, 2), face, np.int32), 0.1, np.zeros(2), one, one, (0.0, 0.0, 0.0), np.ones(1)
+            )

@@ -44,6 +44,11 @@ class Charted:
         """The longer side of the known part [m]."""
         return max(self.frame.shape) * self.cell
 
+    @cached_property
+    def radius(self) -> float:
+        """How far from the middle the known part reaches [m]."""
+        return float(np.hypot(*np.vstack([self.walls, self.free]).T).max())
+
     @property
     def corner(self) -> Floats:
         """``(2,)`` of the first cell, from the middle [m]."""

@@ -7,14 +7,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vedette.align.candidates import Alignment, PossibleJoin, align
+from vedette.align.agreement import middles
+from vedette.align.candidates import Alignment, PossibleJoin, align, compared
 from vedette.align.charted import Charted, charted
 from vedette.align.corners import beside_a_corner
 from vedette.maps import UNKNOWN
 
 THINNINGS = 3
 THINNED = 0.3  # share of the ground that a thinning takes out
-BESIDE = 10.0  # walls that both have beside the two straight lines with most of them, at least [m]
+BESIDE = 8.0  # walls that both have beside the two straight lines with most of them, at least [m]
 BLOCK = 2.0  # side of what it takes out at once [m]
 STEADY = 0.3, math.radians(2.0)  # how far thinned maps may come from the whole ones' pose [m, rad]
 
@@ -46,8 +47,8 @@ class JoinRule:
         return None
 
 
-SAVED = JoinRule(rivalry=0.5, lead=25.0)
-OF_THINNED = JoinRule(rivalry=0.6, lead=10.0, same=10.0, common=10.0, deviation=0.2)
+SAVED = JoinRule(rivalry=0.6, lead=15.0)
+OF_THINNED = JoinRule(rivalry=0.75, lead=5.0, same=6.0, common=8.0, deviation=0.2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +81,7 @@ def judged(a: Charted, b: Charted, seed: int) -> JoinVerdict:
         if doubt is not None:
             break
         rng = np.random.default_rng([seed, number])
-        doubt = _doubt_of_thinned(whole.candidates[0], thinned(a, rng), thinned(b, rng))
+        doubt = _doubt_of_thinned(whole, thinned(a, rng), thinned(b, rng))
     return JoinVerdict(whole, doubt)
 
 
@@ -91,13 +92,14 @@ def _bare(a: Charted, b: Charted, best: PossibleJoin) -> str | None:
     return f"what both have is a bare corner, as any hall has one: {beside:.0f} m of other walls"
 
 
-def _doubt_of_thinned(best: PossibleJoin, a: Charted | None, b: Charted | None) -> str | None:
+def _doubt_of_thinned(whole: Alignment, a: Charted | None, b: Charted | None) -> str | None:
+    """Return why copies with parts missing, laid where the whole maps may lie, do not lie as those do."""
     if a is None or b is None:
         return "they are too small to be looked at in parts"
-    alignment = align(a, b)
+    alignment = compared(a, b, [middles(a, b, each.pose) for each in whole.possible])
     doubt = OF_THINNED.doubt(alignment)
     if doubt is None:
-        shift, turn = alignment.candidates[0].pose.apart(best.pose, b.middle)
+        shift, turn = alignment.candidates[0].pose.apart(whole.candidates[0].pose, b.middle)
         if shift > STEADY[0] or turn > STEADY[1]:
             doubt = "they come to lie elsewhere"
     return None if doubt is None else f"where parts are left out, {doubt}"

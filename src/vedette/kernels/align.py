@@ -27,6 +27,15 @@ class Weights(NamedTuple):
     free: float  # free ground on free ground
 
 
+class LaidFaces(NamedTuple):
+    """Where faces of one map came to lie on those of another, and what that rests on."""
+
+    pose: NDArray[np.float64]  # (3,) x, y [m] and angle [rad] that the moved faces were turned and moved by
+    matrix: NDArray[np.float64]  # (3, 3) of the last step's normal equations, in x, y, angle
+    squares: float  # mean of the squared distances along the normals, by weight [m^2]
+    paired: int  # faces that had one of the other map
+
+
 def align_peaks(
     a: tuple[NDArray[np.float32], NDArray[np.float32]],
     b: tuple[NDArray[np.float64], NDArray[np.float64]],
@@ -81,3 +90,32 @@ def align_counts(
     grid = tuple(np.ascontiguousarray(each, dtype=np.uint8) for each in (labels, looks))
     faces = floats(points).reshape(-1, 2), np.ascontiguousarray(point_looks, dtype=np.uint8)
     return _kernels.align_counts((grid[0], grid[1]), faces, floats(transforms).reshape(-1, 3))
+
+
+def align_fit(
+    face_at: NDArray[np.int32],
+    cell: float,
+    corner: NDArray[np.float64],
+    on: tuple[NDArray[np.float64], NDArray[np.float64]],
+    moving: tuple[NDArray[np.float64], NDArray[np.float64]],
+    guess: tuple[float, float, float],
+    reaches: NDArray[np.float64],
+) -> LaidFaces:
+    """Return the pose of least squares over the distances along the normals of the map that stays, (V142).
+
+    Args:
+        face_at: ``(R, C)`` which face of the map that stays is nearest to each cell.
+        cell: side of those cells [m].
+        corner: ``(2,)`` of the first of them [m].
+        on: ``(n, 2)`` faces of the map that stays [m], and their normals, unit vectors.
+        moving: ``(m, 2)`` faces of the other map [m], and their normals.
+        guess: x, y [m] and angle [rad]: the other map is turned about the origin, then moved.
+        reaches: within which faces are paired, one step of Gauss and Newton each [m].
+    """
+    grid = np.ascontiguousarray(face_at, dtype=np.int32), cell, tuple(corner)
+    pairs = [tuple(floats(each).reshape(-1, 2) for each in pair) for pair in (on, moving)]
+    told = _kernels.align_fit(grid, pairs[0], pairs[1], guess, floats(reaches))
+    matrix = np.zeros((3, 3))
+    matrix[np.triu_indices(3)] = told[3:9]
+    matrix.T[np.triu_indices(3)] = told[3:9]
+    return LaidFaces(told[:3], matrix, float(told[9]), int(told[10]))

@@ -5,9 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.kernels.align import ALIKE, ELSE, LABELS, QUARTERS, SAME, Weights
+from vedette.kernels.align import ALIKE, ELSE, LABELS, QUARTERS, SAME, LaidFaces, Weights
 
 Floats = NDArray[np.float64]
+
+FACING = 0.7  # least cosine between two paired faces' normals
+DAMPING = 1e-6  # of a step along which no face tells anything
+LEAST = 3  # a pose cannot be told from fewer pairs
 
 
 def worths(
@@ -69,6 +73,43 @@ def align_counts(
         found[(found == SAME) & (np.minimum(aside, 256 - aside) > ALIKE)] = ELSE
         count[:] = np.bincount(found, minlength=LABELS)
     return counts
+
+
+def align_fit(
+    face_at: NDArray[np.int32],
+    cell: float,
+    corner: Floats,
+    on: tuple[Floats, Floats],
+    moving: tuple[Floats, Floats],
+    guess: tuple[float, float, float],
+    reaches: Floats,
+) -> LaidFaces:
+    """Twin of ``align.align_fit``."""
+    pose, matrix, squares, paired = np.array(guess), np.zeros((3, 3)), 0.0, 0
+    for reach in reaches:
+        c, s = np.cos(pose[2]), np.sin(pose[2])
+        rotation = np.array([[c, -s], [s, c]])
+        arms, facing = (each @ rotation.T for each in moving)
+        places = arms + pose[:2]
+        col, row = np.floor((places - corner) / cell).astype(np.int64).T
+        inside = (row >= 0) & (col >= 0) & (row < face_at.shape[0]) & (col < face_at.shape[1])
+        which = np.flatnonzero(inside)
+        face = face_at[row[which], col[which]]
+        near = np.hypot(*(on[0][face] - places[which]).T) <= reach
+        kept = near & (np.einsum("ij,ij->i", on[1][face], facing[which]) >= FACING)
+        which, face = which[kept], face[kept]
+        paired = len(which)
+        if paired < LEAST:
+            break
+        n, arm = on[1][face], arms[which]
+        off = np.einsum("ij,ij->i", n, on[0][face] - places[which])
+        rows = np.column_stack([n, n[:, 1] * arm[:, 0] - n[:, 0] * arm[:, 1]])
+        weight = (1.0 + (off / (reach / 2.0)) ** 2) ** -2.0
+        matrix = (rows * weight[:, None]).T @ rows
+        damped = matrix + DAMPING * np.trace(matrix) * np.eye(3)
+        pose = pose + np.linalg.solve(damped, rows.T @ (weight * off))
+        squares = float(weight @ off**2 / weight.sum())
+    return LaidFaces(pose, matrix, squares, paired)
 
 
 def _turned(points: Floats, angle: float, quarters: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
