@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from tests.support.frames import Part, building, off, part, shell
 from vedette.align import FramePose, align, charted, judged, shifts
-from vedette.align.fitted import fitted
+from vedette.align.agreement import agreement, middles
+from vedette.align.fitted import fitted, pulled
 from vedette.kernels.reference import align as reference
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
 
@@ -152,3 +153,18 @@ def test_walls_that_look_the_other_way_do_not_count_as_the_same() -> None:
     assert best.same == pytest.approx(18.0, rel=0.1)
     touching = [c for c in align(a.charted, a.charted).candidates if c.common < 1.0]
     assert all(candidate.same < 4.0 for candidate in touching)
+
+
+@pytest.mark.parametrize(("shift", "degrees"), [(0.0, 5.0), (0.0, -3.0), (0.4, 0.0), (-0.3, 4.0), (0.0, 0.0)])
+def test_walls_pull_a_map_that_lies_askew_back_by_as_much(shift: float, degrees: float) -> None:
+    """In a small office walls 5 degrees askew contradict hardly anything; they pull."""
+    classes = building(1, 12.0, 10.0)
+    a, b = part(classes, 0.0, 9.0, HERE), part(classes, 3.0, 12.0, FramePose.of(1.0, 2.0, 0.7))
+    right = middles(a.charted, b.charted, a.pose.inverse().after(b.pose))
+    taken = FramePose.of(right.x + shift, right.y, right.angle + math.radians(degrees))
+    agrees = agreement(a.charted, b.charted, taken)
+    assert agrees.same > 8.0
+    assert agrees.contradicted < 0.15
+    moved, turned = pulled(a.charted, b.charted, taken, 800)
+    assert moved == pytest.approx(abs(shift), abs=0.05)
+    assert math.degrees(turned) == pytest.approx(abs(degrees), abs=0.3)

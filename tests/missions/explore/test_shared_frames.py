@@ -80,7 +80,15 @@ def test_an_edge_that_evidence_bears_out_joins_two_and_each_sees_the_others_map_
 
 
 @pytest.mark.parametrize(
-    "false", [Transform(1600, -400, 0), Transform(600, -400, 2000), Transform(90_000, 0, 0)]
+    "false",
+    [
+        Transform(1600, -400, 0),
+        Transform(600, -400, 2000),
+        Transform(600, -400, 910),  # 5 degrees: walls still lie near walls, but they pull
+        Transform(600, -400, -910),
+        Transform(1000, -400, 0),
+        Transform(90_000, 0, 0),
+    ],
 )
 def test_a_false_edge_joins_nobody_whoever_tells_it(false: Transform) -> None:
     one, two = team(moved(seen(slice(0, 100))), [edge(false)])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import OrderedDict
 from hashlib import blake2b
 from typing import ClassVar
@@ -11,6 +12,8 @@ from numpy.typing import NDArray
 
 from vedette.align import Charted, FramePose, charted
 from vedette.align.agreement import MapAgreement, agreement, middles
+from vedette.align.candidates import ROUGHLY
+from vedette.align.fitted import pulled
 from vedette.fusion.framed import FramedEvidence
 from vedette.fusion.link import Key
 from vedette.fusion.tiles import CLASSES
@@ -55,6 +58,13 @@ class Charts:
         if on is None or of is None:
             return None
         return agreement(on, of, middles(on, of, pose_of(there)))
+
+    def pulled(self, a: Key, b: Key, there: Transform) -> tuple[float, float]:
+        """Return how far walls pull b from where it is taken to lie [m], [rad]; infinite without charts."""
+        on, of = self.of(a), self.of(b)
+        if on is None or of is None:
+            return math.inf, math.inf
+        return pulled(on, of, middles(on, of, pose_of(there)), ROUGHLY)
 
     def _made(self, tiles: NDArray[np.int64], classes: NDArray[np.uint8]) -> Charted | None:
         tiling = Tiling(*self._frame.shape)

@@ -12,7 +12,7 @@ from vedette.kernels.tiles import SIDE, Tiling
 from vedette.maps import GridFrame
 from vedette.maps.transform import IDENTITY, Transform
 from vedette.missions.explore.frames.charts import Charts
-from vedette.missions.explore.frames.graph import Placed, Solved, solved, told_by_both, within
+from vedette.missions.explore.frames.graph import CLOSED, Placed, Solved, solved, told_by_both, within
 from vedette.missions.explore.frames.layout import Box, laid_out
 
 BORNE_OUT = 8.0, 0.15  # walls in common at least [m], and contradicted at most, that an edge may count
@@ -152,7 +152,9 @@ class SharedFrames:
         if found is None:
             verdict = versions, False, True
         else:
-            out = found.same >= BORNE_OUT[0] and found.contradicted <= BORNE_OUT[1]
+            shift, turn = self.charts.pulled(a, b, there)
+            straight = shift <= CLOSED[0] and turn <= CLOSED[1]
+            out = straight and found.same >= BORNE_OUT[0] and found.contradicted <= BORNE_OUT[1]
             verdict = versions, out, found.against < ALLOWED[0] or found.contradicted <= ALLOWED[1]
         self._verdicts[a, b, there] = verdict
         return verdict
