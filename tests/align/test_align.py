@@ -102,11 +102,15 @@ def test_a_building_symmetric_about_a_point_is_refused() -> None:
     assert verdict.joined is None
 
 
-def test_two_bare_halls_are_not_joined_by_the_corner_that_both_have() -> None:
+@pytest.mark.parametrize(("down", "across"), [(0, 0), (60, 30)])
+def test_two_bare_halls_are_not_joined_by_the_corner_and_the_recess_that_both_have(
+    down: int, across: int
+) -> None:
     seen = []
     for long, wide, pose in ((34, 28, HERE), (38, 31, FramePose.of(1.0, 2.0, 0.5))):
         solid = np.zeros((10 * wide, 10 * long), np.bool_)
         solid[[0, -1]] = solid[:, [0, -1]] = True
+        solid[:down, :across] = True
         classes = shell(solid)
         classes[80:, 80:] = classes[-20:] = classes[:, -20:] = UNKNOWN  # neither knows how far its hall goes
         seen.append(part(classes, 0.0, float(long), pose).charted)
@@ -114,7 +118,7 @@ def test_two_bare_halls_are_not_joined_by_the_corner_that_both_have() -> None:
     assert verdict.joined is None
     assert verdict.alignment.candidates[0].same > 40.0
     assert verdict.doubt is not None
-    assert "a bare corner" in verdict.doubt
+    assert "three straight lines" in verdict.doubt
 
 
 def test_the_verdict_is_the_same_for_the_same_seed() -> None:

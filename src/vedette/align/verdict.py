@@ -10,12 +10,12 @@ import numpy as np
 from vedette.align.agreement import middles
 from vedette.align.candidates import Alignment, PossibleJoin, align, compared
 from vedette.align.charted import Charted, charted
-from vedette.align.corners import beside_a_corner
+from vedette.align.lines import beside_lines
 from vedette.maps import UNKNOWN
 
 THINNINGS = 3
 THINNED = 0.3  # share of the ground that a thinning takes out
-BESIDE = 8.0  # walls that both have beside the two straight lines with most of them, at least [m]
+BESIDE = 4.0  # walls that both have beside the three straight lines with most of them, at least [m]
 BLOCK = 2.0  # side of what it takes out at once [m]
 STEADY = 0.3, math.radians(2.0)  # how far thinned maps may come from the whole ones' pose [m, rad]
 
@@ -67,8 +67,8 @@ class JoinVerdict:
 def judged(a: Charted, b: Charted, seed: int) -> JoinVerdict:
     """Return whether two maps that will not change can be joined.
 
-    The rule must hold for them whole, with more in common than a bare corner, and for each of `THINNINGS`
-    copies with parts missing, and all at about one pose: what depends on a few walls is not believed.
+    The rule must hold for them whole, with more in common than three straight lines, and for each of
+    `THINNINGS` copies with parts missing, and all at about one pose: what depends on a few walls is not believed.
 
     Args:
         a: first map.
@@ -86,10 +86,10 @@ def judged(a: Charted, b: Charted, seed: int) -> JoinVerdict:
 
 
 def _bare(a: Charted, b: Charted, best: PossibleJoin) -> str | None:
-    beside = beside_a_corner(a, b, best.pose)
+    beside = beside_lines(a, b, best.pose)
     if beside >= BESIDE:
         return None
-    return f"what both have is a bare corner, as any hall has one: {beside:.0f} m of other walls"
+    return f"what both have is three straight lines, as many halls have them: {beside:.0f} m of other walls"
 
 
 def _doubt_of_thinned(whole: Alignment, a: Charted | None, b: Charted | None) -> str | None:

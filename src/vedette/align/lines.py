@@ -1,4 +1,4 @@
-"""How much of what two maps have in common is more than a bare corner: any two halls have one."""
+"""How much of what two maps have in common is more than three straight lines: many halls have those."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from vedette.kernels.align import SAME
 
 Floats = NDArray[np.float64]
 
-LINES = 2  # of a bare corner
+LINES = 3  # two of any corner, and a third that lies alike by chance
 THICK = 0.3  # a wall along a line is as near to it as this [m]
 ALIKE = math.cos(math.radians(30.0))  # and looks so nearly the same way
 TRIED = 200  # walls that a line is drawn along
 
 
-def beside_a_corner(a: Charted, b: Charted, pose: FramePose) -> float:
-    """Return the walls of B that lie on A's, but for those along the two lines with most of them [m].
+def beside_lines(a: Charted, b: Charted, pose: FramePose) -> float:
+    """Return the walls of B that lie on A's, but for those along the three lines with most of them [m].
 
     Args:
         a: the map on which the other lies.
