@@ -68,7 +68,8 @@ def judged(a: Charted, b: Charted, seed: int) -> JoinVerdict:
     """Return whether two maps that will not change can be joined.
 
     The rule must hold for them whole, with more in common than three straight lines, and for each of
-    `THINNINGS` copies with parts missing, and all at about one pose: what depends on a few walls is not believed.
+    `THINNINGS` copies with parts missing, and all at about one pose: what depends on a few walls is not
+    believed.
 
     Args:
         a: first map.
