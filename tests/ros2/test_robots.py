@@ -15,7 +15,9 @@ import pytest
 from tests.support.ros2_beside import Beside
 from tests.support.ros2_teams import TRIED, WRONG, living, plan, sound, tried
 from tests.support.small_missions import TWO_ROOMS, drawn, small_maze, small_office
+from vedette.align import FramePose
 from vedette.maps import FREE, UNKNOWN, read_map
+from vedette.outcome import Outcome
 
 pytest.importorskip("rclpy", reason="`make test-ros2` has rclpy", exc_type=ImportError)
 
@@ -44,6 +46,34 @@ def test_robots_on_real_rclpy_explore_two_rooms_and_map_them_as_they_are(tmp_pat
     assert np.mean(known[true == FREE]) >= 0.99
     said = (out / "agents" / "robots.log").read_text()
     assert said.count("collided: False") == 2, said
+
+
+def test_robots_whose_maps_lie_anywhere_find_how_they_lie_and_tell_it_on_tf(tmp_path: Path) -> None:
+    world = small_office()
+    team = plan(world, 2, frames="unknown")
+    heard: list[tuple[str, str, float, float]] = []
+    beside = Beside("robot2")
+    try:
+        beside.hear_frames(heard)
+        ended = tried(team, tmp_path, befall=lambda now: beside.listen())
+    finally:
+        beside.close()
+    assert ended.report.summary.outcome is Outcome.COMPLETE, ended.robots_said
+    assert ended.report.summary.map_error_share <= 0.01
+    assert ended.covered >= 0.99
+    assert ended.robots_said.count("collided: False") == 2, ended.robots_said
+    found = ended.report.summary.frames
+    assert found is not None
+    assert found.components == (("robot-1", "robot-2"),)
+    assert found.error_m is not None
+    assert found.error_m <= 0.1
+    joints = [(x, y) for parent, child, x, y in heard if (parent, child) == ("team", "map")]
+    one, other = (FramePose.of(*start) for start in team.starts.tolist())
+    true = one.inverse().after(other)
+    assert joints
+    assert all(np.hypot(x - true.x, y - true.y) <= 0.5 for x, y in joints)
+    assert np.hypot(joints[-1][0] - true.x, joints[-1][1] - true.y) <= 0.1
+    assert not [parent for parent, *_ in heard if parent.startswith("team_")]
 
 
 def test_a_robots_own_map_is_its_evidence_and_a_mistake_of_half_a_metre_and_five_degrees_is_undone(

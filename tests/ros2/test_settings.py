@@ -46,6 +46,11 @@ def test_every_key_has_the_usual_default(tmp_path: Path) -> None:
         ("{ros2: {start: [1, 2]}}", "", "start"),
         ("{ros2: {}, map: map.yaml}", "", "body.map: is the world of a simulated robot"),
         ("{ros2: {evidence: map}}", "explore: {fusion: channel}\n", "cannot take back"),
+        (
+            "{ros2: {start: [1, 2, 90]}}",
+            "explore: {frames: unknown}\n",
+            "start: lies in a frame that nobody has",
+        ),
     ],
 )
 def test_what_cannot_be_is_refused_in_one_line_that_names_it(
@@ -54,6 +59,12 @@ def test_what_cannot_be_is_refused_in_one_line_that_names_it(
     with pytest.raises(InputError, match=said) as raised:
         load_config(written(tmp_path, body, more))
     assert "\n" not in str(raised.value)
+
+
+def test_a_robots_own_map_may_be_its_only_frame(tmp_path: Path) -> None:
+    told = load_config(written(tmp_path, "{ros2: {evidence: map}}", "explore: {frames: unknown}\n"))
+    assert told.explore is not None
+    assert told.explore.frames == "unknown"
 
 
 @pytest.mark.skipif(importlib.util.find_spec("rclpy") is not None, reason="this Python has rclpy")

@@ -19,7 +19,10 @@ from vedette.kernels.misses import CERTAIN
 from vedette.maps import FREE
 from vedette.maps.frame import GridFrame
 from vedette.maps.lattice import Lattice
+from vedette.maps.transform import IDENTITY, Transform
 from vedette.missions.explore.assemble import assemble
+from vedette.missions.explore.frames.exploring import FramedExploring
+from vedette.missions.explore.frames.graph import Placed, Solved
 from vedette.missions.explore.options import ExploreOptions
 from vedette.missions.explore.own_map import OwnMap
 from vedette.ros2.body import Ros2Body
@@ -66,6 +69,93 @@ def test_the_map_lies_in_the_teams_frame_at_the_robots_own_time() -> None:
     assert len(x) == 200
     (status,) = told["/diagnostics"].status
     assert (status.level, status.name, status.message) == (0, "robot-1", "ok")
+
+
+def a_framed_showing(prefix: str = "") -> tuple[Showing, FakeDoor, FramedExploring]:
+    """Of robot 2, in a frame of its own."""
+    options = ExploreOptions(frames="unknown")
+    agent = assemble(options.lattice(0.1), SPEC, options, 1, 7, robots=3, most=Most.of([SPEC]))
+    door = FakeDoor(at(12.5, 1.0, prefix=prefix))
+    body = Ros2Body(SPEC, Ros2Settings(namespace="r2"), door)
+    body.sense(0.0)
+    mission = agent.mission
+    assert isinstance(mission, FramedExploring)
+    own_map = OwnMap(np.full((10, 20), FREE, np.uint8), 0.1, 0.0, 0.0, 0.0)
+    mission.observe(Sensed(own_map, 0.0), Pose(1.0, 0.0, 0.0), [], 0.0)
+    mission.publish(0.0)
+    return Showing(agent, body, "robot-2"), door, mission
+
+
+THERE = Transform.of(3.0, 1.0, np.pi / 2.0)
+
+
+def joined_with(*others: tuple[int, int]) -> Solved:
+    """Robot 2, joined with these, in the frame of the lowest."""
+    keys = sorted([*others, (1, 7)])
+    return Solved({key: Placed(keys[0], THERE if key == (1, 7) else IDENTITY) for key in keys}, [])
+
+
+@pytest.mark.parametrize(("prefix", "topic", "child"), [("", "/r2/tf", "map"), ("r2/", "/tf", "r2/map")])
+def test_a_map_of_an_unknown_frame_lies_in_the_teams_once_it_is_joined_and_while_it_is(
+    prefix: str, topic: str, child: str
+) -> None:
+    showing, door, mission = a_framed_showing(prefix)
+    showing(0.0)
+    told = shown(door)
+    assert not {name for name in told if "tf" in name}  # nothing is known, and nothing told
+    assert told["team_map"].header.frame_id == child
+    mission.frames.found = joined_with((0, 3))
+    showing(PERIOD)
+    (joint,) = shown(door)[topic].transforms
+    assert (joint.header.frame_id, joint.child_frame_id) == ("team", child)
+    assert joint.header.stamp.sec == 12 + PERIOD  # it holds until the next one
+    t, q = joint.transform.translation, joint.transform.rotation
+    assert (t.x, t.y) == pytest.approx((3.0, 1.0))
+    assert 2.0 * np.arctan2(q.z, q.w) == pytest.approx(np.pi / 2.0, abs=1e-4)
+    mission.frames.found = joined_with()
+    showing(2.0 * PERIOD)
+    assert topic not in shown(door)
+
+
+@pytest.mark.parametrize(
+    ("graph", "frame"),
+    [
+        (joined_with((2, 5)), "team_2_7"),
+        (Solved({**joined_with((2, 5)).graph, (0, 3): Placed((0, 3), IDENTITY)}, []), "team_2_7"),
+        (Solved({**joined_with((0, 4)).graph, (0, 3): Placed((0, 3), IDENTITY)}, []), "team_1_4"),
+        (joined_with((1, 6)), None),  # it was joined with nobody but itself, before it was started again
+    ],
+)
+def test_components_that_do_not_know_how_they_lie_have_frames_of_different_names(
+    graph: Solved, frame: str | None
+) -> None:
+    showing, door, mission = a_framed_showing()
+    mission.frames.found = graph
+    showing(0.0)
+    told = shown(door)
+    assert (told["/r2/tf"].transforms[0].header.frame_id if frame else "/r2/tf" not in told) == (
+        frame or True
+    )
+
+
+def test_what_the_team_will_see_of_the_plane_is_shown_where_the_robots_own_map_has_it() -> None:
+    showing, door, mission = a_framed_showing()
+    planning = mission.frame.coarse(planning_factor(0.1))
+    at_plane = THERE.place(0.65, 0.35)
+    cell = planning.flat(*at_plane) * LAYERS
+    showing.agent.rounds.impact = Impact(np.array([cell], np.uint32), np.array([CERTAIN], np.uint8))
+    showing(0.0)
+    assert "impact" not in shown(door)  # the plane of the round does not have this robot's map
+    mission.frames.plane = {mission.frames.key: THERE}
+    showing.agent.rounds.decisions += 1
+    showing(GRID_PERIOD)
+    grid = shown(door)["impact"]
+    assert grid.header.frame_id == "map"
+    (seen,) = np.flatnonzero(grid.data == 100)
+    row, col = divmod(int(seen), grid.info.width)
+    side, corner = grid.info.resolution, grid.info.origin.position
+    x, y = corner.x + (col + 0.5) * side, corner.y + (row + 0.5) * side
+    assert (x, y) == pytest.approx((0.65, 0.35), abs=side)
 
 
 def test_a_map_that_has_not_changed_is_not_shown_again() -> None:

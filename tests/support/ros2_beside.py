@@ -12,9 +12,9 @@ from tests.support.ros2_teams import DOMAIN
 
 
 class Beside:
-    """Listens to the first robot, and tells its agent what to do."""
+    """Listens to a robot, and tells its agent what to do."""
 
-    def __init__(self) -> None:
+    def __init__(self, namespace: str = "robot1") -> None:
         import rclpy
         from nav_msgs.msg import OccupancyGrid, Odometry
         from rclpy.executors import SingleThreadedExecutor
@@ -23,7 +23,7 @@ class Beside:
 
         self.context = rclpy.Context()
         rclpy.init(context=self.context, domain_id=DOMAIN)
-        self.node = rclpy.create_node("beside", namespace="robot1", context=self.context)
+        self.node = rclpy.create_node("beside", namespace=namespace, context=self.context)
         self.executor = SingleThreadedExecutor(context=self.context)
         self.executor.add_node(self.node)
         self.trigger = Trigger
@@ -38,6 +38,22 @@ class Beside:
     def hear_odometry(self, message: Any) -> None:
         self.speed = abs(message.twist.twist.linear.x) + abs(message.twist.twist.angular.z)
         self.at = message.pose.pose.position.x, message.pose.pose.position.y
+
+    def hear_frames(self, heard: list[tuple[str, str, float, float]]) -> None:
+        """Note parent, child, x and y [m] of what TF tells of the robot's map and of the team."""
+        from tf2_msgs.msg import TFMessage
+
+        def take(message: Any) -> None:
+            for joint in message.transforms:
+                if joint.header.frame_id.startswith("team"):
+                    t = joint.transform.translation
+                    heard.append((joint.header.frame_id, joint.child_frame_id, t.x, t.y))
+
+        self.node.create_subscription(TFMessage, "tf", take, 100)
+
+    def listen(self) -> None:
+        """Take in what has come by now."""
+        self.executor.spin_once(timeout_sec=0.0)
 
     def until(self, holds: Callable[[], bool], what: str, patience: float = 90.0) -> None:
         end = time.monotonic() + patience

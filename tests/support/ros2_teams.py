@@ -70,11 +70,11 @@ class Tried:
         return covered(self.plan.world, self.plan.specs, self.plan.starts, self.report)
 
 
-def plan(world: World, count: int, speed: float = 3.0, **told: Any) -> TriedPlan:
+def plan(world: World, count: int, speed: float = 3.0, frames: str = "known", **told: Any) -> TriedPlan:
     """A team that starts together."""
     specs = robots(count)
     starts = choose_starts(world, specs, np.random.default_rng([0, 1]))
-    return TriedPlan(world, specs, starts, ExploreOptions(), 0, speed, 3.0, **told)
+    return TriedPlan(world, specs, starts, ExploreOptions(frames=frames), 0, speed, 3.0, **told)
 
 
 WRONG = 0.005  # of the known cells may be other ones in truth

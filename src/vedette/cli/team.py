@@ -114,8 +114,6 @@ def explore(
     tell_unheeded(planner, len(specs), scheme, fusion=fusion, lease=lease)
     if ros2 and unbounded:
         raise InputError("--unbounded: robots that run ROS 2 are never told how far it goes; leave it out")
-    if ros2 and frames == "unknown":
-        raise InputError("--frames unknown: robots that run ROS 2 are told how their maps lie; leave it out")
     if frames == "unknown" and any(spec.drift for spec in specs):
         raise InputError("frames unknown: drift moves frames as well; leave it out")
     if ros2 and any(spec.sensor for spec in specs):

@@ -214,8 +214,8 @@ def _check_frames(body: BodySettings, options: ExploreOptions) -> None:
         options.check()
     except InputError as error:
         raise InputError(f"explore: {error}") from error
-    if options.frames == "unknown" and body.ros2 is not None:
-        raise InputError("explore.frames: robots that run ROS 2 are told how their maps lie; leave it out")
+    if options.frames == "unknown" and body.ros2 is not None and body.ros2.start != Ros2Settings().start:
+        raise InputError("body.ros2.start: lies in a frame that nobody has, by explore.frames; leave it out")
     if body.frame is not None and (options.frames == "known" or body.map is None):
         why = "robots that share a frame" if options.frames == "known" else "a real robot"
         raise InputError(f"body.frame: is not for {why}; leave it out")

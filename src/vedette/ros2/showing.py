@@ -11,8 +11,11 @@ from numpy.typing import NDArray
 
 from vedette.agent import Agent
 from vedette.domains.mapping.belief import planning_factor
-from vedette.domains.mapping.impact import final_miss, moved
+from vedette.domains.mapping.impact import Impact, final_miss, moved
+from vedette.maps import GridFrame
 from vedette.missions.explore.exploring import Exploring
+from vedette.missions.explore.frames.exploring import FramedExploring
+from vedette.missions.explore.frames.shared import SharedFrames
 from vedette.record.ros import RosMessages
 from vedette.ros2.body import Ros2Body
 from vedette.ros2.door import Notice
@@ -92,19 +95,60 @@ class Showing:
             self._anchored = True
             self._anchor()
         stamp = round(1e9 * (self.body.stamp or 0.0))
-        for topic, kind, message in (*self._grids(stamp, now), *self._rest(stamp)):
+        for topic, kind, message in (*self._joined(stamp), *self._grids(stamp, now), *self._rest(stamp)):
             self.body.door.show(Notice(topic, kind, self._messages.encode(message)))
 
     def _anchor(self) -> None:
-        """Tell where the team's frame lies in the robot's map, by the names that the robot's TF has."""
+        """Tell where the team's frame lies in the robot's map, by the names that the robot's TF has.
+
+        Where frames are unknown that is not known yet, and all is shown in the frame of the robot's map.
+        """
         settings = self.body.settings
         map_frame = self.body.frame(settings.map_frame)
-        prefix = map_frame.removesuffix(settings.map_frame)
-        self._messages.frame_id = f"{prefix}{TEAM_FRAME}"
+        if self._framed is not None:
+            self._messages.frame_id = map_frame
+            return
+        self._messages.frame_id = f"{self._prefix}{TEAM_FRAME}"
         at = RosMessages(map_frame)
         joint = at.transforms(0, [(self._messages.frame_id, *place(settings.T_map_team))])
-        topic = "/tf_static" if prefix else f"/{settings.namespace.strip('/')}/tf_static".replace("//", "/")
-        self.body.door.show(Notice(topic, "tf2_msgs/msg/TFMessage", at.encode(joint)))
+        self.body.door.show(Notice(self._tf("tf_static"), "tf2_msgs/msg/TFMessage", at.encode(joint)))
+
+    @property
+    def _prefix(self) -> str:
+        """What the robot's frames have before their names."""
+        name = self.body.settings.map_frame
+        return self.body.frame(name).removesuffix(name)
+
+    def _tf(self, name: str) -> str:
+        """Return the topic of TF that the robot's frames are on: all robots', where they are told apart."""
+        namespace = "" if self._prefix else self.body.settings.namespace.strip("/")
+        return f"/{namespace}/{name}".replace("//", "/")
+
+    @property
+    def _framed(self) -> SharedFrames | None:
+        """What the robot knows of how frames lie; None: the team has one."""
+        mission = self._mission
+        return mission.frames if isinstance(mission, FramedExploring) else None
+
+    def _joined(self, stamp: int) -> Iterator[tuple[str, str, Any]]:
+        """Yield where the robot's map lies in the team's frame, while it is joined with anybody.
+
+        It holds until the next is due, so it is dated ahead, as a localiser's is. Of several components each
+        has a frame of its own name: nobody knows how they lie.
+        """
+        joined = None if self._framed is None else self._framed.joined
+        if self._framed is None or joined is None:
+            return
+        (robot, boot), there = joined
+        first = robot == 0 and joined.anchor == min(self._framed.graph)
+        at = RosMessages(TEAM_FRAME if first else f"{TEAM_FRAME}_{robot + 1}_{boot}")
+        pose = there.x / 1000.0, there.y / 1000.0, there.radians
+        ahead = stamp + round(1e9 * PERIOD)
+        yield (
+            self._tf("tf"),
+            "tf2_msgs/msg/TFMessage",
+            at.transforms(ahead, [(self._messages.frame_id, *pose)]),
+        )
 
     @property
     def _mission(self) -> Exploring:
@@ -126,10 +170,29 @@ class Showing:
         factor = planning_factor(mission.frame.resolution)
         whole, part = mission.frame.coarse(factor), frame.coarse(factor)
         for topic, impact in (("impact", rounds.impact), ("team_impact", rounds.team_impact)):
-            if impact is not None:
-                shown = moved(mission.on_map(impact), whole, part)
-                share = 1.0 - final_miss(shown, part.size).reshape(part.shape)
+            share = None if impact is None else self._share(impact, whole, part)
+            if share is not None:
                 yield topic, "nav_msgs/msg/OccupancyGrid", self._messages.share_grid(stamp, part, share)
+
+    def _share(self, impact: Impact, whole: GridFrame, part: GridFrame) -> NDArray[np.float32] | None:
+        """Return how surely each of a part's planning cells ``(R, C)`` will be seen; None: nobody knows.
+
+        Where frames are unknown impacts are of the plane of a round, and the part is of the robot's own map.
+        """
+        if self._framed is None:
+            return 1.0 - final_miss(moved(impact, whole, part), part.size).reshape(part.shape)
+        there = self._framed.plane.get(self._framed.key)
+        if there is None:
+            return None
+        seen = 1.0 - final_miss(impact, whole.size)
+        places = there.places(part.centres(np.arange(part.size)))
+        inside = whole.holds(places)
+        col, row = (
+            np.floor((places[inside] - (whole.origin_x, whole.origin_y)) / whole.resolution).astype(int).T
+        )
+        share = np.zeros(part.size, np.float32)
+        share[inside] = seen[row * whole.cols + col]
+        return share.reshape(part.shape)
 
     def _rest(self, stamp: int) -> Iterator[tuple[str, str, Any]]:
         """Yield the robot's tour, its frontiers and mates, its condition."""

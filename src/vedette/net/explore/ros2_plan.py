@@ -15,6 +15,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
+from vedette.align import FramePose
 from vedette.errors import InputError
 from vedette.maps.lattice import Lattice
 from vedette.net.explore.plan import ExplorePlan
@@ -32,6 +33,11 @@ DOMAINS = 100  # of ROS that every host has
 @dataclass(frozen=True, eq=False)
 class Ros2Plan(ExplorePlan):
     """``vedette.net.launch.TeamPlan``; a robot's own map begins where the robot starts."""
+
+    def __post_init__(self) -> None:
+        """Where frames are unknown, let each be that of the robot's own map."""
+        if self.options.frames == "unknown":
+            self.frames.extend(FramePose.of(*start) for start in self.starts.tolist())
 
     @property
     def lattice(self) -> Lattice:
@@ -54,7 +60,7 @@ class Ros2Plan(ExplorePlan):
             "namespace": _namespace(i),
             "use_sim_time": True,  # a host that is too slow for them slows the mission down
             "no_return": "free",  # what simulated lidars do not see is not there
-            "start": self._start(i),
+            **({} if self.frames else {"start": self._start(i)}),
         }
         body = {"radius": spec.radius, "speed": spec.speed, "turn_rate": spec.turn_rate, "ros2": ros2}
         return told | {

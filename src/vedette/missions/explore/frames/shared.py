@@ -49,6 +49,13 @@ class SharedFrames:
         return self.found.graph
 
     @property
+    def joined(self) -> Placed | None:
+        """Where this robot's frame lies among those of whom it is joined with; None: it is with nobody."""
+        own = self.graph[self.key]
+        mates = any(key[0] != self.key[0] and own.anchor == each.anchor for key, each in self.graph.items())
+        return own if mates else None
+
+    @property
     def known(self) -> list[Key]:
         """Contributors who have seen anything, and this robot."""
         return sorted({self.key, *(key for key, copy in self.evidence.copies.items() if copy.version)})
