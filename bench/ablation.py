@@ -67,6 +67,7 @@ def variants() -> Mapping[str, Planner]:
         "late frontiers at once": with_kind(LatePlatform),
         "a certain bonus a frontier": with_kind(SurePlatform),
         "seen on the way": with_kind(WayPlatform),
+        "predicted": replace(planners.PLANNERS["predicted"], alone=None),
         "regions": with_kind(RegionPlatform),
         "long tours, no price": replace(planners.PLANNERS["long"], alone=None, end_price=FREE),
         "long tours, a price on their end": replace(planners.PLANNERS["long"], alone=None),
