@@ -102,6 +102,21 @@ def test_a_building_symmetric_about_a_point_is_refused() -> None:
     assert verdict.joined is None
 
 
+def test_of_a_symmetric_building_halves_that_were_seen_apart_are_not_laid_on_each_other() -> None:
+    """Each knows 6 m of the other's half: 12 m are in common where they lie, all 30 m where they do not."""
+    half = building(7)[:, :-1]
+    whole = np.hstack([half, half[::-1, ::-1]])
+    long = whole.shape[1] * 0.1
+    left = part(whole, 0.0, long / 2.0 + 6.0, HERE)
+    right = part(whole, long / 2.0 - 6.0, long, FramePose.of(1.0, 1.0, 0.3))
+    verdict = judged(left.charted, right.charted, seed=0)
+    assert off(verdict.alignment.candidates[0].pose, left, right)[1] > 3.0
+    assert verdict.alignment.rivalry < 0.5
+    assert verdict.joined is None
+    assert verdict.doubt is not None
+    assert "looks the same" in verdict.doubt
+
+
 @pytest.mark.parametrize(("down", "across"), [(0, 0), (60, 30)])
 def test_two_bare_halls_are_not_joined_by_the_corner_and_the_recess_that_both_have(
     down: int, across: int

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +18,7 @@ THINNINGS = 3
 THINNED = 0.3  # share of the ground that a thinning takes out
 BESIDE = 4.0  # walls that both have beside the three straight lines with most of them, at least [m]
 BLOCK = 2.0  # side of what it takes out at once [m]
+TWIN = 15.0, 0.02  # so much beside such lines, and no more contradicted, and a rival looks the same [m, 1]
 STEADY = 0.3, math.radians(2.0)  # how far thinned maps may come from the whole ones' pose [m, rad]
 
 
@@ -67,9 +69,9 @@ class JoinVerdict:
 def judged(a: Charted, b: Charted, seed: int) -> JoinVerdict:
     """Return whether two maps that will not change can be joined.
 
-    The rule must hold for them whole, with more in common than three straight lines, and for each of
-    `THINNINGS` copies with parts missing, and all at about one pose: what depends on a few walls is not
-    believed.
+    The rule must hold for them whole, with more in common than three straight lines, and no other place
+    that has as much, and for each of `THINNINGS` copies with parts missing, and all at about one pose: what
+    depends on a few walls is not believed.
 
     Args:
         a: first map.
@@ -77,7 +79,7 @@ def judged(a: Charted, b: Charted, seed: int) -> JoinVerdict:
         seed: of what the copies lack.
     """
     whole = align(a, b)
-    doubt = SAVED.doubt(whole) or _bare(a, b, whole.candidates[0])
+    doubt = SAVED.doubt(whole) or _bare(a, b, whole.candidates[0]) or _twin(a, b, whole.possible[1:])
     for number in range(THINNINGS):
         if doubt is not None:
             break
@@ -91,6 +93,16 @@ def _bare(a: Charted, b: Charted, best: PossibleJoin) -> str | None:
     if beside >= BESIDE:
         return None
     return f"what both have is three straight lines, as many halls have them: {beside:.0f} m of other walls"
+
+
+def _twin(a: Charted, b: Charted, rivals: Sequence[PossibleJoin]) -> str | None:
+    """Return why a place may be a look-alike of another, which less has been seen of; None: it is none."""
+    for rival in rivals:
+        if rival.same >= TWIN[0] and rival.contradicted <= TWIN[1]:
+            beside = beside_lines(a, b, rival.pose)
+            if beside >= TWIN[0]:
+                return f"another place looks the same, too: {beside:.0f} m of walls, not in straight lines"
+    return None
 
 
 def _doubt_of_thinned(whole: Alignment, a: Charted | None, b: Charted | None) -> str | None:
