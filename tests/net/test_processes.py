@@ -131,6 +131,18 @@ def test_processes_agree_by_any_scheme(scheme: str, rooms: Path, tmp_path: Path)
     assert summary["coverage"] > 0.995
 
 
+@pytest.mark.slow
+def test_processes_that_predict_with_an_old_map_agree(rooms: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    how = "--planner", "predicted", "--prior", rooms, "--robots", 2, "--speed", 4
+    with team_explore(rooms, *how, "--out", out) as team:
+        _, err = team.communicate(timeout=300.0)
+    assert team.returncode == 0, err
+    summary = json.loads((out / "summary.json").read_text())
+    assert (summary["completed"], summary["planner"]) == (True, "predicted")
+    assert summary["coverage"] > 0.995
+
+
 @pytest.mark.parametrize(
     "number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.slow)], ids=lambda n: n.name
 )

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from tests.missions.explore.test_prior import plan
 from tests.support.small_missions import check_complete, robots, small_maze, small_office
 from vedette import run
+from vedette.domains.mapping.impact import Impact, MapImpactCodec, cells_missed
 from vedette.errors import InputError
+from vedette.kernels.coverage import LAYERS
 from vedette.maps.lattice import Lattice
 from vedette.missions.explore.assemble import assemble, terms_of
 from vedette.missions.explore.old_map import read_prior
 from vedette.missions.explore.options import ExploreOptions
+from vedette.net.explore.content import ExploreTeller, read_content
 from vedette.record.explore.observer import ExploreReport
 from vedette.team import Most
 
@@ -51,3 +55,17 @@ def test_robots_that_predict_and_robots_that_do_not_agree_on_no_round(tmp_path: 
 def test_robots_without_a_common_frame_predict_nothing() -> None:
     with pytest.raises(InputError, match="frames unknown: planner predicted predicts on a map that all have"):
         ExploreOptions(planner="predicted", frames="unknown").check()
+
+
+def test_what_a_robot_reports_is_over_planning_cells_whatever_the_worlds() -> None:
+    world, specs = small_office(), robots(2)
+    agent = assemble(Lattice(world.frame), specs[0], PREDICTED, 0, 1, robots=2, most=Most.of(specs))
+    planning = world.frame.coarse(2)
+    last = 3 * planning.size - 1
+    agent.rounds.impact = Impact(np.array([last * LAYERS], np.uint32), np.array([255], np.uint8))
+    told = read_content(ExploreTeller(agent).content(0.0))
+    assert told.impact is not None
+    shown = MapImpactCodec(planning.size).decode(told.impact)
+    cells, missed = cells_missed(shown)
+    assert cells.tolist() == [planning.size - 1]
+    assert missed[0] == pytest.approx(2 / 3, abs=1 / 32)

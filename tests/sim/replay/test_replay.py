@@ -47,11 +47,11 @@ def truth(world: World, replayed: Replayed) -> NDArray[np.uint8]:
     return padded[np.ix_(rows + 60, cols + 60)]
 
 
-@pytest.mark.parametrize("robots", [1, 3])
+@pytest.mark.parametrize(("robots", "planner"), [(1, "tours"), (3, "tours"), (3, "predicted")])
 def test_the_map_is_that_of_the_building_and_everybody_has_it(
-    building: World, recorded: RecordedLog, robots: int
+    building: World, recorded: RecordedLog, robots: int, planner: str
 ) -> None:
-    replayed = Replay(recorded, ReplaySetup(robots)).run()
+    replayed = Replay(recorded, ReplaySetup(robots, planner=planner)).run()
     known = replayed.classes != UNKNOWN
     assert (replayed.sights, replayed.complete, replayed.agreed) == (len(recorded.scans), True, True)
     assert np.mean(replayed.classes[known] != truth(building, replayed)[known]) < 0.03
