@@ -7,14 +7,13 @@ another only the time until it ended.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 
 from bench.criteria import Criterion, Measurement, verdicts
-from bench.table import markdown
+from bench.table import interval_cell, markdown, ratio_cell
 from vedette.domains.mapping.planners import DEFAULT
 from vedette.sim.worlds import GENERATORS
-from vedette.study.compare import Difference, difference
+from vedette.study.compare import difference
 from vedette.study.metrics import TIMES, TOTAL, Metric
 from vedette.study.rows import Row
 
@@ -70,7 +69,7 @@ def _measured(criterion: Criterion, rows: Sequence[Row], against: str, share: st
     found = difference(counted(rows), OURS, against, SHARES[share])
     if not found.pairs:
         return Measurement(criterion, None, "no pairs")
-    return Measurement(criterion, found.ratio.value, f"{_interval(found)}, {found.pairs} pairs")
+    return Measurement(criterion, found.ratio.value, f"{interval_cell(found.ratio)}, {found.pairs} pairs")
 
 
 def _worst_kind(rows: Sequence[Row]) -> Measurement:
@@ -86,7 +85,7 @@ def _worst_kind(rows: Sequence[Row]) -> Measurement:
         return Measurement(criterion, None, "no pairs")
     worst, where = max(found, key=lambda each: each[0].ratio.value)
     above = sum(each.ratio.value > 1.0 for each, _ in found)
-    note = f"{where} {_interval(worst)}; {above} of {len(found)} above"
+    note = f"{where} {interval_cell(worst.ratio)}; {above} of {len(found)} above"
     return Measurement(criterion, worst.ratio.value, note)
 
 
@@ -111,7 +110,7 @@ def _line(robots: int, worlds: str, against: str, rows: Sequence[Row]) -> tuple[
     ]
     needed = [each.needed for each in found]
     enough = "-" if None in needed else str(max(each for each in needed if each is not None))
-    ratios = [f"{each.ratio.value:.2f} {_interval(each)}".rstrip() for each in found]
+    ratios = [ratio_cell(each.ratio) for each in found]
     shown = str(robots), worlds, against, str(found[0].pairs), *ratios
     return (*shown, f"{unfinished[0]} : {unfinished[1]}", str(found[0].draws), enough)
 
@@ -126,8 +125,3 @@ def _kind(row: Row) -> str:
 
 def _finished(row: Row) -> bool:
     return all(metric.of(row) is not None for metric in SHARES.values())
-
-
-def _interval(found: Difference) -> str:
-    low, high = found.ratio.low, found.ratio.high
-    return f"({low:.2f}-{high:.2f})" if math.isfinite(low) else ""

@@ -9,9 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
 
 import click
 import numpy as np
@@ -19,20 +17,17 @@ import numpy as np
 from bench import RESULTS, command
 from bench.crowds import known_world
 from bench.missions import tabulate
-from bench.table import markdown
+from bench.ways import Case, Timed, ratio_table
 from vedette.domains.mapping.prior import PriorMap
 from vedette.errors import check_word
 from vedette.maps import FREE, OCCUPIED
 from vedette.maps.world import World
-from vedette.record.summary import SCHEMA_VERSION
 from vedette.sim.explore.run import explore, prepare
 from vedette.sim.explore.simulation import ExploreSetup
 from vedette.sim.worlds import GENERATORS
-from vedette.study.intervals import ratio_interval
 from vedette.team import PlatformSpec
 
 ELSEWHERE = 1000  # the other world's seed is so much larger
-TIMES = ("t90_s", "t99_s", "time_s")
 WAYS = ("none", "right", "wrong", "predicted", "burgard")  # old maps; and other planners, without one
 PAIRS = (
     ("right", "none"),
@@ -44,54 +39,12 @@ PAIRS = (
 )
 
 
-@dataclass(frozen=True)
-class Case:
-    """One mission in a generated world."""
-
-    world: str
-    robots: int
-    way: str
-    seed: int
-
-    @property
-    def key(self) -> tuple[str, int, str, int]:
-        """What tells it from all others."""
-        return self.world, self.robots, self.way, self.seed
-
-    def __str__(self) -> str:
-        """Name it in a line of progress."""
-        return f"{self.world} {self.seed}, {self.robots} robots, {self.way}"
-
-
-@dataclass(frozen=True)
-class Expected:
-    """How long a mission took; one line of the results file."""
-
-    world: str
-    robots: int
-    way: str
-    seed: int
-    outcome: str
-    coverage: float | None
-    t90_s: float | None
-    t99_s: float | None
-    time_s: float
-    cpu_s: float
-    commit: str
-    schema_version: Literal[3] = SCHEMA_VERSION
-
-    @property
-    def key(self) -> tuple[str, int, str, int]:
-        """The mission's."""
-        return self.world, self.robots, self.way, self.seed
-
-
 def old_map(world: World) -> PriorMap:
     """Return a world's plan."""
     return PriorMap.of(np.where(world.solid, np.uint8(OCCUPIED), np.uint8(FREE)), world.frame)
 
 
-def run_case(case: Case, commit: str) -> Expected:
+def run_case(case: Case, commit: str) -> Timed:
     """Run one mission to its end."""
     began = time.process_time()
     make = GENERATORS[case.world]
@@ -106,7 +59,7 @@ def run_case(case: Case, commit: str) -> Expected:
     summary = explore(prepare(world, specs, setup), curves_only=True).summary
     times = summary.t90_s, summary.t99_s, summary.time_s
     cpu = time.process_time() - began
-    return Expected(*case.key, summary.outcome.value, summary.coverage, *times, cpu, commit)
+    return Timed(*case.key, summary.outcome.value, summary.coverage, *times, cpu, commit)
 
 
 @click.command()
@@ -136,43 +89,12 @@ def prior(
     cases = [
         Case(world, team, way, seed) for seed in seeds for world in kinds for team in robots for way in chosen
     ]
-    tabulate(cases, out, "prior", jobs, fresh, run_case, Expected, prior_table)
+    tabulate(cases, out, "prior", jobs, fresh, run_case, Timed, prior_table)
 
 
-def prior_table(results: Sequence[Expected]) -> str:
-    """Return a line a kind of world and pair of ways: ratios of times in the same worlds, with intervals."""
-    header = ("worlds", "robots", "", "pairs", "90 %", "99 %", "complete", "least coverage")
-    by_key = {each.key: each for each in results}
-    rows = []
-    kinds = sorted({each.world for each in results})
-    for robots in sorted({each.robots for each in results}):
-        for worlds in [*([kind] for kind in kinds), *([kinds] if len(kinds) > 1 else [])]:
-            for way, against in PAIRS:
-                pairs = [
-                    (each, by_key[each.world, robots, against, each.seed])
-                    for each in results
-                    if (each.robots, each.way) == (robots, way) and each.world in worlds
-                    if (each.world, robots, against, each.seed) in by_key
-                ]
-                if pairs:
-                    ratios = [_ratio(pairs, name) for name in TIMES]
-                    least = min(each.coverage or 0.0 for each, _ in pairs)
-                    name = worlds[0] if len(worlds) == 1 else "all"
-                    told = (name, str(robots), f"{way} / {against}", str(len(pairs)), *ratios, f"{least:.4f}")
-                    rows.append(told)
-    commits = ", ".join(sorted({each.commit for each in results}))
-    about = f"Ratios of times, geometric means, with t intervals of 95 % on logarithms. Commit: {commits}\n"
-    return f"{markdown(header, rows, 'lrlrlllr')}\n{about}"
-
-
-def _ratio(pairs: Sequence[tuple[Expected, Expected]], name: str) -> str:
-    """Return the geometric mean of ratios; '-' where a share was not reached."""
-    both = np.array([(getattr(one, name), getattr(other, name)) for one, other in pairs], np.float64)
-    both = both[~np.isnan(both).any(axis=1)]
-    if not len(both):
-        return "-"
-    ratio = ratio_interval(*both.T)
-    return f"{ratio.value:.2f} ({ratio.low:.2f}-{ratio.high:.2f})"
+def prior_table(results: Sequence[Timed]) -> str:
+    """Return a line a kind of world and pair of ways."""
+    return ratio_table(results, PAIRS)
 
 
 if __name__ == "__main__":

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from bench.prior import Case, Expected, prior_table, run_case
+from bench.prior import prior_table, run_case
+from bench.ways import Case, Timed
 
 
-def ended(way: str, seed: int, time: float, t99: float | None = 50.0) -> Expected:
-    return Expected("cave", 3, way, seed, "complete", 0.999, time / 2, t99, time, 1.0, "abc")
+def ended(way: str, seed: int, time: float, t99: float | None = 50.0) -> Timed:
+    return Timed("cave", 3, way, seed, "complete", 0.999, time / 2, t99, time, 1.0, "abc")
 
 
 def test_ratios_are_of_pairs_in_the_same_world_and_of_those_that_were_reached() -> None:
