@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -15,7 +16,7 @@ from bench.steps.late import LatePlatform
 from bench.steps.regions import RegionPlatform
 from bench.steps.sure import SurePlatform
 from bench.steps.way import WayPlatform
-from bench.table import figure, markdown
+from bench.table import figure, markdown, ratio_cell
 from vedette.domains.mapping import layers, planners
 from vedette.domains.mapping.baselines.greedy import GreedyPlatform
 from vedette.domains.mapping.planners import Planner
@@ -25,7 +26,6 @@ from vedette.record.files import write_text
 from vedette.sim.explore.simulation import ExploreSetup
 from vedette.study.compare import difference, mean
 from vedette.study.conduct import conduct
-from vedette.study.intervals import Interval
 from vedette.study.metrics import AUC, TIMES, TOTAL
 from vedette.study.mission import RunResult, carry_out
 from vedette.study.provenance import fingerprint
@@ -77,8 +77,11 @@ def variants() -> Mapping[str, Planner]:
 
 
 def cases(seeds: Sequence[int], robots: int, names: Sequence[str]) -> list[Run]:
-    """Return a mission a world and variant: the same team in an office, a cave and a maze of every seed."""
-    worlds = [GeneratedWorld(kind, seed, *SIZE, RESOLUTION) for kind in KINDS for seed in seeds]
+    """Return a mission a world and variant: the same team in an office, a cave and a maze of every seed.
+
+    All that is compared comes world by world, and a world of every kind before the second.
+    """
+    worlds = [GeneratedWorld(kind, seed, *SIZE, RESOLUTION) for seed in seeds for kind in KINDS]
     setups = [ExploreSetup(planner=name, max_time=MAX_TIME) for name in names]
     return [
         Run(world, robots, "together", PlatformSpec("robot"), setup) for world in worlds for setup in setups
@@ -102,16 +105,7 @@ def _row(rows: Sequence[Row], name: str) -> tuple[str, ...]:
     if name == WHOLE:
         return ("nothing", *(figure(mean(rows, name, metric).interval.value) for metric in METRICS))
     ratios = [difference(rows, name, WHOLE, metric).ratio for metric in METRICS]
-    return (name, *map(_ratio, ratios))
-
-
-def _ratio(interval: Interval) -> str:
-    """Show a ratio; its interval if there were draws enough for one, ``-`` if there was none to compare."""
-    if math.isnan(interval.value):
-        return "-"
-    return f"{interval.value:.2f}" + (
-        "" if math.isnan(interval.low) else f" ({interval.low:.2f}-{interval.high:.2f})"
-    )
+    return (name, *map(ratio_cell, ratios))
 
 
 @click.command()
@@ -121,20 +115,27 @@ def _ratio(interval: Interval) -> str:
 @click.option("--robots", type=click.IntRange(1, 64), default=3, show_default=True, help="In every team.")
 @click.option("--only", default="", help="Only the parts whose names hold one of these, with commas.")
 @click.option("--jobs", type=click.IntRange(min=1), default=2, show_default=True, help="Processes.")
+@click.option("--minutes", type=click.FloatRange(min=0.0), help="Begin no mission after so long.")
 @click.option("--out", type=Path, default=RESULTS / "ablation", metavar="DIR", help="Folder for the results.")
-def ablation(seeds: tuple[int, ...], robots: int, only: str, jobs: int, out: Path) -> None:
+def ablation(
+    seeds: tuple[int, ...], robots: int, only: str, jobs: int, minutes: float | None, out: Path
+) -> None:
     """Exchange the parts of the planner one at a time and print what each is worth.
 
-    Missions that this code has carried out before are not carried out again.
-    Exit status 0 if all missions ran, 1 if one broke or was interrupted.
+    Missions that this code has carried out before are not carried out again; the table is of those that are
+    there. Exit status 0 if all missions ran, 1 if one broke or is still to do.
     """
+    end = math.inf if minutes is None else time.monotonic() + 60.0 * minutes
     planners.PLANNERS.update(variants())
     names = [name for name in variants() if any(part.strip() in name for part in only.split(","))]
     runs = cases(seeds, robots, (WHOLE, *names))
-    store = Store.open(out, fingerprint() + Path(__file__).read_text(encoding="utf-8"))
-    done = conduct(runs, store, Workers(jobs, work=carry_out_variant), Console())
-    if not done.missing:
-        text = f"{table(figure_rows(done.results))}\nCommit: {machine.commit()}\n"
+    own = Path(__file__)
+    code = fingerprint() + fingerprint(own.parent / "steps") + own.read_text(encoding="utf-8")
+    workers = Workers(jobs, work=carry_out_variant, over=lambda: time.monotonic() >= end)
+    done = conduct(runs, Store.open(out, code), workers, Console())
+    if done.results:
+        about = f"Missions: {len(done.results)} of {len(runs)}. Commit: {machine.commit()}"
+        text = f"{table(figure_rows(done.results))}\n{about}\n"
         write_text(out / "ablation.md", text)
         click.echo(text)
     raise SystemExit(1 if done.broken or done.missing else 0)

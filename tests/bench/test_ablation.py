@@ -38,6 +38,8 @@ def test_every_variant_goes_through_the_same_missions() -> None:
     assert len(runs) == 2 * 3 * 2  # seeds, kinds of worlds, planners
     assert len({run.case for run in runs}) == 2 * 3
     assert {run.robots for run in runs} == {3}
+    first = [(run.world.seed, run.setup.planner) for run in runs[:6]]
+    assert first == [(5, WHOLE), (5, "rate")] * 3  # a study that is stopped has whole comparisons
 
 
 def test_the_table_shows_the_planners_means_and_the_ratios_of_the_others() -> None:
