@@ -42,8 +42,9 @@ def run_case(case: Case, commit: str) -> Timed:
     if case.way not in (EACH, ONE):
         setup = ExploreSetup(planner=case.way, seed=case.seed)
         summary = explore(prepare(world, specs, setup), curves_only=True).summary
-        found = summary.outcome.value, summary.coverage, summary.t90_s, summary.t99_s, summary.time_s
-        return Timed(*case.key, *found, time.process_time() - began, commit)
+        found = summary.t90_s, summary.t99_s, summary.time_s
+        cpu = time.process_time() - began
+        return Timed(*case.key, summary.outcome.value, summary.coverage, *found, cpu, commit)
     known = KnownWorld(world, *placed(world, specs, ExploreSetup(seed=case.seed)))
     whole = plan(known, COMPLETE, ROUNDS, np.random.default_rng(case.seed))
     if case.way == ONE:
@@ -51,9 +52,9 @@ def run_case(case: Case, commit: str) -> Timed:
     else:
         plans = [plan(known, share, ROUNDS, np.random.default_rng(case.seed)) for share in SHARES]
         ways = [float(known.lengths(routes).max()) for routes in plans]
-    times = [way / specs[0].speed for way in (*ways, float(known.lengths(whole).max()))]
-    told = "planned", known.share(whole), *times
-    return Timed(*case.key, *told, time.process_time() - began, commit)
+    t90, t99, end = (way / specs[0].speed for way in (*ways, float(known.lengths(whole).max())))
+    cpu = time.process_time() - began
+    return Timed(*case.key, "planned", known.share(whole), t90, t99, end, cpu, commit)
 
 
 @click.command()

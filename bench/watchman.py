@@ -149,10 +149,11 @@ class KnownWorld:
         row, col = divmod(cell, frame.cols)
         place = (col + 0.5) * frame.resolution, (row + 0.5) * frame.resolution
         ranges = cast_rays(self.world.solid, frame.resolution, *place, angles, self._reach, ALONE)
-        gains = GAIN_HIT, GAIN_MISS, CLAMP, NUDGE * frame.resolution
-        scan = angles, np.minimum(ranges, self._reach), np.isfinite(ranges)
-        nothing = TiledGrid(Tiling(*frame.shape), np.int8)
-        numbers = self.number[integrate_scan(nothing, frame.resolution, *place, *scan, *gains)]
+        hits, ranges = np.isfinite(ranges), np.minimum(ranges, self._reach)
+        nothing, gains = TiledGrid(Tiling(*frame.shape), np.int8), (GAIN_HIT, GAIN_MISS, CLAMP)
+        nudge = NUDGE * frame.resolution
+        seen = integrate_scan(nothing, frame.resolution, *place, angles, ranges, hits, *gains, nudge)
+        numbers = self.number[seen]
         return np.asarray(numbers[numbers >= 0])
 
 
