@@ -63,9 +63,11 @@ class KnownWorld:
     ) -> None:
         """Take ``places``, flat cells, to look from; all of a lattice if none are given."""
         self.world, self._reach = world, specs[0].range
+        # (R, C) where a robot's centre may be
         self.open = reachable_poses(world, specs[0].radius + SURE_CLEARANCE, *starts[0, :2])
         row, col = np.indices(world.frame.shape)
         counted = Reference(world, specs, starts).coverable & ((row + col) % 2 == 0)
+        # (R * C,) of each cell among the counted ones, -1 of the others
         self.number = np.where(counted, np.cumsum(counted).reshape(counted.shape) - 1, -1).ravel()
         self.cells = int(np.count_nonzero(counted))
         if places is None:
@@ -79,6 +81,7 @@ class KnownWorld:
         seen = [self._look(cell) for cell in places.tolist()]
         ends = np.cumsum([0, *map(len, seen)])
         hits = np.ones(ends[-1], np.int32), np.concatenate([*seen, np.empty(0, np.int64)]), ends
+        # (K, N) whether a place shows a cell
         self.sight = csr_array(hits, shape=(len(places), self.cells))
         self._legs: dict[tuple[int, int], Leg] = {}
 
