@@ -75,15 +75,25 @@ class Rendering:
         self._drawn.setdefault(key, SharedTiles(np.uint8)).write(touched, blocks)
         return touched
 
+    def held(self, key: Key) -> NDArray[np.int64]:
+        """Return the tiles of the frame that a contributor says something of, increasing."""
+        return self._drawn[key].held if key in self._drawn else NONE
+
+    def under(self, key: Key, tile: int, copy: FramedCopy) -> NDArray[np.int64]:
+        """Return the tiles of a contributor's own frame that may be drawn on one of this frame."""
+        there, tiles = self.frames[key], np.array([tile])
+        under = tiles if there == IDENTITY else self._touched(tiles, there.inverse())
+        return under[copy.values.holds(under)]
+
     def read(self, key: Key, tiles: NDArray[np.int64]) -> NDArray[np.uint8]:
         """Return ``(T, 1024)`` what a contributor says of tiles of the frame."""
         drawn = self._drawn.get(key)
         return np.zeros((len(tiles), CELLS), np.uint8) if drawn is None else drawn.read(tiles)
 
-    def summed(self, tiles: NDArray[np.int64]) -> NDArray[np.int32]:
-        """Return ``(T, 1024)`` packed sums of what all who lie in the frame say of tiles."""
+    def summed(self, tiles: NDArray[np.int64], out: frozenset[int] = frozenset()) -> NDArray[np.int32]:
+        """Return ``(T, 1024)`` packed sums of what all in the frame, but for some robots, say of tiles."""
         words = np.zeros((len(tiles), CELLS), np.int32)
-        for drawn in self._drawn.values():
+        for drawn in (drawn for (robot, _), drawn in self._drawn.items() if robot not in out):
             held = np.flatnonzero(drawn.holds(tiles))
             if len(held):
                 words[held] += WORDS.take(drawn.read(tiles[held]))

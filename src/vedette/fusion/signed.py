@@ -22,7 +22,7 @@ from vedette.fusion.seals import EVIDENCE, Notary
 from vedette.fusion.snapshots import NONE, Change, Delta, tiles_to_publish
 from vedette.fusion.standing import Standing, print_of
 from vedette.fusion.tiles import classes_of, codes_of
-from vedette.fusion.trust import STANDS, Comparison, Trust
+from vedette.fusion.trust import STANDS, Comparison, TimesOf, Trust
 from vedette.kernels.tiles import TiledGrid, Tiling
 
 FIRM_AFTER, RESTATES, COVERS = 10, 20, 30  # [0.1 s]
@@ -33,9 +33,13 @@ class MapSealings(Sealings[SealedSnapshot, Delta[np.uint8]]):
 
     kind = EVIDENCE
 
-    def __init__(self, standing: Standing, tiling: Tiling, counts_size: int, limits: Capabilities) -> None:
+    def __init__(
+        self, standing: Standing, tiling: Tiling, counts_size: int, counted: int, limits: Capabilities
+    ) -> None:
+        """Check so many ``counted`` numbers; what stands behind them is told, and no count."""
         super().__init__(standing)
         self._tiling, self._counts_size, self._limits = tiling, counts_size, limits
+        self._counted = counted
 
     def blank(self) -> SealedSnapshot:
         """Return one without tiles."""
@@ -54,7 +58,7 @@ class MapSealings(Sealings[SealedSnapshot, Delta[np.uint8]]):
             wire.decode_place(news.voucher.place)
         self._limits.check_visits(now)
         if news.counts is not None:
-            self._limits.check_counts(news.counts, now, news.voucher.seal.time)
+            self._limits.check_counts(news.counts[: self._counted], now, news.voucher.seal.time)
         self._limits.check(self._tiling, news.tiles, now, news.voucher.seal.time)
 
 
@@ -77,11 +81,16 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
         limits: Capabilities,
         mark: int = 0,
         resend_after: float = RESEND_AFTER,
+        behind: int = 0,
     ) -> None:
-        """Start with nothing known; ``boot < 2**38`` must differ from those of the robot's earlier starts."""
+        """Start with nothing known; ``boot < 2**38`` must differ from those of the robot's earlier starts.
+
+        ``behind``: numbers that each contributor tells behind its counts.
+        """
+        counted, counts_size = counts_size, counts_size + behind
         tiling = Tiling(*shape)
         standing = Standing(notary)
-        sealing = MapSealings(standing, tiling, counts_size, limits)
+        sealing = MapSealings(standing, tiling, counts_size, counted, limits)
         contributors: Contributors[SealedSnapshot, Delta[np.uint8]] = Contributors(
             robot, boot, lambda: SealedSnapshot(tiling, counts_size), resend_after, sealing
         )
@@ -125,8 +134,7 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
 
     def contradictions(self, now: int) -> dict[tuple[int, int], Comparison]:
         """Return how far pairs of robots contradict each other, of what stands at a time [0.1 s]."""
-        copies = self._contributors.copies
-        return self._trust.contradictions({key: copy.times for key, copy in copies.items()}, now)
+        return self._trust.contradictions(self._times, now)
 
     def set_out(self, row: int, col: int) -> None:
         """Note the cell at which this robot starts; the first one stands."""
@@ -180,11 +188,10 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
         """Judge anew, and add up anew what has changed, tile by tile."""
         copies = self._contributors.copies
         changed = [NONE]
+        self._take_places(changes)
         for key, change in changes.items():
             if change is not None:
                 changed.append(change.tiles)
-                if key != self._contributors.key and copies[key].place:
-                    self._placed[key] = wire.decode_place(copies[key].place), copies[key].seal.time
                 self._trust.see(key, change.tiles, copies[key].values.read)
         before = self.out
         self._judge()
@@ -192,6 +199,18 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
         self.counts = sum((copy.counts for copy in self._believed()), np.zeros_like(self.counts))
         tiles = np.unique(np.concatenate(changed))
         return self.show(tiles, classes_of(summed(self._believed(), tiles)))
+
+    def _take_places(self, changes: Mapping[Key, Change | None]) -> None:
+        """Note where others say to be by their news."""
+        for key, change in changes.items():
+            copy = self._contributors.copies[key]
+            if change is not None and key != self._contributors.key and copy.place:
+                self._placed[key] = wire.decode_place(copy.place), copy.seal.time
+
+    @property
+    def _times(self) -> TimesOf:
+        """When who has said what of the tiles that are compared."""
+        return {key: copy.times for key, copy in self._contributors.copies.items()}
 
     def notes(self) -> dict[int, set[Note]]:
         """Return the notes of the robots that are believed, by robot."""
@@ -220,7 +239,7 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
             said[robot] = max(said.get(robot, 0), copy.seal.time)
         # nobody alone makes it late: the time that two robots have told, at least
         now = sorted(said.values())[-2] if len(said) > 1 else 0
-        times = {key: copy.times for key, copy in copies.items()}
+        times = self._times
         gone = frozenset(self.standing.gone) | self._contributors.restless
         self.out = gone | self._overruled(self._trust.out(times, now, gone))
         self.unsettled = self.out != gone | self._overruled(self._trust.out(times, now + STANDS, gone))

@@ -115,6 +115,12 @@ class Trust:
         else:
             self._tallies[pair].pop(tile, None)
 
+    def forget(self, key: Key) -> None:
+        """Take in that nothing of what a contributor has said lies where it was taken to lie."""
+        self._views.pop(key, None)
+        for pair in [pair for pair in self._tallies if key in pair]:
+            del self._tallies[pair]
+
     def contradictions(
         self, times: Mapping[Key, Mapping[int, Times]], now: int
     ) -> dict[tuple[int, int], Comparison]:
@@ -140,9 +146,13 @@ class Trust:
 
     def is_firm(self, tally: Comparison) -> bool:
         """Tell whether two robots cannot both be right: of what either says much is so to nobody else."""
-        against, walls, opens = tally.against, tally.against + tally.alike, tally.against + tally.open
-        shut = against >= self.cells(LEAST_SHUT) and SHARE * against >= opens
-        return shut or (against >= self.cells(LEAST_WALL) and SHARE * against >= walls)
+        against, walls = tally.against, tally.against + tally.alike
+        return self.is_shut(tally) or (against >= self.cells(LEAST_WALL) and SHARE * against >= walls)
+
+    def is_shut(self, tally: Comparison) -> bool:
+        """Tell whether much of what is open to one is wall to the other."""
+        against, opens = tally.against, tally.against + tally.open
+        return against >= self.cells(LEAST_SHUT) and SHARE * against >= opens
 
     def _beside(self, tiles: NDArray[np.int64]) -> NDArray[np.int64]:
         """Return ``(T, 3, 3)``: each tile and those around it; -1 beyond the grid."""

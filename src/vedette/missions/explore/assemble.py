@@ -19,6 +19,7 @@ from vedette.fusion.framed import FramedEvidence
 from vedette.fusion.particulars import Capabilities
 from vedette.fusion.seals import Notary
 from vedette.fusion.signed import SignedEvidence
+from vedette.fusion.signed_framed import SignedFramedEvidence
 from vedette.maps.lattice import Lattice
 from vedette.missions.explore.exploring import Exploring
 from vedette.missions.explore.frames.exploring import FramedExploring
@@ -92,7 +93,7 @@ def assemble(
     unknown = options.frames == "unknown"
     fusion: Fusion
     if unknown:
-        fusion = FramedEvidence(robot, boot, lattice.frame, 4 * BINS, robots, mark=lattice.mark)
+        fusion = _framed_fusion(lattice, robot, boot, robots, most, notary)
     else:
         fusion = _fusion(lattice, options, robot, boot, most, notary)
     how = planner(options.planner, robots)
@@ -116,6 +117,20 @@ def _fusion(
     shape, mark = lattice.frame.shape, lattice.mark
     if notary is None or options.fusion != "replicated":
         return FUSIONS[options.fusion](robot, boot, shape, 4 * BINS, mark=mark)
-    frame = lattice.frame
-    limits = Capabilities(frame.resolution, most.range, most.speed, (frame.origin_x, frame.origin_y))
+    limits = _limits(lattice, most)
     return SignedEvidence(robot, boot, shape, 4 * BINS, notary=notary, limits=limits, mark=mark)
+
+
+def _framed_fusion(
+    lattice: Lattice, robot: int, boot: int, robots: int, most: Most, notary: Notary | None
+) -> Fusion:
+    """Return how a robot shares what it sees in a frame of its own: signed, where there are keys."""
+    about = robot, boot, lattice.frame, 4 * BINS, robots
+    if notary is None:
+        return FramedEvidence(*about, mark=lattice.mark)
+    return SignedFramedEvidence(*about, notary=notary, limits=_limits(lattice, most), mark=lattice.mark)
+
+
+def _limits(lattice: Lattice, most: Most) -> Capabilities:
+    frame = lattice.frame
+    return Capabilities(frame.resolution, most.range, most.speed, (frame.origin_x, frame.origin_y))

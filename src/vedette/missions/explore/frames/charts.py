@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import OrderedDict
 from hashlib import blake2b
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ from vedette.align import Charted, FramePose, charted
 from vedette.align.agreement import MapAgreement, agreement, middles
 from vedette.align.candidates import ROUGHLY
 from vedette.align.fitted import pulled
-from vedette.fusion.framed import FramedEvidence
+from vedette.fusion.framed import FramedMap
 from vedette.fusion.link import Key
 from vedette.fusion.tiles import CLASSES
 from vedette.kernels.tiles import SIDE, TiledGrid, Tiling
@@ -29,7 +29,7 @@ class Charts:
 
     _kept: ClassVar[OrderedDict[tuple[bytes, GridFrame], Charted | None]] = OrderedDict()  # by content
 
-    def __init__(self, evidence: FramedEvidence, frame: GridFrame) -> None:
+    def __init__(self, evidence: FramedMap[Any], frame: GridFrame) -> None:
         self._evidence, self._frame = evidence, frame
 
     def size(self, key: Key) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from vedette.agent.mates import Mate
 from vedette.agent.messages import FrameTold
 from vedette.domains.mapping.belief import MapBelief
 from vedette.fusion.frame_edges import FrameEdge, packed
-from vedette.fusion.framed import FramedEvidence
+from vedette.fusion.framed import FramedMap
 from vedette.maps.transform import Transform
 from vedette.missions.explore.exploring import Exploring
 from vedette.missions.explore.frames.footprints import on_plane
@@ -42,7 +42,7 @@ class FramedExploring(Exploring):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        evidence = cast(FramedEvidence, self.fusion)
+        evidence = cast(FramedMap[Any], self.fusion)
         self.own.askew = ASKEW * self.frame.resolution
         self.own.passers_by = PassersBy(self.frame, self.spec.radius)  # mates of unknown frames among them
         reach = self.spec.range if self.most is None else self.most.range
@@ -110,11 +110,16 @@ class FramedExploring(Exploring):
 
     def notes(self) -> list[Note]:
         """Return the frontiers that this robot's visits did not change, each with whose frame it is in."""
+        if self.signed is not None:
+            return []
         own = self.frames.key[0]
         return [(x, y, NUMBERED * unknown + own) for x, y, unknown in self._own_notes()]
 
     def hear_notes(self, notes: Sequence[Note]) -> None:
         """Leave alone what visits did not change of whoever is joined with this robot."""
+        if self.signed is not None:
+            super().hear_notes(notes)
+            return
         moved = list[Note]()
         for x, y, number in notes:
             unknown, robot = divmod(number, NUMBERED)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any, NamedTuple
 
 from vedette.agent.messages import FrameTold
-from vedette.fusion.framed import FramedEvidence
+from vedette.fusion.frame_edges import FrameEdge
+from vedette.fusion.framed import FramedMap
 from vedette.fusion.link import Key
 from vedette.kernels.tiles import SIDE, Tiling
 from vedette.maps import GridFrame
@@ -19,20 +21,32 @@ BORNE_OUT = 8.0, 0.15  # walls in common at least [m], and contradicted at most,
 ALLOWED = 2.0, 0.25  # where more contradicts, and a larger share, two are not joined [m, 1]
 AGAIN = 8  # versions of both, after which it is looked at anew whether they agree
 
-Verdict = tuple[int, bool, bool]  # versions of both, whether they bear it out, whether they allow it
+REFUTED = 2.0, 0.5  # walls in common at most [m], or contradicted at least: two do not lie so
+PATIENCE = 24  # versions of whoever tells of such an edge, in which it could have taken it back
+
+
+class Verdict(NamedTuple):
+    """What the evidence of two says of where one lies on the other."""
+
+    versions: int  # of both
+    bears_out: bool
+    allows: bool = True
+    refutes: bool = False
+    same: int = 0  # walls in common [cm]
 
 
 @dataclass(eq=False)
 class SharedFrames:
     """Solves the frames from what all have told, and lays them out."""
 
-    evidence: FramedEvidence
+    evidence: FramedMap[Any]
     frame: GridFrame  # of everybody's cells
     gap: float  # between components on the plane, at least [m]
     charts: Charts = field(init=False)
     found: Solved = field(init=False)  # how contributors lie, as this robot sees it
     plane: dict[Key, Transform] = field(default_factory=dict)  # T_plane_contributor of the latest round
     _verdicts: dict[tuple[Key, Key, Transform], Verdict] = field(default_factory=dict)
+    _refuted: dict[tuple[Key, FrameEdge], int] = field(default_factory=dict)  # by whom, since which version
 
     def __post_init__(self) -> None:
         self.charts = Charts(self.evidence, self.frame)
@@ -65,8 +79,9 @@ class SharedFrames:
         keys = self.known
         middles = {key: _middle(box) for key, box in self._boxes(keys).items()}
         told = self.evidence.told
+        self._find_false(told, middles)
         matches = {
-            edge
+            self._weighed(edge)
             for edges in told.values()
             for edge in edges
             if not edge.met and edge.a in middles and edge.b in middles
@@ -143,26 +158,58 @@ class SharedFrames:
         return boxes
 
     def _bears_out(self, a: Key, b: Key, there: Transform) -> bool:
-        return self._verdict(a, b, there)[1]
+        return self._verdict(a, b, there).bears_out
 
     def _allows(self, a: Key, b: Key, there: Transform) -> bool:
-        return self._verdict(a, b, there)[2]
+        return self._verdict(a, b, there).allows
+
+    def _weighed(self, edge: FrameEdge) -> FrameEdge:
+        """Return a match that weighs no more than the evidence of both says, whatever is told of it."""
+        a, b, there = edge[:3] if edge.a < edge.b else edge.inverse[:3]
+        return edge._replace(weight=min(edge.weight, self._verdict(a, b, there).same))
+
+    def _find_false(self, told: Mapping[Key, Sequence[FrameEdge]], seen: Collection[Key]) -> None:
+        """Note who goes on telling of matches that the evidence of both refutes.
+
+        An honest robot takes such an edge back as soon as it knows of that evidence.
+        """
+        refuted: dict[tuple[Key, FrameEdge], int] = {}
+        for key, edges in told.items():
+            for edge in edges:
+                if edge.met or edge.a not in seen or edge.b not in seen:
+                    continue
+                a, b, there = edge[:3] if edge.a < edge.b else edge.inverse[:3]
+                if self._verdict(a, b, there).refutes:
+                    version = self.evidence.copies[key].version
+                    refuted[key, edge] = self._refuted.get((key, edge), version)
+        self._refuted = refuted
+        late = {
+            key[0]
+            for (key, _), since in refuted.items()
+            if key != self.key and self.evidence.copies[key].version >= since + PATIENCE
+        }
+        self.evidence.misleading = frozenset(late)
 
     def _verdict(self, a: Key, b: Key, there: Transform) -> Verdict:
         """Return what the evidence of two says of where one lies on the other, looked at now and then."""
         copies = self.evidence.copies
         versions = copies[a].version + copies[b].version
         known = self._verdicts.get((a, b, there))
-        if known is not None and versions < known[0] + AGAIN:
+        if known is not None and versions < known.versions + AGAIN:
             return known
         found = self.charts.agreement(a, b, there)
         if found is None:
-            verdict = versions, False, True
+            verdict = Verdict(versions, False)
         else:
             shift, turn = self.charts.pulled(a, b, there)
             straight = shift <= CLOSED[0] and turn <= CLOSED[1]
-            out = straight and found.same >= BORNE_OUT[0] and found.contradicted <= BORNE_OUT[1]
-            verdict = versions, out, found.against < ALLOWED[0] or found.contradicted <= ALLOWED[1]
+            verdict = Verdict(
+                versions,
+                straight and found.same >= BORNE_OUT[0] and found.contradicted <= BORNE_OUT[1],
+                found.against < ALLOWED[0] or found.contradicted <= ALLOWED[1],
+                found.same < REFUTED[0] or found.contradicted > REFUTED[1],
+                round(100.0 * found.same),
+            )
         self._verdicts[a, b, there] = verdict
         return verdict
 
