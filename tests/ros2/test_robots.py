@@ -48,9 +48,13 @@ def test_robots_on_real_rclpy_explore_two_rooms_and_map_them_as_they_are(tmp_pat
     assert said.count("collided: False") == 2, said
 
 
-def test_robots_whose_maps_lie_anywhere_find_how_they_lie_and_tell_it_on_tf(tmp_path: Path) -> None:
-    world = small_office()
-    team = plan(world, 2, frames="unknown")
+@pytest.mark.parametrize("evidence", ["scan", "map"])
+def test_robots_whose_maps_lie_anywhere_find_how_they_lie_and_tell_it_on_tf(
+    tmp_path: Path, evidence: str
+) -> None:
+    odd = {i: {"slam": evidence == "map"} for i in range(2)}
+    settings = {i: {"evidence": evidence} for i in range(2)}
+    team = plan(small_office(), 2, frames="unknown", oddities=odd, settings=settings)
     heard: list[tuple[str, str, float, float]] = []
     beside = Beside("robot2")
     try:

@@ -16,8 +16,10 @@ from vedette.domains.mapping.sightings import BINS
 from vedette.fusion import ReplicatedEvidence
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
 from vedette.maps.lattice import Lattice
+from vedette.missions.explore.evidence import OwnEvidence
 from vedette.missions.explore.exploring import Exploring
 from vedette.missions.explore.own_map import OwnMap
+from vedette.missions.explore.passers_by import STILL, PassersBy
 
 FRAME = GridFrame(0.1, 120, 120, -2.0, -3.0)
 
@@ -98,3 +100,56 @@ def test_a_team_mate_in_the_map_is_no_obstacle() -> None:
 
 def test_a_map_outside_the_teams_grid_says_nothing() -> None:
     assert not told(explorer(), room(0.05, 100.0, 0.5, pi / 3)).any()
+
+
+class Mapped:
+    """What a robot says whose SLAM tells its map once a second, and that knows no mate's place."""
+
+    def __init__(self) -> None:
+        lattice = Lattice(FRAME)
+        self.own = OwnEvidence(lattice, SPEC, PassersBy(FRAME, SPEC.radius))
+
+    def tell(self, now: float, *solid: tuple[slice, slice], x: float = 0.0) -> NDArray[np.bool_]:
+        """Take over the map of a free hall in which that is solid; return which of its cells are occupied."""
+        classes = np.full((60, 60), FREE, np.uint8)
+        for part in solid:
+            classes[part] = OCCUPIED
+        self.own.take_over(OwnMap(classes, 0.1, x, 0.0, 0.0), [], now)
+        told: NDArray[np.bool_] = self.own.log_odds.window(slice(30, 90), slice(20, 80)) > 0
+        return told
+
+
+MATE = slice(20, 24), slice(30, 34)
+WALL = slice(5, 55), slice(10, 12)
+
+
+def test_a_body_that_comes_into_the_robots_own_map_is_no_wall_until_it_has_stood_still() -> None:
+    mapped = Mapped()
+    assert not mapped.tell(0.0).any()
+    assert not mapped.tell(1.0, MATE).any()
+    for now in (2.0, 3.0):  # it drives on
+        assert not mapped.tell(now, (slice(20, 24), slice(30 + 3 * round(now), 34 + 3 * round(now)))).any()
+    stands = slice(20, 24), slice(50, 54)
+    assert not mapped.tell(4.0, stands).any()
+    assert not mapped.tell(4.0 + STILL - 0.1, stands).any()
+    assert np.count_nonzero(mapped.tell(4.0 + STILL, stands)) == 16
+    assert not mapped.tell(8.0).any()  # it has gone
+
+
+def test_a_body_that_goes_and_comes_again_has_not_stood_still() -> None:
+    mapped = Mapped()
+    mapped.tell(0.0)
+    mapped.tell(1.0, MATE)
+    mapped.tell(3.0)
+    assert not mapped.tell(4.5, MATE).any()
+
+
+def test_walls_are_told_at_once_as_they_come_and_as_the_map_shifts() -> None:
+    mapped = Mapped()
+    mapped.tell(0.0)
+    assert np.count_nonzero(mapped.tell(1.0, WALL)) == 100
+    assert np.count_nonzero(mapped.tell(2.0, WALL, x=0.5)) == 100  # a loop was closed
+
+
+def test_what_was_never_seen_free_is_told_at_once() -> None:
+    assert np.count_nonzero(Mapped().tell(0.0, MATE)) == 16

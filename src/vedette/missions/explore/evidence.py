@@ -71,7 +71,7 @@ class OwnEvidence:
         self._changed.clear()
         return changed
 
-    def take_over(self, own_map: OwnMap, mates: Sequence[Mate]) -> None:
+    def take_over(self, own_map: OwnMap, mates: Sequence[Mate], now: float) -> None:
         """Let a map take the place of all that the robot said before; team-mates are not obstacles in it."""
         bounds = own_map.bounds(self.frame)
         was = self.seen.extent
@@ -79,11 +79,13 @@ class OwnEvidence:
             bounds.hold(was[0].start, was[0].stop, was[1].start, was[1].stop)
         extent = bounds.extent
         frame = self.frame.window(*extent)
-        before, now = self.log_odds.window(*extent), own_map.laid(frame)
+        before, classes = self.log_odds.window(*extent), own_map.laid(frame)
         for mate in mates:
             body = cells_under(frame, mate.x, mate.y, mate.radius + MATE_MARGIN)
-            now.flat[body[now.flat[body] == OCCUPIED]] = UNKNOWN
-        evidence = TAKEN_OVER[now]
+            classes.flat[body[classes.flat[body] == OCCUPIED]] = UNKNOWN
+        if self.passers_by is not None:
+            self.passers_by.sift_map(self.log_odds, classes, (extent[0].start, extent[1].start), now)
+        evidence = TAKEN_OVER[classes]
         changed = np.flatnonzero(np.sign(before) != np.sign(evidence))
         row, col = np.divmod(changed, frame.cols)
         cells = (row + extent[0].start) * self.frame.cols + col + extent[1].start

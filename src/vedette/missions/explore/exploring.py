@@ -129,7 +129,7 @@ class Exploring:
             self._at = pose.x, pose.y
             self._looking.add(pose, seen.angles)
         elif isinstance(seen.data, OwnMap):
-            self.own.take_over(seen.data, mates)
+            self.own.take_over(seen.data, mates, now)
 
     @property
     def known(self) -> Extent:

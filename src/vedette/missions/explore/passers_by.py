@@ -6,8 +6,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from vedette.kernels.tiles import TiledGrid
+from vedette.maps import FREE, OCCUPIED
 from vedette.maps.frame import GridFrame
 
 Floats = NDArray[np.float64]
@@ -81,6 +83,30 @@ class PassersBy:
         ranges[moving] = np.maximum(ranges[moving] - self.frame.resolution, 0.0)
         whole[order], told[order] = ranges, hits
         return back
+
+    def sift_map(
+        self, log_odds: TiledGrid[np.int8], classes: NDArray[np.uint8], first: tuple[int, int], now: float
+    ) -> None:
+        """Keep what may move out of a map that the robot has made itself, changed in place.
+
+        Small things that are in it where there was free ground, and not yet for `STILL` seconds, are free as
+        before.
+
+        Args:
+            log_odds: of the robot, as the map before has left it.
+            classes: ``(R, C)`` of the map.
+            first: row and column of its first cell.
+            now: [s].
+        """
+        row, col = (slice(at, at + n) for at, n in zip(first, classes.shape, strict=True))
+        new = (classes == OCCUPIED) & (log_odds.window(row, col) < 0)
+        at = np.argwhere(_small(new, round(BROAD / self.frame.resolution)))
+        flat = (at[:, 0] + first[0]) * self.frame.cols + at[:, 1] + first[1]
+        still = np.isin(self._cells, flat)
+        self._cells, self._since = self._cells[still], self._since[still]
+        self._remember(flat, now)
+        moving = at[now - self._since[np.searchsorted(self._cells, flat)] < STILL]
+        classes[moving[:, 0], moving[:, 1]] = FREE
 
     def discs(self, now: float) -> list[Disc]:
         """Return those seen lately that may move, as discs in the frame of the map [m]."""
@@ -180,6 +206,14 @@ def _standing_free(angles: Floats, ranges: Floats, hits: Mask) -> tuple[NDArray[
     breadth = np.remainder(angles[ends] - angles[begins], 2.0 * np.pi) * ranges[begins]
     kept = hits[begins] & (free | half_hidden) & (breadth <= BROAD)
     return begins[kept], last[kept]
+
+
+def _small(cells: Mask, most: int) -> Mask:
+    """Return those of the cells ``(R, C)`` whose part, corners included, is at most so many cells broad."""
+    labels, _ = ndimage.label(cells, np.ones((3, 3)))
+    small = [False] + [max(b.stop - b.start for b in box) <= most for box in ndimage.find_objects(labels)]
+    found: Mask = np.array(small)[labels]
+    return found
 
 
 def _nearest(angles: Floats, bearings: Floats) -> tuple[NDArray[np.int64], Floats]:

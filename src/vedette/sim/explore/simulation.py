@@ -93,7 +93,7 @@ class ExploreSimulation(Simulation):
         team = self.lattice, specs[robot], setup.options, robot, boot
         agent = assemble(*team, robots=len(specs), most=most, prior=setup.prior)
         if robot == 0 and self.setup.saved is not None:
-            cast(Exploring, agent.mission).own.take_over(self.setup.saved, ())
+            cast(Exploring, agent.mission).own.take_over(self.setup.saved, (), 0.0)
         return agent
 
     @property
