@@ -169,7 +169,7 @@ def test_the_heaviest_edges_are_told_where_there_is_no_room_for_all() -> None:
 
 @pytest.mark.parametrize(
     ("place", "number"),
-    [(0, 0), (1, -1), (1, 1 << 54), (2, -1), (3, 1 << 31), (4, -(1 << 31)), (5, -1), (5, TURN)],
+    [(0, 0), (0, -1), (1, -1), (1, 1 << 54), (2, -1), (3, 1 << 31), (4, -(1 << 31)), (5, -1), (5, TURN)],
 )
 def test_numbers_that_are_no_edge_are_left_out(place: int, number: int) -> None:
     numbers = packed([FrameEdge(KEYS[0], KEYS[1], Transform(1, 2, 3), 4)], room_for(ROBOTS))

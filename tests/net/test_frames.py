@@ -127,24 +127,32 @@ def test_a_frame_of_its_own_is_for_a_simulated_robot_of_a_team_that_shares_none(
     assert load_config(path).body.frame == (1.0, 2.0, 30.0)
 
 
-def test_orders_that_name_a_place_are_refused_where_no_frame_is_shared() -> None:
+def test_an_order_that_names_a_place_is_looked_at_where_its_frame_is_known_and_taken_elsewhere() -> None:
     spec = robots(1)[0]
     options = ExploreOptions(frames="unknown")
     lattice = options.lattice_on(WORLD.frame)
     agent = assemble(lattice, spec, options, 0, 1, robots=2, most=Most.of([spec]))
+    agent.rounds.admitted = 2
     judge = explorer_judge(agent, Gate("m", None, local=True))
     corners = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0))
+    far = tuple((x + 1e6, y) for x, y in corners)
     for order in (
         NoGo(area="a", corners=corners),
-        Priority(area="a", corners=corners),
+        NoGo(area="a", corners=far, frame=2),
+        Priority(area="a", corners=corners, frame=1),
         LookThere(at=(1.0, 1.0)),
-        Recall(to=(1.0, 1.0)),
+        LookThere(at=(1e6, 1.0), frame=2),
+        Recall(robot=2, to=(1e6, 1.0)),
+        Recall(),
+        Pause(robot=1),
     ):
-        told = judge.objection(order)
-        assert told is not None
-        assert "a place means nothing to them" in told
-    assert judge.objection(Pause(robot=1)) is None
-    assert judge.objection(Recall()) is None
+        assert judge.objection(order) is None
+    for order, says in (
+        (NoGo(area="a", corners=far), "lies outside"),
+        (LookThere(robot=2, at=(1e6, 1.0), frame=1), "lies outside"),
+        (Recall(to=(1.0, 1.0), frame=3), "no robot 3"),
+    ):
+        assert says in (judge.objection(order) or "")
 
 
 # -- what an operator sees ----------------------------------------------------------------------------

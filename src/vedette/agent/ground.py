@@ -89,7 +89,7 @@ class GroundBehaviour:
 
     def follow(self, agent: Agent, pose: Pose, now: float, news: bool) -> list[Effect]:
         """Drive where orders or the latest decision want the robot; after the last one, home or nowhere."""
-        given = agent.orders.in_force(agent.robot)
+        given = agent.ordered
         if given != self.obeyed:
             return self._obey(agent, pose, given, now)
         if (out := self._leave(agent, pose, now)) is not None:
@@ -130,7 +130,7 @@ class GroundBehaviour:
         self.mission.stand_by()
         agent.rounds.want()
         agent.quiet = 0
-        order = None if given is None else given.order
+        order = None if given is None else agent.in_own(given.order)
         match order:
             case None:
                 self.state = State.IDLE

@@ -7,18 +7,22 @@ same, whatever way and in whatever order these came.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Annotated, TypeAlias, TypeVar
 
 import msgspec
-from msgspec import Meta, Struct
+import numpy as np
+from msgspec import Meta, Struct, structs
 
 from vedette import wire
 from vedette.errors import nearest_name
 from vedette.fusion.digest import fingerprint
+from vedette.maps.transform import IDENTITY, Transform
 
 MOST_ORDERS = 256  # subjects that there can be
 MOST_CORNERS = 64
+PLACES = ("at", "to", "corners")  # what in orders lies somewhere
 Number = Annotated[int, Meta(ge=1, le=1 << 16)]  # of a robot, as people count
 Metre = Annotated[float, Meta(ge=-2.1e7, le=2.1e7)]
 Name = Annotated[
@@ -33,12 +37,23 @@ Corners = Annotated[
 class _Order(
     Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True, tag_field="order"
 ):
-    """What is ordered."""
+    """What is ordered.
+
+    Places lie in the frame that the team shares. Where it shares none they lie in that of a robot, ``frame``:
+    if none is named, of the robot that the order is about, else of the first.
+    """
 
     @property
     def robot_number(self) -> int:
         """The robot that it is about, as people count; 0: none in particular."""
         return getattr(self, "robot", None) or 0
+
+    @property
+    def in_frame_of(self) -> int | None:
+        """The robot, by its index, in whose frame its places lie; None: it has none."""
+        if not any(getattr(self, name, None) is not None for name in PLACES):
+            return None
+        return (getattr(self, "frame", None) or self.robot_number or 1) - 1
 
 
 class _OfRobots(_Order, frozen=True, kw_only=True):
@@ -65,18 +80,22 @@ class Stay(_OfRobots, frozen=True, kw_only=True, tag="stay"):
 class Recall(_OfRobots, frozen=True, kw_only=True, tag="recall"):
     """Go back to the start, or to a point, and be done."""
 
-    to: tuple[Metre, Metre] | None = None  # [m], team frame; None: where it started
+    to: tuple[Metre, Metre] | None = None  # [m]; None: where it started
+    frame: Number | None = None  # the robot in whose frame that lies, where the team shares none
 
 
 class LookThere(_OfRobots, frozen=True, kw_only=True, tag="look"):
     """Go and look at a place, then work on; of the team, whoever it suits best."""
 
-    at: tuple[Metre, Metre]  # [m], team frame
+    at: tuple[Metre, Metre]  # [m]
+    frame: Number | None = None  # the robot in whose frame that lies, where the team shares none
 
     @property
     def subject(self) -> str:
         """A robot's mode, or a place that is worth more to all."""
-        return f"look-{self.at[0]:g}-{self.at[1]:g}" if self.robot is None else f"robot-{self.robot}"
+        if self.robot is not None:
+            return f"robot-{self.robot}"
+        return f"look-{self.at[0]:g}-{self.at[1]:g}" + (f"-of-{self.frame}" if self.frame else "")
 
 
 class End(_Order, frozen=True, kw_only=True, tag="end"):
@@ -102,13 +121,15 @@ class _OfArea(_Order, frozen=True, kw_only=True):
 class NoGo(_OfArea, frozen=True, kw_only=True, tag="no-go"):
     """Nobody goes there, and nothing in there is the team's."""
 
-    corners: Corners  # x, y [m], team frame
+    corners: Corners  # x, y [m]
+    frame: Number | None = None  # the robot in whose frame they lie, where the team shares none
 
 
 class Priority(_OfArea, frozen=True, kw_only=True, tag="priority"):
     """What is in there is worth more."""
 
-    corners: Corners
+    corners: Corners  # x, y [m]
+    frame: Number | None = None  # the robot in whose frame they lie, where the team shares none
     factor: Annotated[float, Meta(ge=1.0, le=100.0)] = 3.0
 
 
@@ -139,6 +160,17 @@ Order: TypeAlias = (
 
 
 OrderT = TypeVar("OrderT", bound=_Order)
+
+
+def moved(order: OrderT, there: Transform) -> OrderT:
+    """Return an order with its places as they lie in another frame, where the one they are in lies so."""
+    places = {name: getattr(order, name, None) for name in PLACES}
+    changed: dict[str, object] = {}
+    for name, place in places.items():
+        if place is not None:
+            corners = there.places(np.array(place, np.float64).reshape(-1, 2)).tolist()
+            changed[name] = tuple(map(tuple, corners)) if name == "corners" else tuple(corners[0])
+    return structs.replace(order, **changed)
 
 
 class Given(Struct, frozen=True, array_like=True):
@@ -202,6 +234,19 @@ class OrderBook:
         latest = max(given, key=lambda each: each.rank)
         over = isinstance(latest.order, Resume) or latest.rank in self.fulfilled
         return None if over else latest
+
+    def seen_from(self, framed: Callable[[int], Transform | None]) -> OrderBook:
+        """Return the book with all places in one frame, by where robots' frames lie in that.
+
+        What is about a place in a frame that ``framed`` does not know is left out.
+        """
+        given = dict[str, Given]()
+        for subject, each in self._given.items():
+            of = each.order.in_frame_of
+            there = IDENTITY if of is None else framed(of)
+            if there is not None:
+                given[subject] = structs.replace(each, order=moved(each.order, there))
+        return OrderBook(given, self.fulfilled)
 
     @property
     def any_no_go(self) -> bool:

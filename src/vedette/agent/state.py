@@ -18,7 +18,7 @@ from vedette.agent.effects import Effect
 from vedette.agent.events import Arrived, Pose, Scan, Sensed, Stuck
 from vedette.agent.mates import Mates
 from vedette.agent.mission import Framing, Mission
-from vedette.agent.orders import Given, OrderBook
+from vedette.agent.orders import Given, OrderBook, OrderT, moved
 from vedette.agent.pace import Pace
 from vedette.agent.proofs import Proofs
 from vedette.agent.relay import Relay
@@ -150,6 +150,23 @@ class Agent:
     def state(self) -> State:
         """What the robot is doing."""
         return self.behaviour.state
+
+    @property
+    def ordered(self) -> Given | None:
+        """What the robot is to do instead of working; None: it works.
+
+        It works on, too, while it does not know where the frame lies that the order's place is in.
+        """
+        given = self.orders.in_force(self.robot)
+        if given is None or self.framing is None or (of := given.order.in_frame_of) is None:
+            return given
+        return None if self.framing.in_own(of) is None else given
+
+    def in_own(self, order: OrderT) -> OrderT:
+        """Return an order with its place in the frame that the robot reckons in."""
+        of = order.in_frame_of
+        there = None if of is None or self.framing is None else self.framing.in_own(of)
+        return order if there is None else moved(order, there)
 
     @property
     def finished(self) -> bool:

@@ -64,6 +64,12 @@ class CornersOf(click.ParamType[Any]):
 @click.option("--at", type=PlaceOf(), metavar="x,y", help="Where to look [m].")
 @click.option("--area", metavar="NAME", help="Of a no-go or priority area.")
 @click.option("--corners", type=CornersOf(), metavar='"x,y;x,y;x,y"', help="Of that area [m].")
+@click.option(
+    "--frame",
+    type=int,
+    metavar="N",
+    help="The robot in whose frame that is, where the team shares none.",
+)
 @click.option("--factor", type=float, help="How many times as much a priority area is worth.")
 def order(config_paths: tuple[Path, ...], keys: Path | None, wait: float, kind: str, **said: Any) -> None:
     """Give the agents that listen where the CONFIG.yaml files say an order: they pass it on to the others.

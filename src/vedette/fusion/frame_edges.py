@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
@@ -16,19 +17,32 @@ MOST_ROBOTS = 1 << 16
 MOST_AWAY = 1 << 30  # [mm]
 
 
+class EdgeKind(IntEnum):
+    """What speaks for an edge."""
+
+    MATCH = 0  # walls of both maps
+    MEETING = 1  # a robot has seen the other move
+    GUESS = 2  # walls, but not enough: it joins nobody
+
+
 class FrameEdge(NamedTuple):
-    """``T_a_b`` between two contributors' frames: where b's lies in a's, found by maps or by a meeting."""
+    """``T_a_b`` between two contributors' frames: where b's lies in a's."""
 
     a: Key
     b: Key
     there: Transform
-    weight: int  # walls in common [cm]; of a meeting so much as would leave it as uncertain
-    met: bool = False  # by a meeting
+    weight: int  # walls in common [cm], or as many as leave a meeting so uncertain; a guess's chance [%]
+    kind: EdgeKind = EdgeKind.MATCH
+
+    @property
+    def met(self) -> bool:
+        """Whether it is a meeting."""
+        return self.kind is EdgeKind.MEETING
 
     @property
     def inverse(self) -> FrameEdge:
         """The same as it is seen from b."""
-        return FrameEdge(self.b, self.a, self.there.inverse(), self.weight, self.met)
+        return FrameEdge(self.b, self.a, self.there.inverse(), self.weight, self.kind)
 
 
 def room_for(robots: int) -> int:
@@ -42,19 +56,20 @@ def packed(edges: Iterable[FrameEdge], room: int) -> NDArray[np.int64]:
     kept = sorted(edges, key=lambda edge: (-edge.weight, edge))[: room // NUMBERS]
     for at, edge in enumerate(sorted(kept)):
         a, b = (robot << BOOT_BITS | boot for robot, boot in (edge.a, edge.b))
-        weight = -edge.weight - 1 if edge.met else edge.weight + 1
-        numbers[NUMBERS * at : NUMBERS * (at + 1)] = weight, a, b, *edge.there
+        told = 1 + len(EdgeKind) * edge.weight + edge.kind
+        numbers[NUMBERS * at : NUMBERS * (at + 1)] = told, a, b, *edge.there
     return numbers
 
 
 def unpacked(numbers: NDArray[np.int64]) -> list[FrameEdge]:
     """Return the edges that a contributor tells; what can be none is left out, for anything may be told."""
     edges = []
-    for weight, a, b, x, y, angle in numbers.reshape(-1, NUMBERS).tolist():
+    for told, a, b, x, y, angle in numbers.reshape(-1, NUMBERS).tolist():
         most = MOST_ROBOTS << BOOT_BITS
-        fits = weight != 0 and 0 <= a < most and 0 <= b < most and a != b and 0 <= angle < TURN
+        fits = told > 0 and 0 <= a < most and 0 <= b < most and a != b and 0 <= angle < TURN
         if fits and max(abs(x), abs(y)) <= MOST_AWAY:
-            edges.append(FrameEdge(_key(a), _key(b), Transform(x, y, angle), abs(weight) - 1, weight < 0))
+            weight, kind = divmod(told - 1, len(EdgeKind))
+            edges.append(FrameEdge(_key(a), _key(b), Transform(x, y, angle), weight, EdgeKind(kind)))
     return edges
 
 

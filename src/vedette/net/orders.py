@@ -16,7 +16,7 @@ from vedette.errors import InputError
 from vedette.maps import OCCUPIED
 from vedette.maps.area import Area
 from vedette.missions.explore.exploring import Exploring
-from vedette.missions.sense import Grounds, forbidden_by, names_a_place
+from vedette.missions.sense import Grounds, forbidden_by
 from vedette.net.config import AgentConfig
 from vedette.net.credentials import Credentials
 from vedette.net.endpoints import is_loopback
@@ -87,8 +87,15 @@ def _objection(agent: Agent, mission: Exploring, order: Order) -> str | None:
     """Say in a line why an order makes no sense, as far as this robot knows the ground; None: it does."""
     if order.robot_number > agent.rounds.admitted:
         return f"there is no robot {order.robot_number} in a team of {agent.rounds.admitted} at most"
-    if agent.framing is not None and names_a_place(order):
-        return "the robots share no frame, so a place means nothing to them; give orders without one"
+    of, book = order.in_frame_of, agent.orders
+    if agent.framing is None and getattr(order, "frame", None) is not None:
+        return "the robots share one frame; leave out whose a place is in"
+    if agent.framing is not None and of is not None:
+        if of >= agent.rounds.admitted:
+            return f"there is no robot {of + 1} in a team of {agent.rounds.admitted} at most"
+        if agent.framing.in_own(of) is None:
+            return None  # what is there, others know
+        order, book = agent.in_own(order), book.seen_from(agent.framing.in_own)
     match order:
         case Remove():
             return agent.orders.unknown_area(order)
@@ -107,7 +114,7 @@ def _objection(agent: Agent, mission: Exploring, order: Order) -> str | None:
             cell = np.array([row * mission.frame.cols + col])
             if mission.fusion.classes.take(cell)[0] == OCCUPIED:
                 return f"there is a wall at {x:g}, {y:g}"
-            return forbidden_by(x, y, agent.orders.all_of(NoGo))
+            return forbidden_by(x, y, book.all_of(NoGo))
     return None
 
 

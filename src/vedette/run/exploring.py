@@ -41,7 +41,7 @@ from vedette.run.result import MissionResult
 from vedette.run.saved import read_saved_map
 from vedette.sim.explore.run import ExploreRun, prepare, views
 from vedette.sim.explore.simulation import ExploreSetup, ExploreSimulation
-from vedette.sim.orders import OrderAt, check_orders, check_places
+from vedette.sim.orders import OrderAt, check_frames, check_orders
 
 _Mission: TypeAlias = StepwiseMission[ExploreSnapshot, Tour, Impact, ExploreReport]
 
@@ -90,6 +90,7 @@ class Explore(_Mission):
         area: Sequence[Sequence[float]] | None = None,
         unbounded: bool = False,
         frames: str = "known",
+        rendezvous: bool = True,
         saved: str | Path | None = None,
         prior: str | Path | None = None,
         record: str | Path | None = None,
@@ -108,6 +109,7 @@ class Explore(_Mission):
             area: corners x, y [m] of the ground that is the team's; None: all of the world.
             unbounded: whether the robots are not told how far their ground goes.
             frames: "unknown": each robot reckons in a frame of its own, and the team finds how these lie.
+            rendezvous: frames unknown: ground is worth more where another component may know it.
             saved: folder of an earlier run, whose map the team starts from: its first robot has it.
             prior: an old map of the building, a map's file, which may be out of date or wrong.
             record: a folder for the run record, ``run.mcap``.
@@ -127,6 +129,7 @@ class Explore(_Mission):
             area=None if area is None else Area.of(area).corners,
             unbounded=unbounded,
             frames=frames,
+            rendezvous=rendezvous,
         )
         setup.options.check()
         if frames == "unknown" and (saved or prior) is not None:
@@ -140,7 +143,7 @@ class Explore(_Mission):
             setup = replace(setup, prior=read_prior(Path(prior), lattice))
         orders = conditions.get("orders", ())
         check_orders(setup.orders, self.world, specs, order_file(orders))
-        check_places(setup.orders, frames)
+        check_frames(setup.orders, frames, len(specs))
         simulation = prepare(self.world, specs, setup)
         files = files_of(world, team, conditions.get("faults"), orders, prior)
         self._begin(simulation, ExploreRun, record, files)
@@ -173,7 +176,7 @@ class Explore(_Mission):
     def _check_order(self, given: OrderAt, known: Sequence[NoGo | Priority]) -> None:
         """Raise InputError for an order that makes no sense in this world."""
         check_orders([given], self.world, self.simulation.specs, "order", known)
-        check_places([given], self.simulation.setup.frames)
+        check_frames([given], self.simulation.setup.frames, len(self.simulation.specs))
 
     def run(self, progress: Callable[[ExploreSnapshot], object] | None = None) -> ExploreResult:
         """Explore to the end; ``progress`` is called with a snapshot every second."""

@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.agent.effects import Drive, Motion, Route
-from vedette.agent.events import Event, Pose, Scan
+from vedette.agent.events import Event, Pose, Scan, Sensed
 from vedette.align import FramePose
 from vedette.align.turned import turned
 from vedette.maps.world import World
+from vedette.missions.explore.own_map import OwnMap
 from vedette.sim.robots import Robots
 from vedette.team import PlatformSpec
 
@@ -53,6 +54,10 @@ class FramedRobots(Robots):
             case Pose():
                 own = back.after(FramePose.of(event.x, event.y, event.heading))
                 return replace(event, x=own.x, y=own.y, heading=own.angle)
+            case Sensed(OwnMap() as own_map):
+                corner = back.after(FramePose.of(own_map.x, own_map.y, own_map.heading))
+                lies = replace(own_map, x=corner.x, y=corner.y, heading=corner.angle)
+                return replace(event, data=lies)
             case Scan():
                 (offset,) = np.array([event.offset]) @ back.rotation.T
                 return replace(event, angles=event.angles + back.angle, offset=tuple(offset.tolist()))

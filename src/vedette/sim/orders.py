@@ -40,8 +40,18 @@ def load_orders(path: Path | str) -> tuple[OrderAt, ...]:
     return tuple(sorted((_order(each, f"{path}: orders[{i}]") for i, each in enumerate(told)), key=_time))
 
 
+def check_frames(orders: Sequence[OrderAt], frames: str, robots: int) -> None:
+    """Raise InputError for an order that names a robot's frame where all share one, or one of no robot."""
+    for each in orders:
+        frame = getattr(each.what, "frame", None)
+        if frame is not None and frames == "known":
+            raise InputError("orders: frame: the robots share one frame; leave it out")
+        if frame is not None and frame > robots:
+            raise InputError(f"orders: frame: there is no robot {frame} in a team of {robots}")
+
+
 def check_places(orders: Sequence[OrderAt], frames: str) -> None:
-    """Raise InputError for an order with a place, where nobody has the frame that it would be in."""
+    """Raise InputError for an order with a place, where nobody has the frame of the world."""
     for each in orders:
         if frames == "unknown" and names_a_place(each.what):
             raise InputError(

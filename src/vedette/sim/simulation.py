@@ -159,6 +159,10 @@ class Simulation:
         """Give an order at the next tick; any thread may."""
         self._told.put(order)
 
+    def as_told(self, order: Order) -> Order:
+        """Return an order of this world as the operator gives it to the robots."""
+        return order
+
     def _give_orders(self) -> None:
         """Let the operator tell the first living robot what is due, who passes it on; if nobody does, all."""
         due = [each.what for each in self._orders if each.at <= self.now + 1e-9]
@@ -168,7 +172,7 @@ class Simulation:
         for order in due:
             self._given += 1
             for i in self.living if self.setup.apart else self.living[:1]:
-                told = Ordered(encode(Given(self._given, "operator", order)))
+                told = Ordered(encode(Given(self._given, "operator", self.as_told(order))))
                 self._let(i, self.network.tell(i, [told], self.now))
 
     def _tick(self) -> None:

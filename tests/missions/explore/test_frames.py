@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from itertools import combinations
+from typing import cast
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.ndimage import distance_transform_edt
 
 from tests.support.small_missions import robots, small_office
 from vedette.errors import InputError
@@ -18,6 +20,7 @@ from vedette.kernels.coverage import Footprints
 from vedette.maps import GridFrame
 from vedette.maps.disc import cells_under
 from vedette.maps.transform import IDENTITY, TURN, Transform
+from vedette.missions.explore.frames.exploring import FramedExploring
 from vedette.missions.explore.frames.footprints import on_plane
 from vedette.missions.explore.frames.graph import Placed, solved
 from vedette.missions.explore.frames.layout import Box, laid_out
@@ -57,7 +60,7 @@ def test_whoever_a_chain_of_edges_joins_lies_where_the_truth_says_in_the_lowest_
         a, b = (i, j) if rng.random() < 0.5 else (j, i)
         there = true[a].inverse().after(true[b])
         edges.append(FrameEdge(keys[a], keys[b], there, int(rng.integers(500, 9000))))
-    graph = solved(edges, keys, dict.fromkeys(keys, (1.0, 2.0)), always, always).graph
+    graph = solved(edges, keys, dict.fromkeys(keys, (1.0, 2.0)), always, always)
     group = list(range(n))  # by the definition: who can be reached
     for i, j in pairs:
         group = [min(group[i], group[j]) if g in (group[i], group[j]) else g for g in group]
@@ -77,7 +80,7 @@ def test_one_wrong_edge_in_a_cycle_bends_nothing_if_it_is_the_lightest(wrong: in
         if number == wrong:
             there = Transform(there.x + 900, there.y, there.angle)
         edges.append(FrameEdge(keys[a], keys[b], there, 1000 if number == wrong else 5000))
-    graph = solved(edges, keys, dict.fromkeys(keys, (0.0, 0.0)), always, always).graph
+    graph = solved(edges, keys, dict.fromkeys(keys, (0.0, 0.0)), always, always)
     assert all(is_close(graph[key].there, there, 0.01) for key, there in zip(keys, true, strict=True))
 
 
@@ -88,7 +91,7 @@ def test_edges_that_nearly_agree_share_the_difference() -> None:
         FrameEdge(keys[1], keys[2], Transform(1000, 0, 0), 5000),
         FrameEdge(keys[0], keys[2], Transform(2090, 0, 0), 5000),
     ]
-    graph = solved(edges, keys, dict.fromkeys(keys, (0.0, 0.0)), always, always).graph
+    graph = solved(edges, keys, dict.fromkeys(keys, (0.0, 0.0)), always, always)
     assert graph[keys[1]].there.x == pytest.approx(1030, abs=2)  # by hand: 9 cm over three edges alike
     assert graph[keys[2]].there.x == pytest.approx(2060, abs=2)
 
@@ -101,9 +104,9 @@ def test_what_evidence_does_not_bear_out_joins_nobody_and_what_it_contradicts_pa
         FrameEdge(keys[2], keys[3], Transform(1000, 0, 0), 4000),
     ]
     at = dict.fromkeys(keys, (0.0, 0.0))
-    graph = solved(edges, keys, at, lambda a, b, there: (a, b) != (keys[2], keys[3]), always).graph
+    graph = solved(edges, keys, at, lambda a, b, there: (a, b) != (keys[2], keys[3]), always)
     assert [graph[key].anchor for key in keys] == [keys[0], keys[0], keys[0], keys[3]]
-    graph = solved(edges, keys, at, always, lambda a, b, there: (a, b) != (keys[0], keys[3])).graph
+    graph = solved(edges, keys, at, always, lambda a, b, there: (a, b) != (keys[0], keys[3]))
     assert [graph[key].anchor for key in keys] == [keys[0], keys[0], keys[2], keys[2]]
     assert graph[keys[3]] == Placed(keys[2], Transform(1000, 0, 0))
 
@@ -111,7 +114,7 @@ def test_what_evidence_does_not_bear_out_joins_nobody_and_what_it_contradicts_pa
 def test_of_two_edges_between_a_pair_the_heavier_counts_whoever_tells_it() -> None:
     a, b = keys_of(2)
     edges = [FrameEdge(a, b, Transform(1, 0, 0), 10), FrameEdge(b, a, Transform(7000, 0, 0), 20)]
-    graph = solved(edges, [a, b], {a: (0.0, 0.0), b: (0.0, 0.0)}, always, always).graph
+    graph = solved(edges, [a, b], {a: (0.0, 0.0), b: (0.0, 0.0)}, always, always)
     assert graph[b].there == Transform(-7000, 0, 0)
 
 
@@ -219,6 +222,31 @@ def test_a_mate_whose_frame_is_unknown_is_not_mapped_as_a_wall() -> None:
             mate = simulation.robots.frames[i].inverse().places(np.array([[x, y]]))[0]
             under = cells_under(mission.frame, float(mate[0]), float(mate[1]), 0.15)
             assert (mission.own.log_odds.take(under) <= 0).all()
+
+
+def test_robots_that_never_find_each_others_frames_neither_map_each_other_nor_collide() -> None:
+    world = small_office(seed=1)
+    simulation = prepare(world, robots(2), ExploreSetup(seed=7, frames="unknown", max_time=150.0))
+    assert isinstance(simulation.robots, FramedRobots)
+    missions = [cast(FramedExploring, mission) for mission in simulation.missions]
+    for mission in missions:
+        mission.matcher._due = mission.meetings._due = math.inf
+    nearest = math.inf
+    while simulation.over is None:
+        simulation.step()
+        nearest = min(nearest, math.dist(*(simulation.pose(i)[:2] for i in range(2))))
+    assert nearest < 1.5  # they did come near each other
+    assert simulation.robots.bodies.collisions.sum() == 0
+    away = distance_transform_edt(~np.pad(world.solid, 1, constant_values=True))[1:-1, 1:-1]
+    for mission, frame in zip(missions, simulation.robots.frames, strict=True):
+        assert len(mission.frames.evidence.frames) == 1
+        known = mission.frame.window(*mission.known)
+        walls = np.flatnonzero(mission.own.log_odds.window(*mission.known) > 0)
+        places = frame.places(known.centres(walls))
+        inside = places[world.frame.holds(places)]
+        off = [away.flat[world.frame.flat(x, y)] for x, y in inside.tolist()]
+        assert len(off) > 1000
+        assert np.mean(np.array(off) > 2.0) < 0.002  # cells from a wall
 
 
 def test_the_same_seed_gives_the_same_mission() -> None:

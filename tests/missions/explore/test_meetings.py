@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import cast
 
 import numpy as np
 import pytest
@@ -11,12 +12,13 @@ from hypothesis import strategies as st
 
 from tests.support.small_missions import robots, small_office
 from vedette.agent.mates import Mate
-from vedette.fusion.frame_edges import FrameEdge, packed, room_for, unpacked
+from vedette.fusion.frame_edges import EdgeKind, FrameEdge, packed, room_for, unpacked
 from vedette.fusion.link import Key
 from vedette.maps.transform import TURN, Transform
+from vedette.missions.explore.frames.exploring import FramedExploring
 from vedette.missions.explore.frames.graph import told_by_both
 from vedette.missions.explore.frames.meetings import Meetings, Met
-from vedette.sim.explore.run import prepare
+from vedette.sim.explore.run import ExploreRun, prepare
 from vedette.sim.explore.simulation import ExploreSetup
 from vedette.sim.framed import FramedRobots
 
@@ -113,7 +115,7 @@ AT = dict.fromkeys(keys, (2.0, 1.0))
 
 
 def met(a: Key, b: Key, there: Transform, weight: int = 90) -> FrameEdge:
-    return FrameEdge(a, b, there, weight, met=True)
+    return FrameEdge(a, b, there, weight, EdgeKind.MEETING)
 
 
 def test_a_meeting_counts_if_both_tell_it_and_about_the_same() -> None:
@@ -138,15 +140,19 @@ def test_edges_keep_their_kind_on_the_way() -> None:
     assert sorted(unpacked(packed(edges, room_for(3)))) == sorted(edges)
 
 
-def test_robots_that_start_in_sight_of_each_other_meet_and_lie_as_they_say() -> None:
-    simulation = prepare(small_office(seed=1), robots(2), ExploreSetup(seed=7, frames="unknown"))
+def test_robots_whose_maps_nobody_lays_on_each_other_are_joined_by_meeting() -> None:
+    simulation = prepare(small_office(seed=1), robots(2), ExploreSetup(seed=8, frames="unknown"))
     assert isinstance(simulation.robots, FramedRobots)
-    frames = simulation.robots.frames
-    while simulation.now < 15.0:
-        simulation.step()
-    found = [edge for mission in simulation.missions for edge in mission.meetings.found.values()]  # type: ignore[attr-defined]
-    assert found
-    for edge in found:
-        true = frames[edge.a[0]].inverse().after(frames[edge.b[0]])
-        at = frames[edge.b[0]].inverse().places(np.array([simulation.pose(edge.b[0])[:2]]))
-        assert math.dist(edge.there.places(at)[0], true.places(at)[0]) < 0.3
+    missions = [cast(FramedExploring, mission) for mission in simulation.missions]
+    for mission in missions:
+        mission.matcher._due = math.inf
+    run = ExploreRun(simulation)
+    while simulation.now < 60.0 and missions[0].frames.own(1) is None:
+        run.step()
+    simulation.stop()
+    found = run.run().summary.frames
+    assert found is not None
+    (join,) = found.joins
+    assert join.by == "meeting"
+    assert join.error_m < 0.3
+    assert join.error_deg < 3.0

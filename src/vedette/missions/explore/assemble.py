@@ -52,7 +52,11 @@ def terms_of(lattice: Lattice, options: ExploreOptions, prior: PriorMap | None =
         **{f"objective.{name}": f"{value:g}" for name, value in objective.items()},
         "scheme": options.negotiates_by,
         "fusion": options.fusion,
-        **({} if options.frames == "known" else {"frames": options.frames}),
+        **(
+            {}
+            if options.frames == "known"
+            else {"frames": options.frames, "rendezvous": f"{options.rendezvous}"}
+        ),
     }
 
 
@@ -99,6 +103,8 @@ def assemble(
     how = planner(options.planner, robots)
     kind = explorer or (FramedExploring if unknown else Exploring)
     mission = kind(lattice, spec, how, fusion, most=most, prior=prior)
+    if isinstance(mission, FramedExploring):
+        mission.rendezvous = options.rendezvous
     behaviour = GroundBehaviour(mission, Driver(robot, spec), options.return_home, waits_for)
     places = how.negotiates and not unknown  # of mates tell how near they are, and nobody plans by them
     relay = Relay(nearby(most.range, most.speed) if places else inf)

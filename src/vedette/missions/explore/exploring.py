@@ -191,14 +191,14 @@ class Exploring:
     def freeze(self, t0: float) -> MapBelief:
         """Snapshot the team map for a round; tours count time from when it is frozen."""
         self._t0 = t0
-        belief = self._frozen(self.fusion)
+        belief = self._frozen(self.fusion, self._leave, self._priorities)
         self.frontiers = len(belief.frontier_starts) - 1
         return belief
 
-    def _frozen(self, shown: ShownMap) -> MapBelief:
+    def _frozen(self, shown: ShownMap, leave: Leave, priorities: Sequence[tuple[Area, float]]) -> MapBelief:
         """Snapshot a map of the team."""
         known = shown.known
-        classes = shown.classes.window(*known)
+        classes = self._to_plan_by(shown.classes.window(*known))
         counts = self._sightings(shown)
         about: dict[str, Any] = {
             "reach": max(self._range, NEARBY + self.frame.resolution),
@@ -210,8 +210,8 @@ class Exploring:
             "end_price": self.planner.end_price,
             "layers": self.planner.layers,
             "known": known,
-            "leave": self._leave or None,
-            "priorities": self._priorities,
+            "leave": leave or None,
+            "priorities": priorities,
             "prior": self.prior,
             "worlds": self.planner.worlds,
         }
@@ -227,6 +227,10 @@ class Exploring:
         if self.most is None or self.planner.worlds == 1:
             return self.spec.range
         return max(self.spec.range, self.most.range)
+
+    def _to_plan_by(self, classes: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        """Return what a part of the team's map is taken to be where ways and frontiers are looked for."""
+        return classes
 
     def _sightings(self, shown: ShownMap) -> NDArray[np.int64]:
         """``(4, BINS)`` the team's sightings; where they are signed nobody's outweigh all others'."""
@@ -369,7 +373,7 @@ class Exploring:
         return self._unknown_at(self.strategy.targets[0]) < SERVED_SHARE * planned
 
     def _unknown_at(self, target: NDArray[np.float64]) -> int:
-        near = self.fusion.classes.window(*around(self.frame, *target))
+        near = self._to_plan_by(self.fusion.classes.window(*around(self.frame, *target)))
         return int(np.count_nonzero(near == UNKNOWN))
 
     def reached(self, pose: Pose, mates: Sequence[Mate], now: float) -> bool:

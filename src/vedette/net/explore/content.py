@@ -62,6 +62,7 @@ class PlacedTold(NamedTuple):
     x: Millimetres
     y: Millimetres
     angle: Annotated[int, Meta(ge=0, lt=TURN)]
+    met: bool = False
 
     @property
     def there(self) -> Transform:
@@ -170,8 +171,8 @@ def content(
 
 def _found(mission: FramedExploring) -> Found:
     graph = sorted(mission.frames.graph.items())[:1024]
-    placed = tuple(PlacedTold(*key, anchor, *there) for key, (anchor, there) in graph)
-    return Found(placed, dict(mission.matcher.refused))
+    placed = tuple(PlacedTold(*key, each.anchor, *each.there, each.met) for key, each in graph)
+    return Found(placed, dict(mission.refused))
 
 
 def read_content(payload: bytes) -> MapContent:

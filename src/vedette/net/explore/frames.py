@@ -49,7 +49,7 @@ class FramesSeen:
         if told is None:
             return None
         graph = {
-            each.robot: Joined(each.boot, each.anchor, each.there)
+            each.robot: Joined(each.boot, each.anchor, each.there, each.met)
             for each in sorted(told.found.graph)
             if (each.robot, each.boot) in self._true
         }

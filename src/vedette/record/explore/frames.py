@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 
 @dataclass(frozen=True)
@@ -14,6 +15,7 @@ class FrameJoin:
     robots: tuple[str, str]
     error_m: float  # of where the second one's frame lies in the first one's, at the second robot's place
     error_deg: float
+    by: Literal["match", "meeting"]  # of their maps alone; or robots have met, these two or some between them
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -23,6 +23,7 @@ class Joined(NamedTuple):
     boot: int  # of the robot's start that is the latest: each has a frame of its own
     anchor: Hashable  # the same for all that are joined, and theirs alone
     there: Transform  # T_anchor_robot
+    met: bool = False  # a meeting is among the edges between the two
 
 
 class TrueFrame(NamedTuple):
@@ -71,7 +72,8 @@ class JoinWatch:
         }
         for pair in sorted(joined - self._joined):
             (i, _), (j, _) = pair
-            self._joins.append(FrameJoin(now, (self.names[i], self.names[j]), *errors[pair]))
+            by: Literal["match", "meeting"] = "meeting" if graph[i].met or graph[j].met else "match"
+            self._joins.append(FrameJoin(now, (self.names[i], self.names[j]), *errors[pair], by))
         self._undone += sum(one in latest and other in latest for one, other in self._joined - joined)
         self._joined = joined
         parts: dict[Hashable, list[str]] = {}

@@ -30,5 +30,5 @@ class FrameWatch:
         graph = missions[living[0]].frames.graph
         latest = {key[0]: Joined(key[1], *placed) for key, placed in sorted(graph.items())}
         true = [TrueFrame(frame, simulation.pose(i)[:2]) for i, frame in enumerate(self._frames)]
-        refused = sum((mission.matcher.refused for mission in missions), Counter[str]())
+        refused = sum((mission.refused for mission in missions), Counter[str]())
         return self._joins.look(simulation.now, latest, true, living, refused)

@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 
 from vedette.agent import Agent, GroundBehaviour
 from vedette.agent.driving import Driver
+from vedette.agent.orders import Order, moved
 from vedette.agent.state import State
 from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.planners import DEFAULT
 from vedette.domains.mapping.prior import PriorMap
-from vedette.errors import InputError
+from vedette.maps.transform import Transform
 from vedette.maps.world import World
 from vedette.missions.explore.assemble import assemble
 from vedette.missions.explore.exploring import Exploring
@@ -40,6 +41,7 @@ class ExploreSetup(Setup):
     area: tuple[tuple[float, float], ...] | None = None  # corners [m], as in ``ExploreOptions``
     unbounded: bool = False
     frames: str = "known"  # as in ``ExploreOptions``
+    rendezvous: bool = True
     saved: OwnMap | None = None  # an earlier mission's map, which the first robot knows from the start
     prior: PriorMap | None = None  # an old map of the building, which all have
 
@@ -49,6 +51,7 @@ class ExploreSetup(Setup):
         return ExploreOptions(
             *(self.planner, self.scheme, self.fusion, self.return_home, self.area, self.unbounded),
             frames=self.frames,
+            rendezvous=self.rendezvous,
         )
 
 
@@ -71,8 +74,6 @@ class ExploreSimulation(Simulation):
         """
         _ = setup.options.negotiates_by
         setup.options.check()
-        if setup.frames == "unknown" and any(spec.drift for spec in specs):
-            raise InputError("frames unknown: drift moves frames as well; leave it out")
         self.lattice = setup.options.lattice_on(world.frame)
         self.setup = setup
         self.world, self.specs, self.starts = world, tuple(specs), starts
@@ -109,6 +110,14 @@ class ExploreSimulation(Simulation):
         super()._tick()
         if any(self.agents[i].state is State.PAUSED for i in self.living):
             self._paused = self.now
+
+    def as_told(self, order: Order) -> Order:
+        """Return an order with its place in the frame of a robot, if all have frames of their own."""
+        of = order.in_frame_of
+        if of is None or not isinstance(self.robots, FramedRobots):
+            return order
+        back = self.robots.frames[of].inverse()
+        return moved(order, Transform.of(back.x, back.y, back.angle))
 
     def held(self, robots: Sequence[int]) -> list[int]:
         """Return the digests of their maps."""

@@ -37,6 +37,10 @@ class Charts:
         copy = self._evidence.copies.get(key)
         return 0 if copy is None else len(copy.known_tiles)
 
+    def versions(self, *keys: Key) -> int:
+        """Return how often contributors have told something new."""
+        return sum(self._evidence.copies[key].version for key in keys)
+
     def of(self, key: Key) -> Charted | None:
         """Return a contributor's chart in its own frame; None: it has no wall beside free ground."""
         copy = self._evidence.copies.get(key)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, cast
@@ -13,30 +14,40 @@ from vedette.agent.effects import Job
 from vedette.agent.events import Pose
 from vedette.agent.mates import Mate
 from vedette.agent.messages import FrameTold
+from vedette.agent.orders import OrderBook
 from vedette.domains.mapping.belief import MapBelief
 from vedette.fusion.frame_edges import FrameEdge, packed
 from vedette.fusion.framed import FramedMap
+from vedette.maps.area import Area
+from vedette.maps.leave import Leave
 from vedette.maps.transform import Transform
 from vedette.missions.explore.exploring import Exploring
 from vedette.missions.explore.frames.footprints import on_plane
 from vedette.missions.explore.frames.matching import Matcher
 from vedette.missions.explore.frames.meetings import Meetings
+from vedette.missions.explore.frames.rendezvous import chances, worth_more
 from vedette.missions.explore.frames.shared import SharedFrames
+from vedette.missions.explore.frames.walls import closed
 from vedette.missions.explore.passers_by import PassersBy
+from vedette.missions.ordered import no_go_areas, priority_areas
 
 ASKEW = 0.5  # of a cell: no frame of a robot's own has its cells along the walls
 ERRAND = -1  # epoch of a job that belongs to no round
 NUMBERED = 1 << 16  # robots; a note's number is its own times that, plus the robot in whose frame it lies
 Note = tuple[int, int, int]
+Areas = tuple[tuple[Area, ...], tuple[tuple[Area, float], ...]]  # where nobody may go, and what comes first
 
 
 @dataclass(eq=False)
 class FramedExploring(Exploring):
     """Explores, and finds out how the team's frames lie."""
 
+    rendezvous: bool = True  # ground is worth more where another component may know it
     frames: SharedFrames = field(init=False)
     matcher: Matcher = field(init=False)
     meetings: Meetings = field(init=False)
+    _orders: OrderBook = field(default_factory=OrderBook)
+    _heeded: Areas | None = None  # no-go areas and priorities in the robot's own frame
     _local: MapBelief | None = None  # the round's belief in the robot's own frame
     _errands: int = 0
 
@@ -63,7 +74,17 @@ class FramedExploring(Exploring):
     @property
     def _edges(self) -> list[FrameEdge]:
         """What this robot has found of how frames lie."""
-        return [*self.matcher.found.values(), *self.meetings.found.values()]
+        guesses = [
+            edge
+            for edge in self.matcher.guesses.values()
+            if self.frames.graph[edge.a].anchor != self.frames.graph[edge.b].anchor
+        ]
+        return [*self.matcher.found.values(), *self.meetings.found.values(), *guesses]
+
+    @property
+    def refused(self) -> Counter[str]:
+        """By why, how often this robot did not believe what may have joined two."""
+        return self.matcher.refused + self.meetings.refused
 
     def _own_counts(self) -> NDArray[np.int64]:
         evidence = self.frames.evidence
@@ -96,11 +117,25 @@ class FramedExploring(Exploring):
     def take_frames(self, told: Sequence[FrameTold]) -> bool:
         """Be on the plane as the root says; tell whether this robot has come to the same."""
         agrees = self.frames.take(told)
+        self._heed()
         for pair, edge in list(self.matcher.found.items()):
             joined = self.frames.graph[edge.a].anchor == self.frames.graph[edge.b].anchor
             if not joined and edge in self.frames.evidence.edges:
                 self.matcher.drop(pair)
         return agrees
+
+    def heed(self, book: OrderBook) -> None:
+        """Leave alone what is forbidden, and go first where there is priority, as far as it knows where."""
+        self._orders, self._heeded = book, None
+        self._heed()
+
+    def _heed(self) -> None:
+        """Heed orders as their places lie in the robot's own frame, if that has changed."""
+        book = self._orders.seen_from(self.frames.own)
+        areas = no_go_areas(book), tuple(priority_areas(book))
+        if areas != self._heeded:
+            self._heeded = areas
+            super().heed(book)
 
     def in_own(self, robot: int) -> Transform | None:
         """Return where a robot's frame lies in this one's; None: it is not known."""
@@ -129,9 +164,17 @@ class FramedExploring(Exploring):
                 moved.append((round(100.0 * at[0]), round(100.0 * at[1]), unknown))
         super().hear_notes(moved)
 
+    def _to_plan_by(self, classes: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        return closed(classes)
+
     def freeze(self, t0: float) -> MapBelief:
         """Snapshot the plane, which all have alike, and beside it the map in the robot's own frame."""
-        plane = self._frozen(self.frames.evidence.plane)
+        book = self._orders.seen_from(self.frames.on_plane)
+        areas = Leave(self.lattice.area, no_go_areas(book)), priority_areas(book)
+        plane = self._frozen(self.frames.evidence.plane, *areas)
+        guesses = self.frames.guesses() if self.rendezvous else []
+        if guesses:
+            plane = worth_more(plane, chances(plane, guesses))
         local = super().freeze(t0)
         self._local = replace(local, layers=plane.layers, gathering=plane.gathering)
         return plane

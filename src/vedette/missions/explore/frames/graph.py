@@ -29,20 +29,10 @@ class Placed(NamedTuple):
 
     anchor: Key  # the lowest of those that are joined, whose frame is theirs
     there: Transform  # T_anchor_contributor
+    met: bool = False  # a meeting is among the edges between the two
 
 
 Graph = Mapping[Key, Placed]
-
-
-class Solved(NamedTuple):
-    """Where contributors lie, and why."""
-
-    graph: dict[Key, Placed]
-    tree: list[FrameEdge]  # of the edges that join them
-
-    def met(self, a: Key, b: Key) -> bool:
-        """Tell whether two that are joined are so by a meeting, their own or somebody's between them."""
-        return any(edge.met for edge in _way(self.tree, a, b))
 
 
 Agrees = Callable[[Key, Key, Transform], bool]
@@ -54,7 +44,7 @@ def solved(
     middles: Mapping[Key, tuple[float, float]],
     borne_out: Agrees,
     allowed: Agrees,
-) -> Solved:
+) -> dict[Key, Placed]:
     """Return where all contributors lie that edges join; one that nothing joins lies in its own frame.
 
     A match counts if evidence bears it out, a meeting if evidence does not speak against it; of those between
@@ -76,10 +66,10 @@ def solved(
     ]
     left = _heaviest(counting)
     while True:
-        found = _joined(left, keys, middles)
-        wrong = _contradicted(*found, allowed)
+        graph, tree = _joined(left, keys, middles)
+        wrong = _contradicted(graph, tree, allowed)
         if wrong is None:
-            return found
+            return {key: _said(placed, key, tree) for key, placed in graph.items()}
         left.remove(wrong)
 
 
@@ -129,8 +119,8 @@ def _rank(edge: FrameEdge) -> tuple[int, FrameEdge]:
 
 def _joined(
     edges: Sequence[FrameEdge], keys: Collection[Key], middles: Mapping[Key, tuple[float, float]]
-) -> Solved:
-    """Return where contributors lie by a tree of the heaviest edges and what agrees with it."""
+) -> tuple[dict[Key, Placed], list[FrameEdge]]:
+    """Return where contributors lie by a tree of the heaviest edges and what agrees with it; and the tree."""
     graph = {key: Placed(key, IDENTITY) for key in sorted(keys)}
     tree, closing = list[FrameEdge](), list[FrameEdge]()
     for edge in edges:
@@ -148,7 +138,12 @@ def _joined(
                 graph[key] = Placed(first, move.after(placed.there))
     if closing:
         graph = _relaxed(graph, [*tree, *closing], middles)
-    return Solved(graph, tree)
+    return graph, tree
+
+
+def _said(placed: Placed, key: Key, tree: Sequence[FrameEdge]) -> Placed:
+    """Say whether a contributor lies where it does by a meeting."""
+    return placed._replace(met=any(edge.met for edge in _way(tree, placed.anchor, key)))
 
 
 def _contradicted(graph: Graph, tree: Sequence[FrameEdge], allowed: Agrees) -> FrameEdge | None:
@@ -156,8 +151,9 @@ def _contradicted(graph: Graph, tree: Sequence[FrameEdge], allowed: Agrees) -> F
     keys = sorted(graph)
     for at, a in enumerate(keys):
         for b in keys[at + 1 :]:
-            (anchor, there), (other, of_b) = graph[a], graph[b]
-            if anchor == other and not allowed(a, b, there.inverse().after(of_b)):
+            one, other = graph[a], graph[b]
+            between = one.there.inverse().after(other.there)
+            if one.anchor == other.anchor and not allowed(a, b, between):
                 return max(_way(tree, a, b), key=_rank)
     return None
 

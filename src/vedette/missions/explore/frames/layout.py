@@ -41,7 +41,7 @@ def laid_out(graph: Graph, boxes: Mapping[Key, Box], gap: float, most: float) ->
         members = {
             key: placed.there for key, placed in graph.items() if placed.anchor == anchor and key in boxes
         }
-        x0, y0, x1, y1 = _around(members, boxes)
+        x0, y0, x1, y1 = around(members, boxes)
         if part == 0:
             x, y = 0.0, 0.0
             right, low, row = x1 + gap, y0, y1 - y0
@@ -57,8 +57,8 @@ def laid_out(graph: Graph, boxes: Mapping[Key, Box], gap: float, most: float) ->
     return laid
 
 
-def _around(members: Mapping[Key, Transform], boxes: Mapping[Key, Box]) -> Box:
-    """Return a box around what some have seen, in their anchor's frame, at multiples of `STEP`."""
+def around(members: Mapping[Key, Transform], boxes: Mapping[Key, Box]) -> Box:
+    """Return a box around what some have seen, in a frame that they lie in, at multiples of `STEP`."""
     corners = []
     for key, there in members.items():
         x0, y0, x1, y1 = boxes[key]

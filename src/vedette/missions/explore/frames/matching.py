@@ -15,17 +15,21 @@ from vedette.align.agreement import middles
 from vedette.align.candidates import FINELY, weighed
 from vedette.align.fitted import fitted
 from vedette.align.verdict import STEADY, JoinRule
-from vedette.fusion.frame_edges import FrameEdge
+from vedette.fusion.frame_edges import EdgeKind, FrameEdge
 from vedette.fusion.link import Key
 from vedette.maps.transform import Transform
 from vedette.missions.explore.frames.charts import Charts, pose_of
 from vedette.missions.explore.frames.graph import Graph
 
 RULE = JoinRule(rivalry=0.6, lead=12.0, same=15.0, common=15.0)
+GUESSED = 5.0  # walls in common less what contradicts, from which a place is worth a guess [m]
+LIKELY = 0.5  # that the best places of two maps, refused, have the right one among them [1]
 VERSIONS = 3  # of both maps in a row, for which the rule has to hold, at one pose
 LEAST = 15.0  # ground that a map has before it is looked at [m^2]
 GROWN, GROWN_LITTLE = 1.2, 1.03  # more of both, before they are looked at again; after the rule has held [1]
-FITTED_AGAIN = 1.15  # more of both, before a join is fitted anew [1]
+FITTED_AGAIN = 1.15  # more of both, before a join is fitted anew [1] ...
+FITTED_AFTER = 20.0  # ... or so long, where either has changed: a SLAM bends its map [s]
+MOVED = 0.02, math.radians(0.1)  # a fit this near to what is told already is no news [m, rad]
 WHERE_JOINED = JoinRule(rivalry=1.0, lead=0.0, same=8.0, common=8.0)  # of maps that others' edges join
 BESIDE = 0.5, math.radians(3.0)  # and how far from where those say they may fit [m, rad]
 EVERY = 2.0  # a robot looks at a pair [s]
@@ -38,6 +42,8 @@ class _Attempts:
     """What came of looking at a pair."""
 
     ground: float = 0.0  # of both, when they were looked at last [m^2]
+    versions: int = 0  # of both, then
+    when: float = 0.0  # [s]
     held: list[FramePose] = field(default_factory=list)  # poses, since the rule holds
 
 
@@ -48,6 +54,7 @@ class Matcher:
     robot: int
     charts: Charts
     found: dict[Pair, FrameEdge] = field(default_factory=dict)
+    guesses: dict[Pair, FrameEdge] = field(default_factory=dict)  # what may be, of pairs that nothing joins
     refused: Counter[str] = field(default_factory=Counter)  # by why
     looked: int = 0  # at pairs
     _attempts: dict[Pair, _Attempts] = field(default_factory=dict)
@@ -67,11 +74,13 @@ class Matcher:
                 continue
             there = _between(graph, *pair)
             attempts = self._attempts.setdefault(pair, _Attempts())
+            ground, versions = _ground(a) + _ground(b), self.charts.versions(*pair)
             steady = there is not None and pair in self.found
             grown = FITTED_AGAIN if steady else GROWN_LITTLE if there or attempts.held else GROWN
-            if _ground(a) + _ground(b) < grown * attempts.ground:
+            bent = there is not None and now >= attempts.when + FITTED_AFTER and versions > attempts.versions
+            if ground < grown * attempts.ground and not bent:
                 continue
-            attempts.ground = _ground(a) + _ground(b)
+            attempts.ground, attempts.versions, attempts.when = ground, versions, now
             self._at_work = True
             if there is not None:
                 return partial(self._fit, pair, a, b, there)
@@ -111,6 +120,7 @@ class Matcher:
         if doubt is not None:
             attempts.held.clear()
             self.refused[_kind(doubt)] += 1
+            self._guess(pair, alignment)
             return
         best = alignment.candidates[0]
         gaps = [best.pose.apart(earlier, b.middle) for earlier in attempts.held]
@@ -121,21 +131,37 @@ class Matcher:
         if len(attempts.held) >= VERSIONS:
             self.found[pair] = _edge(pair, best.pose, best.same)
 
+    def _guess(self, pair: Pair, alignment: Alignment) -> None:
+        """Tell where the maps of a pair fit best, if that is somewhere at all."""
+        self.guesses.pop(pair, None)
+        if alignment.candidates and alignment.candidates[0].score >= GUESSED:
+            chance = LIKELY / (1.0 + alignment.rivalry)
+            pose = alignment.candidates[0].pose
+            there = Transform.of(pose.x, pose.y, pose.angle)
+            self.guesses[pair] = FrameEdge(*pair, there, round(100.0 * chance), EdgeKind.GUESS)
+
     def _fit(self, pair: Pair, a: Charted, b: Charted, there: Transform) -> None:
         """Fit two maps that whatever edges join, where they lie: if they do fit, that is an edge."""
         guess = middles(a, b, pose_of(there))
         fit = fitted(a, b, guess, FINELY)
-        shift, turn = fit.pose.apart(guess, np.zeros(2))
+        known = self.found.get(pair)
+        stands = known is not None and _is_near(fit.pose, middles(a, b, pose_of(known.there)), MOVED)
         place = weighed(a, b, fit)
-        fits = shift <= BESIDE[0] and turn <= BESIDE[1] and WHERE_JOINED.doubt(Alignment((place,))) is None
-        better = {pair: _edge(pair, place.pose, place.same)} if fits else {}
+        fits = _is_near(fit.pose, guess, BESIDE) and WHERE_JOINED.doubt(Alignment((place,))) is None
+        better = {} if stands or not fits else {pair: _edge(pair, place.pose, place.same)}
         self._done.append(lambda: self.found.update(better))
+
+
+def _is_near(one: FramePose, other: FramePose, most: tuple[float, float]) -> bool:
+    """Tell whether two poses between maps' middles are no farther apart than that [m, rad]."""
+    shift, turn = one.apart(other, np.zeros(2))
+    return shift <= most[0] and turn <= most[1]
 
 
 def _between(graph: Graph, a: Key, b: Key) -> Transform | None:
     """Return where b lies in a's frame; None: nothing joins them."""
-    (anchor, there), (other, of_b) = graph[a], graph[b]
-    return there.inverse().after(of_b) if anchor == other else None
+    one, other = graph[a], graph[b]
+    return one.there.inverse().after(other.there) if one.anchor == other.anchor else None
 
 
 def _edge(pair: Pair, pose: FramePose, same: float) -> FrameEdge:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.agent.mates import Mate
-from vedette.fusion.frame_edges import FrameEdge
+from vedette.fusion.frame_edges import EdgeKind, FrameEdge
 from vedette.fusion.link import Key
 from vedette.maps.transform import Transform
 from vedette.missions.explore.passers_by import Disc
@@ -121,7 +121,7 @@ class Meetings:
         pair = self.own, key
         known = self.found.get(pair)
         if known is None or met.weight > known.weight:
-            self.found[pair] = FrameEdge(*pair, met.there, met.weight, met=True)
+            self.found[pair] = FrameEdge(*pair, met.there, met.weight, EdgeKind.MEETING)
 
 
 def _rivals(one: _Fits, other: _Fits) -> bool:

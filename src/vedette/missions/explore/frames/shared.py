@@ -7,15 +7,16 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from vedette.agent.messages import FrameTold
-from vedette.fusion.frame_edges import FrameEdge
+from vedette.fusion.frame_edges import EdgeKind, FrameEdge
 from vedette.fusion.framed import FramedMap
 from vedette.fusion.link import Key
 from vedette.kernels.tiles import SIDE, Tiling
 from vedette.maps import GridFrame
 from vedette.maps.transform import IDENTITY, Transform
 from vedette.missions.explore.frames.charts import Charts
-from vedette.missions.explore.frames.graph import CLOSED, Placed, Solved, solved, told_by_both, within
-from vedette.missions.explore.frames.layout import Box, laid_out
+from vedette.missions.explore.frames.graph import CLOSED, Placed, solved, told_by_both, within
+from vedette.missions.explore.frames.layout import Box, around, laid_out
+from vedette.missions.explore.frames.rendezvous import Guess, guessed
 
 BORNE_OUT = 8.0, 0.15  # walls in common at least [m], and contradicted at most, that an edge may count
 ALLOWED = 2.0, 0.25  # where more contradicts, and a larger share, two are not joined [m, 1]
@@ -43,24 +44,20 @@ class SharedFrames:
     frame: GridFrame  # of everybody's cells
     gap: float  # between components on the plane, at least [m]
     charts: Charts = field(init=False)
-    found: Solved = field(init=False)  # how contributors lie, as this robot sees it
+    graph: dict[Key, Placed] = field(default_factory=dict)
     plane: dict[Key, Transform] = field(default_factory=dict)  # T_plane_contributor of the latest round
+    parts: dict[Key, int] = field(default_factory=dict)  # the component of each, then
     _verdicts: dict[tuple[Key, Key, Transform], Verdict] = field(default_factory=dict)
     _refuted: dict[tuple[Key, FrameEdge], int] = field(default_factory=dict)  # by whom, since which version
 
     def __post_init__(self) -> None:
         self.charts = Charts(self.evidence, self.frame)
-        self.found = Solved({self.key: Placed(self.key, IDENTITY)}, [])
+        self.graph = {self.key: Placed(self.key, IDENTITY)}
 
     @property
     def key(self) -> Key:
         """This robot as a contributor."""
         return self.evidence.key
-
-    @property
-    def graph(self) -> dict[Key, Placed]:
-        """Where contributors lie, as this robot sees it."""
-        return self.found.graph
 
     @property
     def joined(self) -> Placed | None:
@@ -84,14 +81,14 @@ class SharedFrames:
             self._weighed(edge)
             for edges in told.values()
             for edge in edges
-            if not edge.met and edge.a in middles and edge.b in middles
+            if edge.kind is EdgeKind.MATCH and edge.a in middles and edge.b in middles
         }
         edges = [*matches, *told_by_both(told, middles)]
-        self.found = solved(edges, keys, middles, self._bears_out, self._allows)
-        anchor, own = self.graph[self.key]
+        self.graph = solved(edges, keys, middles, self._bears_out, self._allows)
+        anchor, own, _ = self.graph[self.key]
         back = own.inverse()
         self.evidence.place_own(
-            {key: back.after(there) for key, (other, there) in self.graph.items() if other == anchor}
+            {key: back.after(placed.there) for key, placed in self.graph.items() if placed.anchor == anchor}
         )
 
     def own(self, robot: int) -> Transform | None:
@@ -100,6 +97,10 @@ class SharedFrames:
             (there for key, there in sorted(self.evidence.frames.items(), reverse=True) if key[0] == robot),
             None,
         )
+
+    def on_plane(self, robot: int) -> Transform | None:
+        """Return where the frame of a robot's latest start lies on the plane; None: it is not on it."""
+        return next((self.plane[key] for key in sorted(self.plane, reverse=True) if key[0] == robot), None)
 
     def lay_out(self) -> tuple[FrameTold, ...]:
         """As the root: return where contributors lie on the plane of a round that begins."""
@@ -122,8 +123,18 @@ class SharedFrames:
             key: Transform(each.x, each.y, each.angle) for key, each in zip(keys, told, strict=True)
         }
         self.evidence.place_plane(self.plane)
-        parts = {key: each.part for key, each in zip(keys, told, strict=True)}
-        return self._agrees(parts)
+        self.parts = {key: each.part for key, each in zip(keys, told, strict=True)}
+        return self._agrees(self.parts)
+
+    def guesses(self) -> list[Guess]:
+        """Return where components of the latest round's plane may lie on each other, as anybody guesses."""
+        boxes, ground = self._boxes(self.plane), dict[Key, Box]()
+        for part in set(self.parts.values()):
+            members = {key: self.plane[key] for key in boxes if self.parts[key] == part}
+            if members:
+                ground |= dict.fromkeys(members, around(members, boxes))
+        edges = [edge for edge in self.evidence.edges if edge.kind is EdgeKind.GUESS]
+        return guessed(edges, self.plane, ground)
 
     def _agrees(self, parts: dict[Key, int]) -> bool:
         """Tell whether the root's components are this robot's, and lie within a tolerance as it has them."""
@@ -148,8 +159,8 @@ class SharedFrames:
         boxes: dict[Key, Box] = {}
         tiling, cell = Tiling(*self.frame.shape), self.frame.resolution
         for key in keys:
-            tiles = self.evidence.copies[key].known_tiles
-            if len(tiles):
+            copy = self.evidence.copies.get(key)
+            if copy is not None and len(tiles := copy.known_tiles):
                 rows, cols = tiling.corners(tiles)
                 x0, y0 = self.frame.origin_x + cols.min() * cell, self.frame.origin_y + rows.min() * cell
                 x1 = self.frame.origin_x + (cols.max() + SIDE) * cell
@@ -176,7 +187,7 @@ class SharedFrames:
         refuted: dict[tuple[Key, FrameEdge], int] = {}
         for key, edges in told.items():
             for edge in edges:
-                if edge.met or edge.a not in seen or edge.b not in seen:
+                if edge.kind is not EdgeKind.MATCH or edge.a not in seen or edge.b not in seen:
                     continue
                 a, b, there = edge[:3] if edge.a < edge.b else edge.inverse[:3]
                 if self._verdict(a, b, there).refutes:
