@@ -14,6 +14,7 @@ from vedette.agent.events import Pose, Sensed
 from vedette.domains.mapping.belief import planning_factor
 from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.objective import MappingObjective
+from vedette.fusion.link import Key
 from vedette.kernels.coverage import LAYERS
 from vedette.kernels.misses import CERTAIN
 from vedette.maps import FREE
@@ -22,7 +23,7 @@ from vedette.maps.lattice import Lattice
 from vedette.maps.transform import IDENTITY, Transform
 from vedette.missions.explore.assemble import assemble
 from vedette.missions.explore.frames.exploring import FramedExploring
-from vedette.missions.explore.frames.graph import Placed, Solved
+from vedette.missions.explore.frames.graph import Placed
 from vedette.missions.explore.options import ExploreOptions
 from vedette.missions.explore.own_map import OwnMap
 from vedette.ros2.body import Ros2Body
@@ -89,10 +90,10 @@ def a_framed_showing(prefix: str = "") -> tuple[Showing, FakeDoor, FramedExplori
 THERE = Transform.of(3.0, 1.0, np.pi / 2.0)
 
 
-def joined_with(*others: tuple[int, int]) -> Solved:
+def joined_with(*others: tuple[int, int]) -> dict[Key, Placed]:
     """Robot 2, joined with these, in the frame of the lowest."""
     keys = sorted([*others, (1, 7)])
-    return Solved({key: Placed(keys[0], THERE if key == (1, 7) else IDENTITY) for key in keys}, [])
+    return {key: Placed(keys[0], THERE if key == (1, 7) else IDENTITY) for key in keys}
 
 
 @pytest.mark.parametrize(("prefix", "topic", "child"), [("", "/r2/tf", "map"), ("r2/", "/tf", "r2/map")])
@@ -104,7 +105,7 @@ def test_a_map_of_an_unknown_frame_lies_in_the_teams_once_it_is_joined_and_while
     told = shown(door)
     assert not {name for name in told if "tf" in name}  # nothing is known, and nothing told
     assert told["team_map"].header.frame_id == child
-    mission.frames.found = joined_with((0, 3))
+    mission.frames.graph = joined_with((0, 3))
     showing(PERIOD)
     (joint,) = shown(door)[topic].transforms
     assert (joint.header.frame_id, joint.child_frame_id) == ("team", child)
@@ -112,7 +113,7 @@ def test_a_map_of_an_unknown_frame_lies_in_the_teams_once_it_is_joined_and_while
     t, q = joint.transform.translation, joint.transform.rotation
     assert (t.x, t.y) == pytest.approx((3.0, 1.0))
     assert 2.0 * np.arctan2(q.z, q.w) == pytest.approx(np.pi / 2.0, abs=1e-4)
-    mission.frames.found = joined_with()
+    mission.frames.graph = joined_with()
     showing(2.0 * PERIOD)
     assert topic not in shown(door)
 
@@ -121,16 +122,16 @@ def test_a_map_of_an_unknown_frame_lies_in_the_teams_once_it_is_joined_and_while
     ("graph", "frame"),
     [
         (joined_with((2, 5)), "team_2_7"),
-        (Solved({**joined_with((2, 5)).graph, (0, 3): Placed((0, 3), IDENTITY)}, []), "team_2_7"),
-        (Solved({**joined_with((0, 4)).graph, (0, 3): Placed((0, 3), IDENTITY)}, []), "team_1_4"),
+        ({**joined_with((2, 5)), (0, 3): Placed((0, 3), IDENTITY)}, "team_2_7"),
+        ({**joined_with((0, 4)), (0, 3): Placed((0, 3), IDENTITY)}, "team_1_4"),
         (joined_with((1, 6)), None),  # it was joined with nobody but itself, before it was started again
     ],
 )
 def test_components_that_do_not_know_how_they_lie_have_frames_of_different_names(
-    graph: Solved, frame: str | None
+    graph: dict[Key, Placed], frame: str | None
 ) -> None:
     showing, door, mission = a_framed_showing()
-    mission.frames.found = graph
+    mission.frames.graph = graph
     showing(0.0)
     told = shown(door)
     assert (told["/r2/tf"].transforms[0].header.frame_id if frame else "/r2/tf" not in told) == (

@@ -139,7 +139,7 @@ class Showing:
         joined = None if self._framed is None else self._framed.joined
         if self._framed is None or joined is None:
             return
-        (robot, boot), there = joined
+        (robot, boot), there = joined.anchor, joined.there
         first = robot == 0 and joined.anchor == min(self._framed.graph)
         at = RosMessages(TEAM_FRAME if first else f"{TEAM_FRAME}_{robot + 1}_{boot}")
         pose = there.x / 1000.0, there.y / 1000.0, there.radians
