@@ -7,12 +7,15 @@ import pytest
 from tests.support import lies
 from tests.support.liars import Ending, play, without
 from tests.support.lies import MODES, PRICES, FewerCounts, Mode
+from vedette.agent.account import Claimed
+from vedette.agent.audit import Auditor
+from vedette.agent.effects import Effect
 from vedette.domains.mapping.planners import DEFAULT
 
 BAD = sorted(MODES.keys() - PRICES.keys() - {"dead", "dead between", "honest", "misdated", "in the way"})
-SCHEMES = ("fork", "async", "jacobi", "multistart")
-PRICED = "tests.support.priced_planner:PRICED"  # tours cost by when they end
+SCHEMES = ("fork", "async", "jacobi")
 NAMED_WITHIN = 30.0  # [s]
+LATER = 10.0  # with two rounds of the token in one, which take twice as long [s]
 
 
 def check(
@@ -62,6 +65,14 @@ def test_teams_name_who_lies_whatever_the_scheme(mode: str, scheme: str, seed: i
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("mode", ["claim", "free", "inflate", "notes", "sum"])
+def test_two_rounds_of_the_token_in_one_name_who_lies_little_later(mode: str) -> None:
+    ending = check(mode, 3, 0, "multistart", named=False)
+    assert ending.named.get(ending.liar, float("inf")) <= NAMED_WITHIN + LATER
+    assert ending.named.keys() == {ending.liar}
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(2))
 @pytest.mark.parametrize("robots", [3, 5])
 def test_a_false_sum_that_its_teller_signs_convicts_it_before_all(robots: int, seed: int) -> None:
@@ -96,3 +107,50 @@ def test_a_robot_in_whose_way_a_liar_says_to_stand_is_not_named(seed: int) -> No
     ending = play("in the way", 3, seed)
     assert ending.outcome.value == "complete"
     assert ending.named.keys() <= {ending.liar}
+
+
+# -- prices --------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def audited(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Audits are held all the time, as if something were wrong."""
+    decided = Auditor.decided
+
+    def always(self: Auditor, claimed: Claimed, neighbours: tuple[int, ...], now: float) -> list[Effect]:
+        self.want(now)
+        return decided(self, claimed, neighbours, now)
+
+    monkeypatch.setattr(Auditor, "decided", always)
+
+
+@pytest.mark.usefixtures("audited")
+@pytest.mark.parametrize("mode", ["overcharge", "undersell"])
+def test_who_tells_another_price_than_those_behind_it_sign_is_named_by_an_audit(mode: str) -> None:
+    ending = play(mode, 3, 0, planner="long")
+    assert ending.outcome.value == "complete"
+    assert is_named(ending)
+    assert ending.named.keys() == {ending.liar}
+
+
+@pytest.mark.usefixtures("audited")
+@pytest.mark.parametrize(
+    "scheme",
+    ["token", *(pytest.param(scheme, marks=pytest.mark.slow) for scheme in (*SCHEMES, "multistart"))],
+)
+def test_audits_name_nobody_who_tells_prices_as_they_are(scheme: str) -> None:
+    ending = play("honest", 3, 0, scheme, "long")
+    assert ending.outcome.value == "complete"
+    assert not ending.named
+
+
+@pytest.mark.parametrize("mode", ["priceless", "unpriced"])
+def test_a_false_price_that_is_told_and_signed_alike_keeps_nobody_from_work(mode: str) -> None:
+    ending = check(mode, 3, 0, planner="long", named=False)
+    assert not ending.named
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("mode", BAD)
+def test_teams_whose_tours_have_a_price_finish_whoever_misbehaves(mode: str) -> None:
+    check(mode, 3, 0, planner="long", named=False)

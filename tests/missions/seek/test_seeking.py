@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,9 @@ from numpy.typing import NDArray
 from tests.support.small_missions import TWO_ROOMS, drawn, robots, small_maze, small_office
 from vedette import InputError, run
 from vedette.domains.mapping.belief import MapBelief
+from vedette.domains.mapping.planners import DEFAULT, PLANNERS
 from vedette.domains.mapping.platform import STAY
+from vedette.domains.mapping.price import EndPrice
 from vedette.domains.mapping.sightings import BINS
 from vedette.domains.search.evidence import LEVELS_PER_NAT
 from vedette.kernels import coverage
@@ -87,6 +90,13 @@ def test_a_tour_is_worth_the_same_to_the_kernel_and_to_the_weighted_sum(
         problem = platform._both(belief, others)
         assert coverage.best_tour(problem, tour.stops, 6)[2] == pytest.approx(gain, rel=1e-4)
         assert platform.slack(belief, others) >= gain * (1.0 - 1e-4)
+
+
+def test_tours_that_may_end_with_somebody_found_have_no_price_whatever_the_default_is(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setitem(PLANNERS, DEFAULT, replace(PLANNERS[DEFAULT], end_price=EndPrice(1.0, 0.1)))
+    assert {mission.planner.end_price for mission in seeking().missions} == {EndPrice()}
 
 
 def test_the_sum_keeps_its_laws_on_tours_of_a_mission(

@@ -9,6 +9,7 @@ from vedette.agent.driving import Driver
 from vedette.agent.relay import Relay, nearby
 from vedette.domains.mapping.belief import planning_factor
 from vedette.domains.mapping.planners import DEFAULT, planner
+from vedette.domains.mapping.price import FREE
 from vedette.domains.mapping.sightings import BINS
 from vedette.fusion import ReplicatedEvidence
 from vedette.maps.lattice import Lattice
@@ -31,7 +32,12 @@ def assemble(
 ) -> Agent:
     """Return a fresh agent of a team; ``most``: what none of its robots exceeds."""
     frame = lattice.frame
-    how = replace(planner(DEFAULT), alone=None, platform=lambda spec: SeekingPlatform(spec, max_stops=6))
+    how = replace(
+        planner(DEFAULT),
+        alone=None,
+        platform=lambda spec: SeekingPlatform(spec, max_stops=6),
+        end_price=FREE,  # it may end at any stop, with somebody found
+    )
     counts = 4 * BINS + frame.coarse(planning_factor(frame.resolution)).size
     fusion = ReplicatedEvidence(robot, boot, frame.shape, counts, mark=lattice.mark)
     mission = Seeking(lattice, spec, how, fusion, most=most, seek=seek)

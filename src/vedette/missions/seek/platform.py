@@ -128,7 +128,7 @@ class SeekingPlatform(MappingPlatform):
         assert self.looks is not None
         layers = belief[0].layers
         return (
-            MapImpact(*on_the_way(self.stops.footprints, strategy, layers), self.price(belief[0], strategy)),
+            MapImpact(*on_the_way(self.stops.footprints, strategy, layers)),
             SparseMisses(*on_the_way(self.looks, strategy, layers)),
         )
 
