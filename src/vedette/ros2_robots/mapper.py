@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import cos, sin
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from skimage.draw import line
 
 from vedette.ros2_robots.building import Building
 
 HIT, MISS, SURE = 3, 1, 12  # of a cell's count
 INTO = 0.3  # a return lies so much of a cell in the wall
+STEP = 0.25  # of a cell, between the places along a beam that are looked at
+
+Floats = NDArray[np.float64]
 
 
 class Mapper:
-    """Counts what beams meet and what they pass, on the building's own cells."""
+    """Counts what beams meet and what they pass, on the building's own cells.
+
+    A beam passes what lies a cell before its return, and nothing beside it: along a wall, where beams are
+    nearly parallel to it, cells that are only near a beam are the wall's.
+    """
 
     def __init__(self, building: Building) -> None:
         self._building = building
@@ -28,16 +33,16 @@ class Mapper:
         ranges = np.asarray(scan["ranges"], np.float64).ravel()
         angles = yaw + scan["angle_min"] + scan["angle_increment"] * np.arange(len(ranges))
         hits = ranges < scan["range_max"]
-        reach = ranges + INTO * self._building.resolution * hits
-        start = self._cell(x, y)
-        for angle, length, hit in zip(angles.tolist(), reach.tolist(), hits.tolist(), strict=True):
-            end = self._cell(x + length * cos(angle), y + length * sin(angle))
-            rows, cols = line(*start, *end)
-            rows, cols = self._inside(rows, cols)
-            self._counts[rows[:-1], cols[:-1]] -= MISS
-            if len(rows):
-                self._counts[rows[-1], cols[-1]] += HIT if hit else -MISS
-        np.clip(self._counts, -SURE, SURE, out=self._counts)
+        side, size = self._building.resolution, self._counts.size
+        along = STEP * side * np.arange(ranges.max(initial=0.0) // (STEP * side) + 1.0)
+        beam, at = np.nonzero(along < (ranges - side * hits)[:, None])
+        cells = self._cells(x + along[at] * np.cos(angles[beam]), y + along[at] * np.sin(angles[beam]))
+        once = np.unique(beam[cells >= 0] * size + cells[cells >= 0]) % size  # a beam passes a cell once
+        ends, ways = ranges[hits] + INTO * side, angles[hits]
+        met = self._cells(x + ends * np.cos(ways), y + ends * np.sin(ways))
+        more = HIT * np.bincount(met[met >= 0], minlength=size) - MISS * np.bincount(once, minlength=size)
+        told = self._counts + more.reshape(self._counts.shape)
+        self._counts = np.clip(told, -SURE, SURE).astype(np.int16)
 
     @property
     def occupancy(self) -> NDArray[np.int8]:
@@ -45,13 +50,11 @@ class Mapper:
         counts = self._counts
         return np.where(counts == 0, -1, np.where(counts > 0, 100, 0)).astype(np.int8)
 
-    def _cell(self, x: float, y: float) -> tuple[int, int]:
-        side = self._building.resolution
-        return int((y - self._building.lower) // side), int((x - self._building.left) // side)
-
-    def _inside(
-        self, rows: NDArray[np.int64], cols: NDArray[np.int64]
-    ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        height, width = self._counts.shape
-        there = (rows >= 0) & (rows < height) & (cols >= 0) & (cols < width)
-        return rows[there], cols[there]
+    def _cells(self, x: Floats, y: Floats) -> NDArray[np.int64]:
+        """Return the flat cells of points; -1 for those outside the building."""
+        building = self._building
+        row = np.floor((y - building.lower) / building.resolution).astype(np.int64)
+        col = np.floor((x - building.left) / building.resolution).astype(np.int64)
+        rows, cols = self._counts.shape
+        inside = (row >= 0) & (row < rows) & (col >= 0) & (col < cols)
+        return np.where(inside, row * cols + col, -1)
