@@ -7,6 +7,7 @@ import math
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -234,22 +235,51 @@ def test_a_robot_that_starts_anew_takes_no_join_back() -> None:
 # -- missions -----------------------------------------------------------------------------------------
 
 
+def explored(folder: Path, *options: str) -> dict[str, Any]:
+    """Let two processes that share no frame explore; return the summary of what they leave."""
+    WORLD.save(folder)
+    command = [sys.executable, "-m", "vedette", "team", "explore", str(folder / "map.yaml")]
+    how = ["--robots", "2", "--seed", "7", "--frames", "unknown", "--out", str(folder / "out")]
+    ran = subprocess.run([*command, *how, *options], capture_output=True, text=True, check=False)
+    assert ran.returncode in (0, 1), ran.stderr
+    for log in (folder / "out" / "agents").iterdir():
+        assert "Traceback" not in log.read_text()
+        assert "nobody can sign" not in log.read_text()
+    summary: dict[str, Any] = json.loads((folder / "out" / "summary.json").read_text())
+    assert all(join["error_m"] < 0.1 and join["error_deg"] < 1.0 for join in summary["frames"]["joins"])
+    assert summary["map_error_share"] < 0.01
+    return summary
+
+
 @real_time
 def test_processes_that_share_no_frame_join_and_map_the_building(tmp_path: Path) -> None:
-    WORLD.save(tmp_path)
-    command = [sys.executable, "-m", "vedette", "team", "explore", str(tmp_path / "map.yaml")]
-    options = ["--robots", "2", "--seed", "7", "--speed", "6", "--frames", "unknown", "--max-time", "150"]
-    out = tmp_path / "out"
-    ran = subprocess.run([*command, *options, "--out", str(out)], capture_output=True, text=True, check=False)
-    assert ran.returncode in (0, 1), ran.stderr
-    summary = json.loads((out / "summary.json").read_text())
-    frames = summary["frames"]
-    assert frames["components"] == [["robot-1", "robot-2"]]
-    assert all(join["error_m"] < 0.1 and join["error_deg"] < 1.0 for join in frames["joins"])
-    assert len(frames["joins"]) == 1 + frames["undone"]
+    summary = explored(tmp_path, "--speed", "6", "--max-time", "150")
+    assert summary["frames"]["components"] == [["robot-1", "robot-2"]]
+    assert len(summary["frames"]["joins"]) == 1 + summary["frames"]["undone"]
     assert summary["coverage"] > 0.95
-    assert summary["map_error_share"] < 0.01
-    assert (out / "map.yaml").exists()
-    assert (out / "progress.png").exists()
-    for log in (out / "agents").iterdir():
-        assert "Traceback" not in log.read_text()
+    assert (tmp_path / "out" / "map.yaml").exists()
+    assert (tmp_path / "out" / "progress.png").exists()
+
+
+STORM = """
+faults:
+  - {at: 0, fault: loss, share: 0.2, for: 120}
+  - {at: 35, fault: partition, parts: [[1], [2]], for: 20}
+  - {at: 70, fault: crash, robot: 2}
+  - {at: 73, fault: restart, robot: 2}
+"""
+
+
+@real_time
+@pytest.mark.slow
+def test_frames_are_found_again_through_loss_partition_kill_and_restart_and_nothing_is_lost(
+    tmp_path: Path,
+) -> None:
+    (tmp_path / "storm.yaml").write_text(STORM)
+    faults = "--faults", str(tmp_path / "storm.yaml")
+    summary = explored(tmp_path, "--speed", "4", "--max-time", "400", *faults)
+    assert summary["outcome"] == "complete"
+    assert summary["coverage"] > 0.99
+    assert summary["frames"]["components"] == [["robot-1", "robot-2"]]
+    assert max(join["time_s"] for join in summary["frames"]["joins"]) > 70.0  # of the second start as well
+    assert len(summary["maps"]) == 1

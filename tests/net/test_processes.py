@@ -114,6 +114,7 @@ def test_a_team_of_processes_completes_and_leaves_every_file(rooms: Path, tmp_pa
         assert "Traceback" not in log.read_text()
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
     assert summary["completed"] is True
+    assert summary["pose_error_m"] == {"robot-1": 0.0, "robot-2": 0.0}
     assert summary["coverage"] > 0.995
     assert summary["collisions"] == 0
     assert summary["apart_s"] == 0.0
@@ -141,6 +142,20 @@ def test_processes_that_predict_with_an_old_map_agree(rooms: Path, tmp_path: Pat
     summary = json.loads((out / "summary.json").read_text())
     assert (summary["completed"], summary["planner"]) == (True, "predicted")
     assert summary["coverage"] > 0.995
+
+
+@pytest.mark.slow
+def test_processes_whose_odometry_drifts_complete_and_tell_how_far_they_erred(
+    rooms: Path, tmp_path: Path
+) -> None:
+    out = tmp_path / "out"
+    with team_explore(rooms, "--robots", 2, "--speed", 5, "--drift", 0.02, "--out", out) as team:
+        _, err = team.communicate(timeout=200.0)
+    assert team.returncode == 0, err
+    summary = json.loads((out / "summary.json").read_text())
+    assert summary["pose_error_m"].keys() == {"robot-1", "robot-2"}
+    assert all(0.0 < error < 1.0 for error in summary["pose_error_m"].values())
+    assert summary["map_error_share"] < 0.01
 
 
 @pytest.mark.parametrize(

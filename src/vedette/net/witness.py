@@ -169,6 +169,7 @@ class Witness:
             expected=self._expected(mission_time, counted.travelled, overlay.place.size),
             signs=agent.signed is not None,
             out=_out(agent.signed),
+            pose_error=counted.pose_error,
         )
 
     def _expected(self, mission_time: float, way: float, team: int) -> Expected | None:

@@ -72,7 +72,10 @@ class OwnBody:
         """What it has counted."""
         bodies, i = self._robots.bodies, self.robot
         return BodyFigures(
-            float(bodies.travelled[i]), int(bodies.collisions[i]), float(bodies.min_clearance[i])
+            float(bodies.travelled[i]),
+            int(bodies.collisions[i]),
+            float(bodies.min_clearance[i]),
+            float(self._robots.pose_errors[i]),
         )
 
     def sense(self, now: float) -> list[Event]:

@@ -208,6 +208,7 @@ def view_of(
             **vars(figures_of(condition)),
             collisions=condition.collisions,
             min_clearance_m=UNTOUCHED if condition.min_clearance is None else condition.min_clearance,
+            pose_error_m=condition.pose_error,
         ),
         digest=condition.digest,
         left_out=left_out([Leftover(*spot) for spot in told.left_out], name),
