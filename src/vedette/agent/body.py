@@ -30,7 +30,7 @@ class BodyFigures:
     travelled: float = 0.0  # way driven or flown [m]
     collisions: int = 0  # steps in which a contact stopped it
     min_clearance: float | None = None  # from its edge to a wall or to a robot, so far [m]; None: not known
-    pose_error: float | None = None  # farthest that it took itself to be from where it was [m]; None: not known
+    pose_error: float | None = None  # farthest from where it was that it took itself to be [m]
 
 
 class Body(Protocol):

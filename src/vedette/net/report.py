@@ -111,7 +111,7 @@ class Condition(msgspec.Struct, frozen=True, array_like=True, tag=2):
     expected: Expected | None = (
         None  # how an exploration goes on, from ``began`` on; None: nobody can say yet
     )
-    pose_error: Real | None = None  # farthest that it took itself to be from where it was [m]; None: not known
+    pose_error: Real | None = None  # farthest from where it was that it took itself to be [m]
 
 
 class Report(msgspec.Struct, frozen=True, array_like=True, tag=3):
