@@ -85,7 +85,7 @@ def _worst_kind(rows: Sequence[Row]) -> Measurement:
         return Measurement(criterion, None, "no pairs")
     worst, where = max(found, key=lambda each: each[0].ratio.value)
     above = sum(each.ratio.value > 1.0 for each, _ in found)
-    note = f"{where} {interval_cell(worst.ratio)}; {above} of {len(found)} above"
+    note = f"{where}: {ratio_cell(worst.ratio)}; {above} of {len(found)} above"
     return Measurement(criterion, worst.ratio.value, note)
 
 
