@@ -151,6 +151,6 @@ def test_a_false_price_that_is_told_and_signed_alike_keeps_nobody_from_work(mode
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("mode", BAD)
+@pytest.mark.parametrize("mode", [mode for mode in BAD if mode != "inflate"])  # docs/trust.md
 def test_teams_whose_tours_have_a_price_finish_whoever_misbehaves(mode: str) -> None:
     check(mode, 3, 0, planner="long", named=False)
