@@ -15,7 +15,7 @@ from vedette.sim.framed import FramedRobots
 
 
 def test_robots_that_drift_find_each_others_frames_and_map_an_office_together() -> None:
-    team = [replace(spec, drift=0.005) for spec in robots(2)]
+    team = [replace(spec, drift=0.002) for spec in robots(2)]
     summary = explore(prepare(small_office(seed=1), team, ExploreSetup(seed=7, frames="unknown"))).summary
     assert summary.completed
     assert summary.coverage is not None
