@@ -26,6 +26,7 @@ from bench.monitoring import FieldRun
 from bench.priority import ErrandResult
 from bench.scale.report import ScaleReport
 from bench.stonesoup.__main__ import StoneSoupReport
+from bench.strangers import StrangersResult
 from vedette.net.results import RobotSummary, TracksFound
 from vedette.net.status import TeamStatus
 from vedette.record.explore.summary import ExploreSummary
@@ -66,6 +67,7 @@ KINDS: Mapping[str, type] = {
     "bench-frames": Trial,
     "bench-forecast": ForeseenResult,
     "bench-priority": ErrandResult,
+    "bench-strangers": StrangersResult,
 }
 
 
