@@ -79,7 +79,7 @@ def judged(a: Charted, b: Charted, seed: int) -> JoinVerdict:
         seed: of what the copies lack.
     """
     whole = align(a, b)
-    doubt = SAVED.doubt(whole) or _bare(a, b, whole.candidates[0]) or _twin(a, b, whole.possible[1:])
+    doubt = SAVED.doubt(whole) or bare(a, b, whole.candidates[0]) or _twin(a, b, whole.possible[1:])
     for number in range(THINNINGS):
         if doubt is not None:
             break
@@ -88,7 +88,8 @@ def judged(a: Charted, b: Charted, seed: int) -> JoinVerdict:
     return JoinVerdict(whole, doubt)
 
 
-def _bare(a: Charted, b: Charted, best: PossibleJoin) -> str | None:
+def bare(a: Charted, b: Charted, best: PossibleJoin) -> str | None:
+    """Return why what two maps have in common, laid so, may be a hall like any other; None: it is more."""
     beside = beside_lines(a, b, best.pose)
     if beside >= BESIDE:
         return None

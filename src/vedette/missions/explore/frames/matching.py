@@ -14,7 +14,7 @@ from vedette.align import Alignment, Charted, FramePose, align
 from vedette.align.agreement import middles
 from vedette.align.candidates import FINELY, weighed
 from vedette.align.fitted import fitted
-from vedette.align.verdict import STEADY, JoinRule
+from vedette.align.verdict import STEADY, JoinRule, bare
 from vedette.fusion.frame_edges import EdgeKind, FrameEdge
 from vedette.fusion.link import Key
 from vedette.maps.transform import Transform
@@ -110,13 +110,13 @@ class Matcher:
 
     def _look(self, pair: Pair, a: Charted, b: Charted) -> None:
         alignment = align(a, b)
-        self._done.append(lambda: self._weigh(pair, alignment, b))
+        doubt = RULE.doubt(alignment) or bare(a, b, alignment.candidates[0])
+        self._done.append(lambda: self._weigh(pair, alignment, doubt, b))
 
-    def _weigh(self, pair: Pair, alignment: Alignment, b: Charted) -> None:
+    def _weigh(self, pair: Pair, alignment: Alignment, doubt: str | None, b: Charted) -> None:
         """Believe a match once the rule has held for so many versions, at one pose."""
         attempts = self._attempts.setdefault(pair, _Attempts())
         self.looked += 1
-        doubt = RULE.doubt(alignment)
         if doubt is not None:
             attempts.held.clear()
             self.refused[_kind(doubt)] += 1
