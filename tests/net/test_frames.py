@@ -26,14 +26,14 @@ from vedette.maps.transform import IDENTITY, Transform
 from vedette.missions.explore.assemble import assemble
 from vedette.missions.explore.options import ExploreOptions
 from vedette.net.config import load_config
-from vedette.net.explore.content import Found, PlacedTold, content
+from vedette.net.explore.content import FramesTold, PlacedTold, content
 from vedette.net.explore.frames import FramesSeen
 from vedette.net.explore.picture import picture_of
 from vedette.net.explore.plan import ExplorePlan
 from vedette.net.explore.watch import unheard
 from vedette.net.orders import Gate, explorer_judge
 from vedette.net.report import Condition, Report, encode, read_report
-from vedette.record.explore.joins import Joined, JoinWatch, TrueFrame
+from vedette.record.explore.joins import JoinWatch, TrueFrame, Whereabouts
 from vedette.record.explore.views import RobotView
 from vedette.sim.own_body import OwnBody
 from vedette.sim.shown import decode
@@ -167,7 +167,7 @@ def report(robot: int, boot: int, cells: int, graph: tuple[PlacedTold, ...], x: 
     classes = np.zeros(FRAME.shape, np.uint8)
     classes.flat[:cells], classes.flat[cells - 1] = FREE, OCCUPIED
     known = slice(0, FRAME.rows), slice(0, FRAME.cols)
-    told = content(FRAME, known, classes, classes > 0, None, found=Found(graph, {"look-alike": robot}))
+    told = content(FRAME, known, classes, classes > 0, None, found=FramesTold(graph, {"look-alike": robot}))
     changed = structs.replace(condition, robot=robot, boot=boot, x=x, y=0.5, heading=0.0)
     return read_report(encode(Report(changed, told)))
 
@@ -223,11 +223,11 @@ def test_a_robot_that_starts_anew_takes_no_join_back() -> None:
     watch, at = JoinWatch(["a", "b"]), (0.0, 0.0)
     true = [TrueFrame(FramePose(0.0, 0.0, 0.0), at), TrueFrame(TURNED, at)]
     there = Transform.of(3.0, -2.0, 1.1)
-    first = {0: Joined(9, 0, IDENTITY), 1: Joined(8, 0, there)}
+    first = {0: Whereabouts(9, 0, IDENTITY), 1: Whereabouts(8, 0, there)}
     watch.look(1.0, first, true, [0, 1], {})
-    again = watch.look(2.0, {**first, 1: Joined(99, 1, IDENTITY)}, true, [0, 1], {})
+    again = watch.look(2.0, {**first, 1: Whereabouts(99, 1, IDENTITY)}, true, [0, 1], {})
     assert (len(again.joins), again.undone, again.components) == (1, 0, (("a",), ("b",)))
-    last = watch.look(3.0, {**first, 1: Joined(99, 0, there)}, true, [0, 1], {})
+    last = watch.look(3.0, {**first, 1: Whereabouts(99, 0, there)}, true, [0, 1], {})
     assert [join.time_s for join in last.joins] == [1.0, 3.0]
     assert last.joins[0].error_m < 0.002
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.maps import GridFrame
+from vedette.maps import FREE, OCCUPIED, GridFrame, write_map
 from vedette.maps.world import World
 from vedette.record.explore.observer import ExploreReport
 from vedette.record.explore.score import Reference, coverage
@@ -27,6 +28,12 @@ TWO_ROOMS = """
 #       #      #
 ################
 """
+
+
+def plan(world: World, folder: Path) -> Path:
+    """Save a world's map as an old one."""
+    write_map(folder / "old", world.frame, np.where(world.solid, OCCUPIED, FREE).astype(np.uint8))
+    return folder / "old.yaml"
 
 
 @cache

@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.missions.explore.test_prior import plan
-from tests.support.small_missions import check_complete, robots, small_maze, small_office
+from tests.support.small_missions import check_complete, plan, robots, small_maze, small_office
 from vedette import run
 from vedette.domains.mapping.impact import Impact, MapImpactCodec, cells_missed
 from vedette.errors import InputError

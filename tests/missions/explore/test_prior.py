@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.support.small_missions import check_complete, robots, small_maze, small_office
+from tests.support.small_missions import check_complete, plan, robots, small_maze, small_office
 from vedette import run
 from vedette.agent import Agent
 from vedette.domains.mapping.prior import PriorMap
@@ -19,11 +19,6 @@ from vedette.missions.explore.assemble import assemble, terms_of
 from vedette.missions.explore.old_map import read_prior
 from vedette.missions.explore.options import ExploreOptions
 from vedette.team import Most
-
-
-def plan(world: World, folder: Path) -> Path:
-    write_map(folder / "old", world.frame, np.where(world.solid, OCCUPIED, FREE).astype(np.uint8))
-    return folder / "old.yaml"
 
 
 @pytest.mark.parametrize("seed", [1, 5])

@@ -70,14 +70,14 @@ class PlacedTold(NamedTuple):
         return Transform(self.x, self.y, self.angle)
 
 
-class Found(msgspec.Struct, frozen=True, array_like=True):
+class FramesTold(msgspec.Struct, frozen=True, array_like=True):
     """What a robot that shares no frame has found out about others'."""
 
     graph: Annotated[tuple[PlacedTold, ...], Meta(max_length=1024)] = ()  # in order
     refused: Annotated[dict[Word, Count], Meta(max_length=64)] = {}  # pairs of maps not believed, by why
 
 
-NOTHING_FOUND = Found()
+NOTHING_FOUND = FramesTold()
 
 
 class MapContent(msgspec.Struct, frozen=True, array_like=True, tag=5):
@@ -97,7 +97,7 @@ class MapContent(msgspec.Struct, frozen=True, array_like=True, tag=5):
     left_out: Annotated[tuple[Spot, ...], Meta(max_length=1024)] = ()
     tour: Annotated[tuple[StopAhead, ...], Meta(max_length=64)] = ()
     way_left: Real | None = None  # that its energy is good for [m]; None: nobody says
-    found: Found = NOTHING_FOUND
+    found: FramesTold = NOTHING_FOUND
 
 
 _CONTENTS: msgspec.msgpack.Decoder[MapContent] = msgspec.msgpack.Decoder(MapContent)
@@ -156,7 +156,7 @@ def content(
     left: tuple[Spot, ...] = (),
     tour: tuple[StopAhead, ...] = (),
     way_left: float | None = None,
-    found: Found = NOTHING_FOUND,
+    found: FramesTold = NOTHING_FOUND,
 ) -> bytes:
     """Return a map as bytes; ``classes`` and ``seen`` are ``(R, C)``, the known rows and columns."""
     (rows, cols), part = known, lattice.window(*known)
@@ -169,10 +169,10 @@ def content(
     )
 
 
-def _found(mission: FramedExploring) -> Found:
+def _found(mission: FramedExploring) -> FramesTold:
     graph = sorted(mission.frames.graph.items())[:1024]
     placed = tuple(PlacedTold(*key, each.anchor, *each.there, each.met) for key, each in graph)
-    return Found(placed, dict(mission.refused))
+    return FramesTold(placed, dict(mission.refused))
 
 
 def read_content(payload: bytes) -> MapContent:

@@ -10,7 +10,7 @@ from vedette.net.explore.content import MapContent, read_content
 from vedette.net.explore.plan import ExplorePlan
 from vedette.net.report import Condition
 from vedette.record.explore.frames import FramesFound
-from vedette.record.explore.joins import Joined, JoinWatch, TrueFrame
+from vedette.record.explore.joins import JoinWatch, TrueFrame, Whereabouts
 from vedette.record.explore.turned import view_turned
 from vedette.record.explore.views import RobotView
 
@@ -49,7 +49,7 @@ class FramesSeen:
         if told is None:
             return None
         graph = {
-            each.robot: Joined(each.boot, each.anchor, each.there, each.met)
+            each.robot: Whereabouts(each.boot, each.anchor, each.there, each.met)
             for each in sorted(told.found.graph)
             if (each.robot, each.boot) in self._true
         }

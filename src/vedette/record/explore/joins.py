@@ -17,7 +17,7 @@ from vedette.record.explore.frames import FrameJoin, FramesFound
 _Start = tuple[int, int]  # a robot and its boot
 
 
-class Joined(NamedTuple):
+class Whereabouts(NamedTuple):
     """Where a robot's frame is taken to lie."""
 
     boot: int  # of the robot's start that is the latest: each has a frame of its own
@@ -45,7 +45,7 @@ class JoinWatch:
     def look(
         self,
         now: float,
-        graph: Mapping[int, Joined],
+        graph: Mapping[int, Whereabouts],
         true: Sequence[TrueFrame],
         living: Sequence[int],
         refused: Mapping[str, int],

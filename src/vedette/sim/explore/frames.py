@@ -9,7 +9,7 @@ from typing import cast
 from vedette.align import FramePose
 from vedette.missions.explore.frames.exploring import FramedExploring
 from vedette.record.explore.frames import FramesFound
-from vedette.record.explore.joins import Joined, JoinWatch, TrueFrame
+from vedette.record.explore.joins import JoinWatch, TrueFrame, Whereabouts
 from vedette.sim.simulation import Simulation
 
 
@@ -28,7 +28,7 @@ class FrameWatch:
             return None
         missions = [cast(FramedExploring, agent.mission) for agent in simulation.agents]
         graph = missions[living[0]].frames.graph
-        latest = {key[0]: Joined(key[1], *placed) for key, placed in sorted(graph.items())}
+        latest = {key[0]: Whereabouts(key[1], *placed) for key, placed in sorted(graph.items())}
         true = [TrueFrame(frame, simulation.pose(i)[:2]) for i, frame in enumerate(self._frames)]
         refused = sum((mission.refused for mission in missions), Counter[str]())
         return self._joins.look(simulation.now, latest, true, living, refused)

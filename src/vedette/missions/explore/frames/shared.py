@@ -26,7 +26,7 @@ REFUTED = 2.0, 0.5  # walls in common at most [m], or contradicted at least: two
 PATIENCE = 24  # versions of whoever tells of such an edge, in which it could have taken it back
 
 
-class Verdict(NamedTuple):
+class PairVerdict(NamedTuple):
     """What the evidence of two says of where one lies on the other."""
 
     versions: int  # of both
@@ -47,7 +47,7 @@ class SharedFrames:
     graph: dict[Key, Placed] = field(default_factory=dict)
     plane: dict[Key, Transform] = field(default_factory=dict)  # T_plane_contributor of the latest round
     parts: dict[Key, int] = field(default_factory=dict)  # the component of each, then
-    _verdicts: dict[tuple[Key, Key, Transform], Verdict] = field(default_factory=dict)
+    _verdicts: dict[tuple[Key, Key, Transform], PairVerdict] = field(default_factory=dict)
     _refuted: dict[tuple[Key, FrameEdge], int] = field(default_factory=dict)  # by whom, since which version
 
     def __post_init__(self) -> None:
@@ -201,7 +201,7 @@ class SharedFrames:
         }
         self.evidence.misleading = frozenset(late)
 
-    def _verdict(self, a: Key, b: Key, there: Transform) -> Verdict:
+    def _verdict(self, a: Key, b: Key, there: Transform) -> PairVerdict:
         """Return what the evidence of two says of where one lies on the other, looked at now and then."""
         copies = self.evidence.copies
         versions = copies[a].version + copies[b].version
@@ -210,11 +210,11 @@ class SharedFrames:
             return known
         found = self.charts.agreement(a, b, there)
         if found is None:
-            verdict = Verdict(versions, False)
+            verdict = PairVerdict(versions, False)
         else:
             shift, turn = self.charts.pulled(a, b, there)
             straight = shift <= CLOSED[0] and turn <= CLOSED[1]
-            verdict = Verdict(
+            verdict = PairVerdict(
                 versions,
                 straight and found.same >= BORNE_OUT[0] and found.contradicted <= BORNE_OUT[1],
                 found.against < ALLOWED[0] or found.contradicted <= ALLOWED[1],
