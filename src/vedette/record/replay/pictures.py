@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from vedette.domains.mapping.sightings import BIN, P_OCCUPIED
+from vedette.maps import FREE
 from vedette.number import many
 from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save, tidy
@@ -25,7 +26,7 @@ _LEAST_TRIED = 100  # cells, for a bin to have a share
 
 def map_png(replayed: Replayed, path: Path | str) -> None:
     """Draw the map that the team holds, with everybody's way from its dot on."""
-    window = known_window(replayed.frame, replayed.classes)
+    window = known_window(replayed.frame, _known_or_driven(replayed))
     part = replayed.classes[window.rows, window.cols]
     colours = palette.CLASSES[pool(part, *fit(part.shape, _PIXELS))]
     x0, x1, y0, y1 = window.frame.extent
@@ -51,6 +52,16 @@ def map_png(replayed: Replayed, path: Path | str) -> None:
         shown = 0.98 * min(_WIDTH, inches * (x1 - x0) / (y1 - y0))
         scale_bar(figure, 0.01 * _WIDTH, _FOOT / 2, x1 - x0, shown)
         save(figure, path)
+
+
+def _known_or_driven(replayed: Replayed) -> NDArray[np.uint8]:
+    """Return the classes with all ways free, which may lead where the map knows nothing."""
+    frame, classes = replayed.frame, replayed.classes.copy()
+    for way in replayed.ways:
+        col, row = ((way - (frame.origin_x, frame.origin_y)) // frame.resolution).astype(np.int64).T
+        inside = (row >= 0) & (row < frame.rows) & (col >= 0) & (col < frame.cols)
+        classes[row[inside], col[inside]] = FREE
+    return classes
 
 
 def observation_png(
