@@ -6,6 +6,7 @@ import json
 import math
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -99,6 +100,28 @@ def test_a_robot_that_is_started_again_is_where_it_was_and_in_another_frame() ->
     assert again["frame"] == pytest.approx(
         [team.frames[1].x, team.frames[1].y, math.degrees(team.frames[1].angle)]
     )
+
+
+def test_places_of_whoever_started_the_team_are_told_in_robots_frames_and_come_back_as_they_were() -> None:
+    team = plan(2)
+    for order, of in (
+        (LookThere(at=(4.0, 5.0), robot=2), 1),
+        (NoGo(area="a", corners=((1.0, 1.0), (3.0, 1.0), (3.0, 2.0))), 0),
+        (Recall(to=(4.0, 5.0), robot=1), 0),
+    ):
+        told = team.as_told(order)
+        (place,) = (getattr(told, name) for name in ("at", "to", "corners") if getattr(told, name, None))
+        (world,) = (getattr(order, name) for name in ("at", "to", "corners") if getattr(order, name, None))
+        there = team.frames[of].places(np.array(place).reshape(-1, 2))
+        np.testing.assert_allclose(there, np.reshape(world, (-1, 2)), atol=0.003)
+        seen = FramesSeen(team)
+        seen.take(condition(0, 9, report(0, 9, 5, ())), report(0, 9, 5, ()).content)
+        unturned = view_of_start(team, 0)
+        holds = replace(unturned, sample=replace(unturned.sample, orders=(told,)))
+        (back,) = seen.in_world([holds, view_of_start(team, 1)])[0].sample.orders
+        (again,) = (getattr(back, name) for name in ("at", "to", "corners") if getattr(back, name, None))
+        np.testing.assert_allclose(np.reshape(again, (-1, 2)), np.reshape(world, (-1, 2)), atol=0.005)
+    assert team.as_told(Pause(robot=1)) == Pause(robot=1)
 
 
 @pytest.mark.parametrize(
@@ -201,7 +224,7 @@ def test_an_operator_sees_joins_and_how_far_they_are_from_the_truth() -> None:
     there = Transform.of(true.x + 0.03, true.y - 0.04, true.angle)
     alone = placed(0, 9, (0, 9)), placed(1, 8, (1, 8))
     joined = placed(0, 9, (0, 9)), placed(1, 8, (0, 9), there)
-    views = [_view(team, robot) for robot in range(2)]
+    views = [view_of_start(team, robot) for robot in range(2)]
     for graph, joins in ((alone, 0), (joined, 1), (alone, 1), (joined, 2)):
         for robot, boot in enumerate((9, 8)):
             told = report(robot, boot, 5, graph)
@@ -215,7 +238,7 @@ def test_an_operator_sees_joins_and_how_far_they_are_from_the_truth() -> None:
     assert found.components == (("robot-1", "robot-2"),)
 
 
-def _view(team: ExplorePlan, robot: int) -> RobotView:
+def view_of_start(team: ExplorePlan, robot: int) -> RobotView:
     return unheard(team.specs[robot].name, team.starts[robot].tolist(), team.lattice.frame)
 
 
@@ -268,6 +291,18 @@ faults:
   - {at: 70, fault: crash, robot: 2}
   - {at: 73, fault: restart, robot: 2}
 """
+
+
+@real_time
+@pytest.mark.slow
+def test_processes_that_share_no_frame_drift_and_obey_orders_with_places_of_the_world(tmp_path: Path) -> None:
+    area = {"at": 40, "order": "priority", "area": "a", "corners": [[1, 1], [4, 1], [4, 4], [1, 4]]}
+    orders = [area, {"at": 60, "order": "recall", "robot": 2}]
+    (tmp_path / "orders.yaml").write_text(json.dumps({"orders": orders}))
+    given = "--orders", str(tmp_path / "orders.yaml")
+    summary = explored(tmp_path, "--speed", "5", "--max-time", "200", "--drift", "0.01", *given)
+    assert summary["frames"]["components"] == [["robot-1", "robot-2"]]
+    assert all(0.0 < error < 1.0 for error in summary["pose_error_m"].values())
 
 
 @real_time

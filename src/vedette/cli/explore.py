@@ -26,12 +26,6 @@ from vedette.window.picture import Picture, picture
     "--continue", "saved", type=FILE, metavar="RUN_DIR", help="Start from the map that an earlier run left."
 )
 @orders_option
-@click.option(
-    "--rendezvous/--no-rendezvous",
-    default=True,
-    show_default=True,
-    help="--frames unknown: ground is worth more where robots of unknown frames may have been.",
-)
 @fault_options
 @watch_options
 @output_options

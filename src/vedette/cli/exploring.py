@@ -133,6 +133,12 @@ def exploring_options(command: CommandT) -> CommandT:
             show_default=True,
             help="unknown: each robot's frame is its own, and the team finds how they lie.",
         ),
+        click.option(
+            "--rendezvous/--no-rendezvous",
+            default=True,
+            show_default=True,
+            help="--frames unknown: ground is worth more where robots of unknown frames may have been.",
+        ),
         click.option("--return-home", is_flag=True, help="The robots drive back to their starts in the end."),
     )
 

@@ -45,7 +45,7 @@ from vedette.run.inputs import files_of, orders_in, schedule_of, world_of
 from vedette.run.searching import case_of, heat_maps
 from vedette.run.tracking import scenario_of
 from vedette.sim.domains import DOMAINS, DomainEntry, entry_of, own_domain
-from vedette.sim.orders import check_flight_orders, check_orders, check_places
+from vedette.sim.orders import check_flight_orders, check_frames, check_orders
 from vedette.sim.search.hidden import Hidden
 from vedette.sim.starts import choose_starts
 from vedette.sim.track.targets import Targets
@@ -95,6 +95,7 @@ def explore(
     unbounded: bool,
     prior: Path | None,
     frames: str,
+    rendezvous: bool,
     speed: float,
     lease: float,
     faults: str | None,
@@ -114,14 +115,12 @@ def explore(
     tell_unheeded(planner, len(specs), scheme, fusion=fusion, lease=lease)
     if ros2 and unbounded:
         raise InputError("--unbounded: robots that run ROS 2 are never told how far it goes; leave it out")
-    if frames == "unknown" and any(spec.drift for spec in specs):
-        raise InputError("frames unknown: drift moves frames as well; leave it out")
     if ros2 and any(spec.sensor for spec in specs):
         raise InputError("sensor: simulated ROS 2 robots have lidars; leave it, or --ros2, out")
     if ros2 and any(spec.drift for spec in specs):
         raise InputError("drift: simulated ROS 2 robots know where they are; leave it, or --ros2, out")
     old = None if prior is None else str(prior.resolve())
-    options = ExploreOptions(planner, agreed, fusion, return_home, area, unbounded, old, frames)
+    options = ExploreOptions(planner, agreed, fusion, return_home, area, unbounded, old, frames, rendezvous)
     options.check()
     lattice = options.lattice_on(world.frame)
     if prior is not None:
@@ -132,7 +131,7 @@ def explore(
     plan = kind(world, specs, places, options, seed, speed, lease)
     given = orders_in(orders)
     check_orders(given, world, specs, str(orders), signed=fusion == "replicated")
-    check_places(given, frames)
+    check_frames(given, frames, len(specs))
     page = ExploreOnlooker(world.name, [spec.name for spec in specs])
     run = TeamRun(plan, max_time, schedule_of(faults, plan.size, clocks=False), page, watch, given)
     setting = Setting(seed=seed, faults=faults)

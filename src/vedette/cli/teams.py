@@ -122,7 +122,8 @@ class _Telling:
         while self.orders and self.orders[0].at <= now:
             order = self.orders.pop(0).what
             try:
-                answer = self.giving.give(order, list(self.watch.conditions.values()))
+                told = self.watch.plan.as_told(order)
+                answer = self.giving.give(told, list(self.watch.conditions.values()))
             except InputError as error:
                 answer = f"refused: {error}"
             click.echo(f"{now:7.1f} s  order {said(order)}: {answer}", err=True)

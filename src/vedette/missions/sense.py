@@ -77,8 +77,3 @@ def forbidden_by(x: float, y: float, areas: Iterable[NoGo | Priority]) -> str | 
         if isinstance(each, NoGo) and Forbidden((Area(each.corners),)).holds(x, y):
             return f"{x:g}, {y:g} lies in the no-go area {each.area}"
     return None
-
-
-def names_a_place(order: Order) -> bool:
-    """Tell whether an order is about some place, by where it lies."""
-    return any(getattr(order, name, None) is not None for name in ("at", "to", "corners"))

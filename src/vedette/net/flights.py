@@ -11,6 +11,7 @@ from typing import Any, Protocol
 import msgspec
 
 from vedette.agent import Agent
+from vedette.agent.orders import Order
 from vedette.agent.terms import Terms, fingerprint_of
 from vedette.errors import InputError
 from vedette.missions.flying import RoundTimes
@@ -67,6 +68,10 @@ class FlightsPlan:
     def times(self) -> RoundTimes:
         """What the team's rounds take."""
         return round_times(LinkSettings(), self.speed)
+
+    def as_told(self, order: Order) -> Order:
+        """Return an order as it is: vehicles share the scenario's frame."""
+        return order
 
     def write(self, folder: Path) -> None:
         """Write nothing: all read the same scenario."""

@@ -16,6 +16,7 @@ from typing import Any, Protocol, Self
 
 import msgspec
 
+from vedette.agent.orders import Order
 from vedette.net.access import Access
 from vedette.net.credentials import credentials
 from vedette.net.endpoints import free_port
@@ -49,6 +50,9 @@ class TeamPlan(Protocol):
     @property
     def shared_clock(self) -> bool:
         """Whether all of the team count the mission's time from one moment on."""
+
+    def as_told(self, order: Order) -> Order:
+        """Return an order of whoever started the team, its place as the robots reckon."""
 
     def write(self, folder: Path) -> None:
         """Write the files that the robots share."""

@@ -12,7 +12,7 @@ from vedette.agent.orders import Exclude, LookThere, NoGo, Order, Priority, Reca
 from vedette.errors import InputError, nearest_name
 from vedette.maps.area import Area
 from vedette.maps.world import World, standable
-from vedette.missions.sense import Grounds, forbidden_by, names_a_place
+from vedette.missions.sense import Grounds, forbidden_by
 from vedette.scenario import as_scenario, load_scenario
 from vedette.team import PlatformSpec
 
@@ -48,15 +48,6 @@ def check_frames(orders: Sequence[OrderAt], frames: str, robots: int) -> None:
             raise InputError("orders: frame: the robots share one frame; leave it out")
         if frame is not None and frame > robots:
             raise InputError(f"orders: frame: there is no robot {frame} in a team of {robots}")
-
-
-def check_places(orders: Sequence[OrderAt], frames: str) -> None:
-    """Raise InputError for an order with a place, where nobody has the frame of the world."""
-    for each in orders:
-        if frames == "unknown" and names_a_place(each.what):
-            raise InputError(
-                "orders: frames unknown, so a place means nothing to the robots; give orders without one"
-            )
 
 
 def check_orders(

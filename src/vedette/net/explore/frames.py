@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 
+from vedette.agent.orders import Order, moved
 from vedette.align import FramePose
+from vedette.maps.transform import Transform
 from vedette.net.explore.content import MapContent, read_content
 from vedette.net.explore.plan import ExplorePlan
 from vedette.net.report import Condition
@@ -36,9 +39,23 @@ class FramesSeen:
         """Return robots' latest views as they lie in the world; who has told nothing is there already."""
         world = self._plan.world.frame
         return [
-            view_turned(view, self._true[robot, self._boots[robot]], world) if robot in self._boots else view
+            view_turned(self._with_orders(view), self._true[robot, self._boots[robot]], world)
+            if robot in self._boots
+            else view
             for robot, view in enumerate(views)
         ]
+
+    def _with_orders(self, view: RobotView) -> RobotView:
+        """Return a view whose orders name places of the world."""
+        orders = tuple(self._in_world(order) for order in view.sample.orders)
+        return replace(view, sample=replace(view.sample, orders=orders))
+
+    def _in_world(self, order: Order) -> Order:
+        of = order.in_frame_of
+        if of is None or of >= self._plan.size:
+            return order
+        frame = self._plan.frames[of]
+        return moved(order, Transform.of(frame.x, frame.y, frame.angle))
 
     def look(self, now: float, views: Sequence[RobotView], living: Sequence[int]) -> FramesFound | None:
         """Return who is joined by now [s], as the first of the living that was heard says; None: nobody was.
