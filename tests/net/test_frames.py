@@ -24,7 +24,7 @@ from vedette.align import FramePose
 from vedette.errors import InputError
 from vedette.maps import FREE, OCCUPIED, GridFrame
 from vedette.maps.transform import IDENTITY, Transform
-from vedette.missions.explore.assemble import assemble
+from vedette.missions.explore.assemble import assemble, terms_of
 from vedette.missions.explore.options import ExploreOptions
 from vedette.net.config import load_config
 from vedette.net.explore.content import FramesTold, PlacedTold, content
@@ -318,3 +318,11 @@ def test_frames_are_found_again_through_loss_partition_kill_and_restart_and_noth
     assert summary["frames"]["components"] == [["robot-1", "robot-2"]]
     assert max(join["time_s"] for join in summary["frames"]["joins"]) > 70.0  # of the second start as well
     assert len(summary["maps"]) == 1
+
+
+def test_robots_whose_files_differ_in_frames_or_in_rendezvous_differ_in_terms() -> None:
+    lattice = ExploreOptions(frames="unknown").lattice_on(WORLD.frame)
+    ways = [{"frames": "known"}, {"frames": "unknown"}, {"frames": "unknown", "rendezvous": False}]
+    terms = [terms_of(lattice, ExploreOptions(**way)) for way in ways]  # type: ignore[arg-type]
+    assert len({tuple(sorted(each.items())) for each in terms}) == 3
+    assert terms[0].keys() <= terms[1].keys()
