@@ -265,6 +265,14 @@ class SiteMission:
         """Return the share of what is not seen yet that will be, in sites."""
         return worth(belief, impact.miss)
 
+    def price(self, impact: Impact) -> float:
+        """Return nothing: sites are free."""
+        return 0.0
+
+    def gross(self, belief: Belief, impact: Impact) -> float:
+        """Return the value."""
+        return self.value(belief, impact)
+
     def slack(self, belief: Belief, base: Impact) -> float:
         """Return the most that a site adds."""
         self.whole = base

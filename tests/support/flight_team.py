@@ -141,6 +141,14 @@ class Spreading:
         """Worth seen."""
         return self._coverage.value(belief.worth, impact)
 
+    def price(self, impact: Float) -> float:
+        """Return nothing: all is free."""
+        return 0.0
+
+    def gross(self, belief: Belief, impact: Float) -> float:
+        """Return the value."""
+        return self.value(belief, impact)
+
     def slack(self, belief: Belief, base: Float) -> float:
         """Of the sequences."""
         return self._chooser(belief, None).slack(base)
