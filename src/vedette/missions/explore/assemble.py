@@ -10,16 +10,17 @@ from vedette.agent.driving import Driver
 from vedette.agent.relay import Relay, nearby
 from vedette.agent.terms import Terms, flat
 from vedette.domains.mapping.belief import planning_factor
-from vedette.domains.mapping.planners import planner
+from vedette.domains.mapping.planners import Planner, planner
 from vedette.domains.mapping.prior import PriorMap
 from vedette.domains.mapping.sightings import BINS
-from vedette.errors import check_word
+from vedette.errors import InputError, check_word
 from vedette.fusion import ChannelFilter, Fusion, ReplicatedEvidence
 from vedette.fusion.framed import FramedEvidence
 from vedette.fusion.particulars import Capabilities
 from vedette.fusion.seals import Notary
 from vedette.fusion.signed import SignedEvidence
 from vedette.fusion.signed_framed import SignedFramedEvidence
+from vedette.kernels.coverage import LAYERS
 from vedette.maps.lattice import Lattice
 from vedette.missions.explore.exploring import Exploring
 from vedette.missions.explore.frames.exploring import FramedExploring
@@ -101,6 +102,7 @@ def assemble(
     else:
         fusion = _fusion(lattice, options, robot, boot, most, notary)
     how = planner(options.planner, robots)
+    _check_room(lattice, how)
     kind = explorer or (FramedExploring if unknown else Exploring)
     mission = kind(lattice, spec, how, fusion, most=most, prior=prior)
     if isinstance(mission, FramedExploring):
@@ -114,6 +116,16 @@ def assemble(
         said = (0 if prior is None else prior.identity) ^ (how.worlds - 1)
         agent.rounds.mandate = lambda: agent.orders.digest ^ said
     return agent
+
+
+def _check_room(lattice: Lattice, how: Planner) -> None:
+    """Raise InputError where planning cells in all worlds and layers cannot be numbered in 32 bits."""
+    cells = lattice.frame.coarse(planning_factor(lattice.frame.resolution)).size
+    if cells * how.worlds * LAYERS > 1 << 32:
+        raise InputError(
+            f"planner: {cells} planning cells in {how.worlds} worlds are too many; give an area, or choose "
+            "a planner that does not predict"
+        )
 
 
 def _fusion(
