@@ -72,8 +72,6 @@ def test_what_a_robot_reports_is_over_planning_cells_whatever_the_worlds() -> No
 
 def test_ground_with_more_cells_in_all_worlds_than_can_be_numbered_is_refused() -> None:
     lattice, specs = Lattice.open(0.2, (0.0, 0.0), None), robots(1)
-    with pytest.raises(
-        InputError, match="planner: 67108864 planning cells in 3 worlds are too many"
-    ):
+    with pytest.raises(InputError, match="planner: 67108864 planning cells in 3 worlds are too many"):
         assemble(lattice, specs[0], PREDICTED, 0, 1, robots=2, most=Most.of(specs))
     assemble(lattice, specs[0], ExploreOptions(), 0, 1, robots=2, most=Most.of(specs))
