@@ -22,9 +22,9 @@ from vedette.team import PlatformSpec
 ROBOTS = 3
 SIZE = 20.0, 15.0  # of the offices [m]
 ASKED, ERRORS = 1.15, 0.01  # of the median ratio of times to the end, and of any map's wrong cells
-ARMS = {"known": {}, "unknown": {"frames": "unknown"}, "alone": {"frames": "unknown", "rendezvous": False}}
+ARMS = {"known": {}, "unknown": {"frames": "unknown"}, "seeking": {"frames": "unknown", "rendezvous": True}}
 
-Arm = Literal["known", "unknown", "alone"]  # alone: they do not look for each other
+Arm = Literal["known", "unknown", "seeking"]  # the last look for each other
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,7 @@ def strangers_table(results: Sequence[StrangersResult]) -> str:
     told = {each.key: each for each in results}
     rows, ends = [], list[float]()
     for seed in sorted({each.seed for each in results}):
-        known, unknown, alone = (told.get((seed, arm)) for arm in ARMS)
+        known, unknown, seeking = (told.get((seed, arm)) for arm in ARMS)
         if known is None or unknown is None:
             continue
         ends.append(unknown.time_s / known.time_s)
@@ -103,12 +103,12 @@ def strangers_table(results: Sequence[StrangersResult]) -> str:
                 figure(known.time_s),
                 figure(ends[-1]),
                 figure(_ratio(unknown.t90_s, known.t90_s)),
-                figure(None if alone is None else alone.time_s / known.time_s),
+                figure(None if seeking is None else seeking.time_s / known.time_s),
                 figure(unknown.joined_s),
                 f"{unknown.map_error_share:.2%}",
             )
         )
-    header = ("world", "known [s]", "unknown", "to 90 %", "no rendezvous", "one map after [s]", "wrong cells")
+    header = ("world", "known [s]", "unknown", "to 90 %", "rendezvous", "one map after [s]", "wrong cells")
     worst = max((each.map_error_share for each in results), default=0.0)
     middle = median(ends) if ends else float("inf")
     said = "MET" if middle <= ASKED else "MISSED", "MET" if worst <= ERRORS else "MISSED"
@@ -131,7 +131,7 @@ def _ratio(unknown: float | None, known: float | None) -> float | None:
 @click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for results and table.")
 def strangers(seeds: tuple[int, ...], jobs: int, fresh: bool, out: Path) -> None:
     """Compare teams that share no frame with teams that share one; exit status 1 if a mission broke."""
-    arms: tuple[Arm, ...] = ("known", "unknown", "alone")
+    arms: tuple[Arm, ...] = ("known", "unknown", "seeking")
     cases = [StrangersCase(seed, arm) for seed in seeds for arm in arms]
     tabulate(cases, out, "strangers", jobs, fresh, run_strangers, StrangersResult, strangers_table)
 

@@ -15,7 +15,7 @@ def result(seed: int, arm: Arm, time: float, wrong: float = 0.0) -> StrangersRes
 
 def test_ratios_are_of_worlds_that_were_run_both_ways_and_their_median_decides() -> None:
     results = [
-        *(result(1, "known", 100.0), result(1, "unknown", 110.0), result(1, "alone", 120.0)),
+        *(result(1, "known", 100.0), result(1, "unknown", 110.0), result(1, "seeking", 120.0)),
         *(result(2, "known", 100.0), result(2, "unknown", 200.0)),
         *(result(3, "known", 100.0), result(3, "unknown", 105.0)),
         result(4, "known", 100.0),

@@ -135,8 +135,8 @@ def exploring_options(command: CommandT) -> CommandT:
         ),
         click.option(
             "--rendezvous/--no-rendezvous",
-            default=True,
-            show_default=True,
+            default=False,
+            show_default=False,
             help="--frames unknown: ground is worth more where robots of unknown frames may have been.",
         ),
         click.option("--return-home", is_flag=True, help="The robots drive back to their starts in the end."),

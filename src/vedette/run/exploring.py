@@ -90,7 +90,7 @@ class Explore(_Mission):
         area: Sequence[Sequence[float]] | None = None,
         unbounded: bool = False,
         frames: str = "known",
-        rendezvous: bool = True,
+        rendezvous: bool = False,
         saved: str | Path | None = None,
         prior: str | Path | None = None,
         record: str | Path | None = None,

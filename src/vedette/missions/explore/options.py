@@ -26,7 +26,7 @@ class ExploreOptions(Struct, forbid_unknown_fields=True, frozen=True):
     prior: str | None = None  # an old map of the building, a map's file
     frames: str = "known"  # or "unknown": each robot's frame is its own, and the team finds how they lie
 
-    rendezvous: bool = True  # frames unknown: ground is worth more where another component may know it
+    rendezvous: bool = False  # frames unknown: ground is worth more where another component may know it
 
     def check(self) -> None:
         """Raise InputError for what cannot go together."""

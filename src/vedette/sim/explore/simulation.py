@@ -41,7 +41,7 @@ class ExploreSetup(Setup):
     area: tuple[tuple[float, float], ...] | None = None  # corners [m], as in ``ExploreOptions``
     unbounded: bool = False
     frames: str = "known"  # as in ``ExploreOptions``
-    rendezvous: bool = True
+    rendezvous: bool = False
     saved: OwnMap | None = None  # an earlier mission's map, which the first robot knows from the start
     prior: PriorMap | None = None  # an old map of the building, which all have
 

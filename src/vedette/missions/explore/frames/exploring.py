@@ -42,7 +42,7 @@ Areas = tuple[tuple[Area, ...], tuple[tuple[Area, float], ...]]  # where nobody 
 class FramedExploring(Exploring):
     """Explores, and finds out how the team's frames lie."""
 
-    rendezvous: bool = True  # ground is worth more where another component may know it
+    rendezvous: bool = False  # ground is worth more where another component may know it
     frames: SharedFrames = field(init=False)
     matcher: Matcher = field(init=False)
     meetings: Meetings = field(init=False)
