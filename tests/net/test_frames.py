@@ -300,7 +300,7 @@ def test_processes_that_share_no_frame_drift_and_obey_orders_with_places_of_the_
     orders = [area, {"at": 60, "order": "recall", "robot": 2}]
     (tmp_path / "orders.yaml").write_text(json.dumps({"orders": orders}))
     given = "--orders", str(tmp_path / "orders.yaml")
-    summary = explored(tmp_path, "--speed", "5", "--max-time", "200", "--drift", "0.01", *given)
+    summary = explored(tmp_path, "--speed", "5", "--max-time", "200", "--drift", "0.002", *given)
     assert summary["frames"]["components"] == [["robot-1", "robot-2"]]
     assert all(0.0 < error < 1.0 for error in summary["pose_error_m"].values())
 
