@@ -1,7 +1,7 @@
 """Reports of robots that may share no frame, laid out for somebody who does not know the truth.
 
-Of those that are joined, the map of the one that knows most is shown, in its frame, and the others where it
-takes them to be. Whoever is not joined with them is shown beside, on a part of the plane of its own.
+Of those that are joined, the map of the first one is shown, in its frame, in which orders' places lie that name
+no other; and the others where it takes them to be. Whoever is not joined with them is shown beside, on a part of the plane of its own.
 """
 
 from __future__ import annotations
@@ -12,22 +12,17 @@ import numpy as np
 from msgspec import structs
 
 from vedette.align import FramePose
-from vedette.maps import UNKNOWN
 from vedette.maps.transform import Transform
-from vedette.net.explore.content import MapContent, classes_of
+from vedette.net.explore.content import MapContent
 
 GAP = 2.0  # between what robots know that are not joined [m]
 
 
 def side_by_side(told: Mapping[int, MapContent]) -> tuple[list[MapContent], dict[int, FramePose]]:
-    """Return the maps to be shown, moved, and where each robot's frame lies among them.
-
-    ValueError: one is malformed.
-    """
+    """Return the maps to be shown, moved, and where each robot's frame lies among them."""
     maps, there = list[MapContent](), dict[int, FramePose]()
-    known = {robot: np.count_nonzero(classes_of(each) != UNKNOWN) for robot, each in told.items()}
     right = None
-    for leader in sorted(told, key=lambda robot: (-known[robot], robot)):
+    for leader in sorted(told):
         if leader in there:
             continue
         each = told[leader]
