@@ -1,7 +1,8 @@
 """Reports of robots that may share no frame, laid out for somebody who does not know the truth.
 
-Of those that are joined, the map of the first one is shown, in its frame, in which orders' places lie that name
-no other; and the others where it takes them to be. Whoever is not joined with them is shown beside, on a part of the plane of its own.
+Of those that are joined, the map of the first one is shown, in its frame, in which places of orders lie that
+name no other; and the others where it takes them to be. Whoever is not joined with them is shown beside, on a
+part of the plane of its own.
 """
 
 from __future__ import annotations
