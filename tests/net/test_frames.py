@@ -322,7 +322,7 @@ def test_frames_are_found_again_through_loss_partition_kill_and_restart_and_noth
 
 def test_robots_whose_files_differ_in_frames_or_in_rendezvous_differ_in_terms() -> None:
     lattice = ExploreOptions(frames="unknown").lattice_on(WORLD.frame)
-    ways = [{"frames": "known"}, {"frames": "unknown"}, {"frames": "unknown", "rendezvous": False}]
+    ways = [{"frames": "known"}, {"frames": "unknown"}, {"frames": "unknown", "rendezvous": True}]
     terms = [terms_of(lattice, ExploreOptions(**way)) for way in ways]  # type: ignore[arg-type]
     assert len({tuple(sorted(each.items())) for each in terms}) == 3
     assert terms[0].keys() <= terms[1].keys()
