@@ -162,8 +162,7 @@ fn py_best_tour<'py>(
     legs: PyReadonlyArray2<'py, f32>,
     current: PyReadonlyArray1<'py, i64>,
     max_stops: usize,
-    turning: (f64, f64),
-    end_price: (f64, f64),
+    (turning, end_price): ((f64, f64), (f64, f64)),
 ) -> PyResult<PyReply<'py>> {
     let stops = Stops {
         starts: starts.as_slice()?,

@@ -161,8 +161,7 @@ def best_tour(
     legs: NDArray[np.float32],
     current: NDArray[np.int64],
     max_stops: int,
-    turning: tuple[float, float],
-    end_price: tuple[float, float],
+    turning_and_end_price: tuple[tuple[float, float], tuple[float, float]],
 ) -> tuple[NDArray[np.int64], float, float]: ...
 def most_any_tour_adds(
     worth: _Worth,

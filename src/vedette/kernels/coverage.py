@@ -228,7 +228,8 @@ def best_tour(
         the tour, its marginal value less its price, and that of the present tour. To stay costs what the
         farthest single stop does.  docs/theory.md (V194)
     """
-    return _kernels.best_tour(*problem.arrays, current, max_stops, (stickiness, margin), problem.end_price)
+    terms = (stickiness, margin), problem.end_price
+    return _kernels.best_tour(*problem.arrays, current, max_stops, terms)
 
 
 def most_any_tour_adds(problem: TourProblem, max_stops: int) -> float:
