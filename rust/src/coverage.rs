@@ -162,7 +162,7 @@ fn py_best_tour<'py>(
     legs: PyReadonlyArray2<'py, f32>,
     current: PyReadonlyArray1<'py, i64>,
     max_stops: usize,
-    (turning, end_price): ((f64, f64), (f64, f64)),
+    turning_and_end_price: ((f64, f64), (f64, f64)),
 ) -> PyResult<PyReply<'py>> {
     let stops = Stops {
         starts: starts.as_slice()?,
@@ -175,6 +175,7 @@ fn py_best_tour<'py>(
     };
     let (worth, layer_weights) = (worth_of(&worth)?, layer_weights.as_slice()?);
     let (others, current) = ((others_keys.as_slice()?, others_misses.as_slice()?), current.as_slice()?);
+    let (turning, end_price) = turning_and_end_price;
     let price = EndPrice { linear: end_price.0, quadratic: end_price.1 };
     let reply =
         py.detach(|| best_tour(stops, &worth, layer_weights, others, current, max_stops, turning, price));

@@ -121,7 +121,7 @@ def test_a_mission_admits_what_its_own_robots_do_whatever_they_know_and_nothing_
     mission = explorer()
     mission.planner = replace(mission.planner, end_price=DEAR)
     most = DEAR.times(LN2 / mission.frame.resolution**2)
-    share = mission._frozen(mission.fusion).end_price.linear / most.linear
+    share = mission.freeze(0.0).end_price.linear / most.linear
     assert 0.0 <= share <= 1.0  # of the work left, that is known
     belief = replace(frozen(), end_price=most)
     robot = MappingPlatform(SPEC, max_stops=6)
