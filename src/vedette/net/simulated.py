@@ -22,6 +22,8 @@ from vedette.net.names import robot_name
 from vedette.sim.domain import Domain as Domain
 from vedette.sim.domains import domain_of as domain_of
 from vedette.sim.faults import StagedLinks, Timeline, load_faults
+from vedette.sim.framed import as_meant as as_meant
+from vedette.sim.framed import as_told as as_told
 from vedette.sim.framed import frames_of as frames_of
 from vedette.sim.own_body import OwnBody
 from vedette.sim.own_vehicle import OwnVehicle

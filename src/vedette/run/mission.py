@@ -153,7 +153,8 @@ class StepwiseMission(ABC, Generic[SnapshotT, StrategyT, ImpactT, ReportT]):
         """
         known: list[NoGo | Priority] = []
         for book in self.books:
-            known += [*book.all_of(NoGo), *book.all_of(Priority)]
+            areas: list[NoGo | Priority] = [*book.all_of(NoGo), *book.all_of(Priority)]
+            known += map(self._running.as_meant, areas)
         self._check_order(OrderAt(self.now, order), known)
         self._running.order(order)
 

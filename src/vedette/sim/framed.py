@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 
 from vedette.agent.effects import Drive, Motion, Route
 from vedette.agent.events import Event, Pose, Scan, Sensed
+from vedette.agent.orders import Order, OrderT, moved
 from vedette.align import FramePose
 from vedette.align.turned import turned
+from vedette.maps.transform import Transform
 from vedette.maps.world import World
 from vedette.missions.explore.own_map import OwnMap
 from vedette.sim.robots import Robots
@@ -28,6 +30,22 @@ def frames_of(robots: int, seed: int) -> list[FramePose]:
         FramePose.of(*map(float, rng.uniform((-AWAY, -AWAY, -math.pi), (AWAY, AWAY, math.pi))))
         for _ in range(robots)
     ]
+
+
+def as_told(order: Order, frames: Sequence[FramePose]) -> Order:
+    """Return an order of the world with its place in the frame of a robot; ``frames``: T_world_own."""
+    of = order.in_frame_of
+    return order if of is None else moved(order, _transform(frames[of].inverse()))
+
+
+def as_meant(order: OrderT, frames: Sequence[FramePose]) -> OrderT:
+    """Return an order that robots hold with its place in the world; one of a frame of nobody's as it is."""
+    of = order.in_frame_of
+    return order if of is None or of >= len(frames) else moved(order, _transform(frames[of]))
+
+
+def _transform(pose: FramePose) -> Transform:
+    return Transform.of(pose.x, pose.y, pose.angle)
 
 
 class FramedRobots(Robots):

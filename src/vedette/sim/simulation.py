@@ -19,7 +19,7 @@ from vedette.agent import Agent
 from vedette.agent.body import TICK
 from vedette.agent.effects import Drive, Fly, Job
 from vedette.agent.events import Event, JobDone, Ordered
-from vedette.agent.orders import Given, Order, encode
+from vedette.agent.orders import Given, Order, OrderT, encode
 from vedette.maps import GridFrame
 from vedette.maps.world import World
 from vedette.outcome import Agreement, Outcome
@@ -161,6 +161,10 @@ class Simulation:
 
     def as_told(self, order: Order) -> Order:
         """Return an order of this world as the operator gives it to the robots."""
+        return order
+
+    def as_meant(self, order: OrderT) -> OrderT:
+        """Return an order that robots hold as it is of this world."""
         return order
 
     def _give_orders(self) -> None:

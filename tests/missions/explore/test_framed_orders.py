@@ -10,12 +10,17 @@ import pytest
 
 from tests.support.small_missions import small_office
 from vedette.agent.orders import Given, LookThere, NoGo, Order, OrderBook, Pause, Priority, Recall
+from vedette.cli.windows import watched
 from vedette.errors import InputError
+from vedette.maps import UNKNOWN
+from vedette.maps.area import Area
 from vedette.maps.transform import Transform
 from vedette.missions.ordered import no_go_areas
 from vedette.outcome import Outcome
 from vedette.run import Explore
+from vedette.sim.explore.run import views
 from vedette.sim.orders import OrderAt
+from vedette.window.picture import picture
 
 WEST = ((0.0, 0.0), (3.0, 0.0), (3.0, 10.0), (0.0, 10.0))
 
@@ -76,6 +81,44 @@ def test_nobody_goes_where_nobody_may_once_it_is_known_whose_frame_lies_how() ->
     assert result.outcome in (Outcome.COMPLETE, Outcome.UNREACHED)
     beyond = result.frame.centres(np.flatnonzero(result.map.ravel() == 1))
     assert np.count_nonzero(beyond[:, 0] > 3.5) > 2000  # the rest has been explored
+
+
+@pytest.mark.parametrize("frame", [1, 2])
+def test_what_robots_hold_in_their_frames_is_told_counted_and_checked_where_it_is_in_the_world(
+    frame: int,
+) -> None:
+    order = NoGo(area="west", corners=WEST, frame=frame)
+    with ordered((0.0, order)) as mission:
+        while mission.now < 3.0:
+            mission.step()
+        (held,) = mission.books[0].all_of(NoGo)
+        assert not np.allclose(held.corners, WEST, atol=1.0)
+        for view in views(mission.simulation):
+            (told,) = view.sample.orders
+            assert isinstance(told, NoGo)
+            np.testing.assert_allclose(told.corners, WEST, atol=0.01)
+        assert mission.snapshot is not None
+        coverage = mission.snapshot.coverage
+        world, classes = mission.world, mission.map
+        counted = ~world.solid & ~Area(WEST).holds(world.frame)
+        known = np.count_nonzero((classes != UNKNOWN) & counted) / np.count_nonzero(counted)
+        assert coverage == pytest.approx(known, abs=0.05)
+        with pytest.raises(InputError, match="west"):
+            mission.order(LookThere(at=(1.5, 5.0)))
+        with pytest.raises(InputError, match="no robot 3"):
+            mission.order(LookThere(at=(9.0, 5.0), frame=3))
+
+
+def test_a_click_on_the_page_of_a_simulated_team_means_the_place_in_the_world_that_is_drawn_there() -> None:
+    place = (9.0, 5.0)
+    with ordered(max_time=100.0) as mission:
+        mission.step(400)
+        hub = watched(mission, "office")
+        assert mission.snapshot is not None
+        hub.show(picture(mission.scene, mission.snapshot))
+        assert hub.order({"order": "recall", "to": place, "robot": 2}, 0.0) == "given"
+        mission.run()
+        assert math.dist(mission.simulation.pose(1)[:2], place) < 0.6
 
 
 def test_a_robot_goes_where_another_ones_frame_says_as_soon_as_it_knows_that_frame() -> None:

@@ -6,12 +6,11 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 
-from vedette.agent.orders import Order, moved
 from vedette.align import FramePose
-from vedette.maps.transform import Transform
 from vedette.net.explore.content import MapContent, read_content
 from vedette.net.explore.plan import ExplorePlan
 from vedette.net.report import Condition
+from vedette.net.simulated import as_meant
 from vedette.record.explore.frames import FramesFound
 from vedette.record.explore.joins import JoinWatch, TrueFrame, Whereabouts
 from vedette.record.explore.turned import view_turned
@@ -47,15 +46,8 @@ class FramesSeen:
 
     def _with_orders(self, view: RobotView) -> RobotView:
         """Return a view whose orders name places of the world."""
-        orders = tuple(self._in_world(order) for order in view.sample.orders)
+        orders = tuple(as_meant(order, self._plan.frames) for order in view.sample.orders)
         return replace(view, sample=replace(view.sample, orders=orders))
-
-    def _in_world(self, order: Order) -> Order:
-        of = order.in_frame_of
-        if of is None or of >= self._plan.size:
-            return order
-        frame = self._plan.frames[of]
-        return moved(order, Transform.of(frame.x, frame.y, frame.angle))
 
     def look(self, now: float, views: Sequence[RobotView], living: Sequence[int]) -> FramesFound | None:
         """Return who is joined by now [s], as the first of the living that was heard says; None: nobody was.

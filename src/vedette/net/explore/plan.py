@@ -11,14 +11,13 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.agent.orders import Order, moved
+from vedette.agent.orders import Order
 from vedette.align import FramePose
 from vedette.maps.lattice import Lattice
-from vedette.maps.transform import Transform
 from vedette.maps.world import World
 from vedette.missions.explore.options import ExploreOptions
 from vedette.net.config import OF_BODY
-from vedette.net.simulated import frames_of
+from vedette.net.simulated import as_told, frames_of
 from vedette.team import PlatformSpec
 
 
@@ -53,11 +52,7 @@ class ExplorePlan:
 
     def as_told(self, order: Order) -> Order:
         """Return an order with its place in the frame of a robot, if all have frames of their own."""
-        of = order.in_frame_of
-        if of is None or not self.frames:
-            return order
-        back = self.frames[of].inverse()
-        return moved(order, Transform.of(back.x, back.y, back.angle))
+        return as_told(order, self.frames) if self.frames else order
 
     def write(self, folder: Path) -> None:
         """Write the world that the robots are simulated in."""

@@ -178,5 +178,5 @@ def _sample(simulation: ExploreSimulation, i: int, ways: bool) -> RobotSample:
         *(x, y, heading, state(simulation, i), alive, path, name, goal),
         tour=tour,
         way_left=budget.left if budget.limited else None,
-        orders=tuple(given.order for given in simulation.network.agents[i].orders.all),
+        orders=tuple(simulation.as_meant(given.order) for given in simulation.network.agents[i].orders.all),
     )

@@ -12,19 +12,18 @@ from numpy.typing import NDArray
 
 from vedette.agent import Agent, GroundBehaviour
 from vedette.agent.driving import Driver
-from vedette.agent.orders import Order, moved
+from vedette.agent.orders import Order, OrderT
 from vedette.agent.state import State
 from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.planners import DEFAULT
 from vedette.domains.mapping.prior import PriorMap
-from vedette.maps.transform import Transform
 from vedette.maps.world import World
 from vedette.missions.explore.assemble import assemble
 from vedette.missions.explore.exploring import Exploring
 from vedette.missions.explore.options import ExploreOptions
 from vedette.missions.explore.own_map import OwnMap
 from vedette.outcome import NO_PROGRESS, Outcome
-from vedette.sim.framed import FramedRobots, frames_of
+from vedette.sim.framed import FramedRobots, as_meant, as_told, frames_of
 from vedette.sim.robots import Robots
 from vedette.sim.setup import Setup
 from vedette.sim.simulation import Simulation, random_streams
@@ -113,11 +112,13 @@ class ExploreSimulation(Simulation):
 
     def as_told(self, order: Order) -> Order:
         """Return an order with its place in the frame of a robot, if all have frames of their own."""
-        of = order.in_frame_of
-        if of is None or not isinstance(self.robots, FramedRobots):
-            return order
-        back = self.robots.frames[of].inverse()
-        return moved(order, Transform.of(back.x, back.y, back.angle))
+        robots = self.robots
+        return as_told(order, robots.frames) if isinstance(robots, FramedRobots) else order
+
+    def as_meant(self, order: OrderT) -> OrderT:
+        """Return an order that robots hold with its place in the world."""
+        robots = self.robots
+        return as_meant(order, robots.frames) if isinstance(robots, FramedRobots) else order
 
     def held(self, robots: Sequence[int]) -> list[int]:
         """Return the digests of their maps."""
