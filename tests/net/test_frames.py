@@ -8,6 +8,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,8 @@ from tests.support.net_team import real_time
 from tests.support.small_missions import robots, small_office
 from vedette.agent.effects import Drive, Route
 from vedette.agent.events import Pose, Scan
-from vedette.agent.orders import LookThere, NoGo, Pause, Priority, Recall
+from vedette.agent.orders import LookThere, NoGo, Order, Pause, Priority, Recall
+from vedette.agent.orders import decode as decode_order
 from vedette.align import FramePose
 from vedette.errors import InputError
 from vedette.maps import FREE, OCCUPIED, GridFrame
@@ -29,11 +31,12 @@ from vedette.missions.explore.options import ExploreOptions
 from vedette.net.config import load_config
 from vedette.net.explore.content import FramesTold, PlacedTold, content
 from vedette.net.explore.frames import FramesSeen
-from vedette.net.explore.picture import picture_of
+from vedette.net.explore.picture import ExploreOnlooker, picture_of
 from vedette.net.explore.plan import ExplorePlan
 from vedette.net.explore.watch import unheard
-from vedette.net.orders import Gate, explorer_judge
-from vedette.net.report import Condition, Report, encode, read_report
+from vedette.net.feed import TeamFeed
+from vedette.net.orders import TAKEN, Gate, explorer_judge
+from vedette.net.report import Condition, OrderReport, Report, encode, read_report
 from vedette.record.explore.joins import JoinWatch, TrueFrame, Whereabouts
 from vedette.record.explore.views import RobotView
 from vedette.sim.own_body import OwnBody
@@ -211,6 +214,60 @@ def test_who_is_joined_is_shown_on_one_map_and_who_is_not_beside_it() -> None:
     assert third.x == pytest.approx(1.0 + 2.0 + 2.0)  # beside a map of 2 m, 2 m away
     assert scene.frame.cols == 20 + 20 + 20
     assert np.count_nonzero(snapshot.classes) == 50 + 30
+
+
+def shown_apart(orders: tuple[OrderReport, ...] = ()) -> dict[int, Report]:
+    """Robots 0 and 1, who are joined, and 2 beside them: its frame is drawn 4 m to the right."""
+    quarter = Transform(4000, 0, 1 << 14)
+    graph = placed(0, 9, (0, 9)), placed(1, 8, (0, 9), quarter), placed(2, 7, (2, 7))
+    reports = {0: report(0, 9, 50, graph), 1: report(1, 8, 20, graph), 2: report(2, 7, 30, graph)}
+    first = structs.replace(reports[0].condition, orders=orders, mission="m")
+    return reports | {0: structs.replace(reports[0], condition=first)}
+
+
+@pytest.mark.parametrize(
+    ("clicked", "told"),
+    [
+        (LookThere(at=(1.5, 0.5), robot=2), LookThere(at=(1.5, 0.5), robot=2, frame=1)),
+        (LookThere(at=(5.5, 0.5), robot=3), LookThere(at=(1.5, 0.5), robot=3, frame=3)),
+        (LookThere(at=(5.5, 0.5)), LookThere(at=(1.5, 0.5), frame=3)),
+        (Recall(to=(-3.0, 0.5), robot=2), Recall(to=(-3.0, 0.5), robot=2, frame=1)),
+        (
+            NoGo(area="a", corners=((2.5, 0.0), (6.5, 0.0), (6.5, 1.0))),
+            NoGo(area="a", corners=((-1.5, 0.0), (2.5, 0.0), (2.5, 1.0)), frame=3),
+        ),
+        (Priority(area="a", corners=((0.0, 0.0), (1.0, 0.0), (1.0, 1.0)), frame=2), None),
+        (Recall(robot=2), None),
+        (Pause(robot=2), None),
+    ],
+)
+def test_an_order_from_a_picture_carries_the_frame_that_is_drawn_where_its_place_is(
+    clicked: Order, told: Order | None, tmp_path: Path
+) -> None:
+    given: list[bytes] = []
+    operator: Any = SimpleNamespace(
+        subscribe=lambda *what: None, order=lambda data: given.append(data) or {0: TAKEN}
+    )
+    access: Any = SimpleNamespace(credentials=None)
+    feed = TeamFeed(operator, access, ExploreOnlooker("office"), tmp_path)
+    feed.hearing.reports.update(shown_apart())
+    assert feed.give(clicked) == "taken by robot-1"
+    assert decode_order(given[0]).order == (told or clicked)
+
+
+def test_orders_are_drawn_where_their_frames_are_and_what_nobody_knows_is_not() -> None:
+    corners = ((0.0, 0.0), (1.0, 0.0), (1.0, 2.0))
+    orders = (
+        NoGo(area="a", corners=corners, frame=2),
+        NoGo(area="b", corners=corners, frame=4),
+        Pause(robot=1),
+    )
+    held = tuple(OrderReport(n, "operator", order) for n, order in enumerate(orders))
+    _, snapshot = picture_of("office", shown_apart(held), {})
+    area, pause = snapshot.robots[0].orders
+    assert isinstance(area, NoGo)
+    np.testing.assert_allclose(area.corners, ((4.0, 0.0), (4.0, 1.0), (2.0, 1.0)), atol=0.01)  # by hand
+    assert pause == Pause(robot=1)
 
 
 def condition(robot: int, boot: int, each: Report) -> Condition:

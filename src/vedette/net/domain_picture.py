@@ -9,6 +9,7 @@ import msgspec
 import numpy as np
 
 from vedette import wire
+from vedette.agent.orders import Order
 from vedette.missions.flights import FlightCase
 from vedette.net.domain import AnyDomain
 from vedette.net.gather import UNHEARD, now_of, sample_of, vehicle_name
@@ -58,6 +59,10 @@ class DomainOnlooker:
                     VehicleSample(*self._case.scenario.vehicles[i].pose, UNHEARD, True, np.empty((0, 2)))
                 )
         return self._scene, self._domain.seen(now_of(reports), vehicles, self._told[1])
+
+    def as_drawn(self, order: Order, reports: Mapping[int, Report]) -> Order:
+        """Return an order as it is: all share a frame."""
+        return order
 
     def draw(self, scene: Any, snapshot: Any, beside: Beside) -> Picture:
         """Return it as the page shows it."""

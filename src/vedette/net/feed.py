@@ -45,6 +45,13 @@ class Onlooker(Protocol[SceneT, SnapshotT]):
             ValueError: a report is malformed.
         """
 
+    def as_drawn(self, order: Order, reports: Mapping[int, Report]) -> Order:
+        """Return an order, whose places were taken from the picture, with the frame that they are drawn in.
+
+        Raises:
+            ValueError: a report is malformed.
+        """
+
     def draw(self, scene: SceneT, snapshot: SnapshotT, beside: Beside) -> Picture:
         """Return it as the page shows it."""
 
@@ -84,9 +91,13 @@ class TeamFeed:
             return None
 
     def give(self, order: Order) -> str:
-        """Give the team an order, and say what has come of it."""
-        told = [report.condition for report in list(self.hearing.reports.values())]
-        return self._giving.give(order, told)
+        """Give the team an order with places as the picture shows them, and say what has come of it."""
+        reports = dict(sorted(self.hearing.reports.items()))
+        try:
+            order = self._onlooker.as_drawn(order, reports)
+        except ValueError as error:
+            return f"refused: {error}"
+        return self._giving.give(order, [report.condition for report in reports.values()])
 
     def follow(self, hub: Hub, ended: threading.Event, served: FoxgloveServer | None = None) -> None:
         """Show the team until it has ended; ``served``: in Foxglove as well."""

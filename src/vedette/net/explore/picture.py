@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from vedette.agent.orders import Order
 from vedette.align import FramePose
 from vedette.domains.mapping.leftovers import Leftover
-from vedette.net.explore.apart import side_by_side
+from vedette.net.explore.apart import Apart, orders_drawn
 from vedette.net.explore.content import MapContent, read_content, sample_of
 from vedette.net.explore.reported import ReportedMaps
 from vedette.net.gather import links_among, vehicle_name
@@ -45,6 +46,11 @@ class ExploreOnlooker:
         """Return the map that they hold, where they are and where they go."""
         return picture_of(self.team, reports, states, self.name, self.maps)
 
+    def as_drawn(self, order: Order, reports: Mapping[int, Report]) -> Order:
+        """Return an order with the frame that its place is drawn in, where robots share none."""
+        contents = {robot: read_content(report.content) for robot, report in reports.items()}
+        return Apart.of(contents).as_drawn(order) if _share_no_frame(contents.values()) else order
+
     def draw(self, scene: ExploreScene, snapshot: ExploreSnapshot, beside: Beside) -> Picture:
         """Return it as the page shows it."""
         return picture(scene, snapshot, beside)
@@ -75,8 +81,9 @@ def picture_of(
     """
     contents = [read_content(report.content) for report in reports.values()]
     shown, there = contents, dict[int, FramePose]()
-    if any(each.found.graph for each in contents):
-        shown, there = side_by_side(dict(zip(reports, contents, strict=True)))
+    if _share_no_frame(contents):
+        apart = Apart.of(dict(zip(reports, contents, strict=True)))
+        shown, there = apart.maps, apart.there
     ground = (maps or ReportedMaps()).of(shown)
     names = tuple(map(name, reports))
     scene = ExploreScene(name=team, vehicles=names, frame=ground.frame, planning=ground.planning)
@@ -85,7 +92,7 @@ def picture_of(
         t=max((lasted(each) for each in told), default=0.0),
         robots=tuple(
             replace(
-                _sample(report, states.get(robot), content, name(robot), there.get(robot)),
+                _sample(report, states.get(robot), content, name(robot), there),
                 trust=_trust(robot, told, name),
             )
             for (robot, report), content in zip(reports.items(), contents, strict=True)
@@ -116,12 +123,17 @@ def _trust(robot: int, told: Sequence[Condition], name: Callable[[int], str]) ->
     return "believed" if any(each.signs for each in told) else ""
 
 
+def _share_no_frame(contents: Iterable[MapContent]) -> bool:
+    return any(each.found.graph for each in contents)
+
+
 def _sample(
-    report: Report, state: str | None, content: MapContent, name: str, there: FramePose | None
+    report: Report, state: str | None, content: MapContent, name: str, there: Mapping[int, FramePose]
 ) -> RobotSample:
     sample = sample_of(report.condition, content, name)
-    if there is not None:
-        sample = sample_turned(sample, there)
+    if report.condition.robot in there:
+        sample = sample_turned(sample, there[report.condition.robot])
+        sample = replace(sample, orders=orders_drawn(sample.orders, there))
     return replace(sample, state=state or report.condition.state, alive=state is None)
 
 

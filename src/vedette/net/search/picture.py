@@ -8,6 +8,7 @@ from math import nan
 
 import numpy as np
 
+from vedette.agent.orders import Order
 from vedette.missions.search.case import SearchCase
 from vedette.net.gather import UNHEARD, now_of, vehicle_name
 from vedette.net.report import Report
@@ -70,6 +71,10 @@ class SearchOnlooker:
             declared=None if declared is None else (declared[1].x, declared[1].y),
         )
         return self._scene, snapshot
+
+    def as_drawn(self, order: Order, reports: Mapping[int, Report]) -> Order:
+        """Return an order as it is: all share a frame."""
+        return order
 
     def draw(self, scene: SearchScene, snapshot: SearchSnapshot, beside: Beside) -> Picture:
         """Return it as the page shows it."""

@@ -9,6 +9,7 @@ from math import nan
 import numpy as np
 
 from vedette.agent.flight import step_of
+from vedette.agent.orders import Order
 from vedette.domains.tracking.filter import predict
 from vedette.missions.track.scenario import TrackScenario
 from vedette.net.gather import UNHEARD, now_of, vehicle_name
@@ -72,6 +73,10 @@ class TrackOnlooker:
             squared_error=nan,
         )
         return self._scene, snapshot
+
+    def as_drawn(self, order: Order, reports: Mapping[int, Report]) -> Order:
+        """Return an order as it is: all share a frame."""
+        return order
 
     def draw(self, scene: TrackScene, snapshot: TrackSnapshot, beside: Beside) -> Picture:
         """Return it as the page shows it."""
