@@ -14,7 +14,7 @@ from vedette.align import Alignment, Charted, FramePose, align
 from vedette.align.agreement import middles
 from vedette.align.candidates import FINELY, weighed
 from vedette.align.fitted import fitted
-from vedette.align.verdict import STEADY, JoinRule, bare
+from vedette.align.verdict import STEADY, JoinRule, JoinVerdict, bare, judged
 from vedette.fusion.frame_edges import EdgeKind, FrameEdge
 from vedette.fusion.link import Key
 from vedette.maps.transform import Transform
@@ -27,11 +27,13 @@ LIKELY = 0.5  # that the best places of two maps, refused, have the right one am
 VERSIONS = 3  # of both maps in a row, for which the rule has to hold, at one pose
 LEAST = 15.0  # ground that a map has before it is looked at [m^2]
 GROWN, GROWN_LITTLE = 1.2, 1.03  # more of both, before they are looked at again; after the rule has held [1]
+SETTLED = 20.0, 1.01  # so long, and no more of both than this, and two maps are judged as saved ones [s, 1]
 FITTED_AGAIN = 1.15  # more of both, before a join is fitted anew [1] ...
 FITTED_AFTER = 20.0  # ... or so long, where either has changed: a SLAM bends its map [s]
 MOVED = 0.02, math.radians(0.1)  # a fit this near to what is told already is no news [m, rad]
 WHERE_JOINED = JoinRule(rivalry=1.0, lead=0.0, same=8.0, common=8.0)  # of maps that others' edges join
 BESIDE = 0.5, math.radians(3.0)  # and how far from where those say they may fit [m, rad]
+SEED = 0  # of what is left out of maps that are judged
 EVERY = 2.0  # a robot looks at a pair [s]
 
 Pair = tuple[Key, Key]
@@ -45,6 +47,16 @@ class _Attempts:
     versions: int = 0  # of both, then
     when: float = 0.0  # [s]
     held: list[FramePose] = field(default_factory=list)  # poses, since the rule holds
+    grown: tuple[float, float] = 0.0, 0.0  # of both, when they had grown last [m^2], and when [s]
+    judged: tuple[Charted, Charted] | None = None  # as saved maps, the latest
+
+    def settled(self, a: Charted, b: Charted, now: float) -> bool:
+        """Tell whether neither map has grown for a while, and they have not been judged as they are."""
+        ground, (before, since) = _ground(a) + _ground(b), self.grown
+        if ground > SETTLED[1] * before:
+            self.grown = ground, now
+            return False
+        return now >= since + SETTLED[0] and not (self.judged and all(map(_is_same, self.judged, (a, b))))
 
 
 @dataclass
@@ -74,16 +86,21 @@ class Matcher:
                 continue
             there = _between(graph, *pair)
             attempts = self._attempts.setdefault(pair, _Attempts())
+            settled = attempts.settled(a, b, now) and there is None and pair not in self.found
             ground, versions = _ground(a) + _ground(b), self.charts.versions(*pair)
             steady = there is not None and pair in self.found
             grown = FITTED_AGAIN if steady else GROWN_LITTLE if there or attempts.held else GROWN
             bent = there is not None and now >= attempts.when + FITTED_AFTER and versions > attempts.versions
-            if ground < grown * attempts.ground and not bent:
+            due = bent or ground >= grown * attempts.ground
+            if not due and not settled:
                 continue
             attempts.ground, attempts.versions, attempts.when = ground, versions, now
             self._at_work = True
             if there is not None:
                 return partial(self._fit, pair, a, b, there)
+            if not due:
+                attempts.grown, attempts.judged = (attempts.grown[0], now), (a, b)
+                return partial(self._judge, pair, a, b)
             return partial(self._look, pair, a, b)
         return None
 
@@ -96,7 +113,9 @@ class Matcher:
     def drop(self, pair: Pair) -> None:
         """Take an edge back that evidence has come to contradict; the pair is looked at anew."""
         self.found.pop(pair, None)
-        self._attempts.pop(pair, None)
+        before = self._attempts.pop(pair, None)
+        if before is not None:  # what has been judged is not judged again
+            self._attempts[pair] = _Attempts(grown=before.grown, judged=before.judged)
         self.refused["taken back"] += 1
 
     def _mine(self, graph: Graph, living: Collection[int]) -> Iterator[Pair]:
@@ -130,6 +149,19 @@ class Matcher:
         attempts.held.append(best.pose)
         if len(attempts.held) >= VERSIONS:
             self.found[pair] = _edge(pair, best.pose, best.same)
+
+    def _judge(self, pair: Pair, a: Charted, b: Charted) -> None:
+        """Judge two maps that do not grow as saved ones are, for which no more versions are to come."""
+        verdict = judged(a, b, SEED)
+        self._done.append(lambda: self._take(pair, verdict))
+
+    def _take(self, pair: Pair, verdict: JoinVerdict) -> None:
+        self.looked += 1
+        if verdict.joined is not None:
+            self.found[pair] = _edge(pair, verdict.joined.pose, verdict.joined.same)
+        elif verdict.doubt is not None:
+            self.refused[_kind(verdict.doubt)] += 1
+            self._guess(pair, verdict.alignment)
 
     def _guess(self, pair: Pair, alignment: Alignment) -> None:
         """Tell where the maps of a pair fit best, if that is somewhere at all."""
@@ -166,6 +198,10 @@ def _between(graph: Graph, a: Key, b: Key) -> Transform | None:
 
 def _edge(pair: Pair, pose: FramePose, same: float) -> FrameEdge:
     return FrameEdge(*pair, Transform.of(pose.x, pose.y, pose.angle), round(100.0 * same))
+
+
+def _is_same(one: Charted, other: Charted) -> bool:
+    return one.frame == other.frame and np.array_equal(one.classes, other.classes)
 
 
 def _ground(chart: Charted) -> float:
