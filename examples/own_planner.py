@@ -11,7 +11,8 @@ from vedette.domains.mapping import layers
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.planners import Planner
-from vedette.domains.mapping.platform import MappingPlatform, Tour
+from vedette.domains.mapping.platform import MappingPlatform
+from vedette.domains.mapping.tour import Tour
 
 
 class SidesPlatform(MappingPlatform):

@@ -14,7 +14,7 @@ from bench.crowds import Crowd, CrowdResult, crowds, crowds_table
 from bench.idleness import Idleness
 from tests.support.schemas import valid
 from tests.support.small_missions import begun
-from vedette.domains.mapping.platform import STAY
+from vedette.domains.mapping.tour import STAY
 from vedette.errors import InputError
 from vedette.sim.explore.run import views
 from vedette.sim.explore.simulation import ExploreSimulation

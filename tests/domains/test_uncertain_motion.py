@@ -15,7 +15,8 @@ from vedette import InputError, Tree, negotiate
 from vedette.domains.mapping import layers
 from vedette.domains.mapping.impact import NOTHING
 from vedette.domains.mapping.objective import MappingObjective
-from vedette.domains.mapping.platform import STAY, MappingPlatform
+from vedette.domains.mapping.platform import MappingPlatform
+from vedette.domains.mapping.tour import STAY
 from vedette.domains.search import worth
 from vedette.domains.search.belief import SearchBelief, TargetPdf, freeze
 from vedette.domains.search.detectors import DefiniteRange

@@ -22,7 +22,8 @@ from tests.support.track_scenes import flown, scenario
 from vedette import Coverage, InputError
 from vedette.domains.mapping import impact as mapping
 from vedette.domains.mapping.objective import MappingObjective
-from vedette.domains.mapping.platform import STAY, MappingPlatform
+from vedette.domains.mapping.platform import MappingPlatform
+from vedette.domains.mapping.tour import STAY
 from vedette.domains.mapping.views import MOST_STOPS
 from vedette.domains.search import impact as search
 from vedette.domains.search import worth

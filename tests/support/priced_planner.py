@@ -12,8 +12,9 @@ from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.planners import HIDDEN_AREA, RETURN_PRICE, Planner
-from vedette.domains.mapping.platform import STAY, MappingPlatform, Tour
+from vedette.domains.mapping.platform import MappingPlatform
 from vedette.domains.mapping.price import EndPrice
+from vedette.domains.mapping.tour import STAY, Tour
 from vedette.team import PlatformSpec
 
 LONGEST = 3  # stops

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from vedette.agent.orders import NoGo, Priority
 from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.planners import DEFAULT
-from vedette.domains.mapping.platform import Tour
+from vedette.domains.mapping.tour import Tour
 from vedette.errors import InputError
 from vedette.maps import GridFrame
 from vedette.maps.area import Area

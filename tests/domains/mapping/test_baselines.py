@@ -27,8 +27,9 @@ from vedette.domains.mapping.belief import LN2, MapBelief
 from vedette.domains.mapping.impact import NOTHING, Impact
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.planners import PLANNERS, planner
-from vedette.domains.mapping.platform import HYSTERESIS, STAY, STICKINESS, MappingPlatform, Tour
+from vedette.domains.mapping.platform import HYSTERESIS, STICKINESS, MappingPlatform
 from vedette.domains.mapping.stops import CLEARANCES
+from vedette.domains.mapping.tour import STAY, Tour
 from vedette.errors import InputError
 from vedette.kernels.coverage import LAYERS
 from vedette.kernels.distance import distance_field

@@ -12,9 +12,10 @@ from tests.support.mapping_scenes import CORRIDOR, FRAME, SPEC, explored, frozen
 from vedette.domains.mapping import layers
 from vedette.domains.mapping.belief import LN2, MapBelief, freeze, planning_factor
 from vedette.domains.mapping.impact import NOTHING
-from vedette.domains.mapping.platform import STAY, MappingPlatform
+from vedette.domains.mapping.platform import MappingPlatform
 from vedette.domains.mapping.sightings import empty_counts
 from vedette.domains.mapping.stops import block
+from vedette.domains.mapping.tour import STAY
 from vedette.kernels.reference.coverage import dense
 from vedette.maps import FREE, UNKNOWN, GridFrame
 

@@ -25,7 +25,7 @@ from vedette.domains.mapping.outlook import (
     promises,
 )
 from vedette.domains.mapping.planners import DEFAULT, PLANNERS, planner
-from vedette.domains.mapping.platform import LEAST_AREA, LEFT_ALONE, STAY, MappingPlatform
+from vedette.domains.mapping.platform import LEAST_AREA, LEFT_ALONE, MappingPlatform
 from vedette.domains.mapping.price import EndPrice
 from vedette.domains.mapping.sightings import empty_counts, measured_model
 from vedette.domains.mapping.stops import (
@@ -37,6 +37,7 @@ from vedette.domains.mapping.stops import (
     find_stops,
     survey,
 )
+from vedette.domains.mapping.tour import STAY
 from vedette.domains.mapping.views import look
 from vedette.kernels.coverage import LAYERS, CellWeights, Footprints, TourProblem, best_tour
 from vedette.kernels.frontier import find_frontiers

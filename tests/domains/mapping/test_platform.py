@@ -13,8 +13,9 @@ from vedette.domains.mapping import views
 from vedette.domains.mapping.impact import NOTHING, Impact
 from vedette.domains.mapping.layers import TimeLayers, plain, rate
 from vedette.domains.mapping.objective import MappingObjective
-from vedette.domains.mapping.platform import LEFT_ALONE, STAY, STICKINESS, MappingPlatform, Tour
+from vedette.domains.mapping.platform import LEFT_ALONE, STICKINESS, MappingPlatform
 from vedette.domains.mapping.stops import Stops, nearest_view, unknown_near
+from vedette.domains.mapping.tour import STAY, Tour
 from vedette.kernels import coverage
 from vedette.kernels.coverage import LAYERS
 from vedette.maps import FREE, OCCUPIED, UNKNOWN

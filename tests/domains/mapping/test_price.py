@@ -23,8 +23,9 @@ from vedette.domains.mapping.impact import (
 )
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.planners import planner
-from vedette.domains.mapping.platform import STAY, MappingPlatform
+from vedette.domains.mapping.platform import MappingPlatform
 from vedette.domains.mapping.price import FREE, LATEST, EndPrice
+from vedette.domains.mapping.tour import STAY
 from vedette.errors import InputError
 from vedette.kernels.coverage import LAYERS
 from vedette.testing import check_objective

@@ -8,8 +8,9 @@ import pytest
 from tests.support.mapping_scenes import CORRIDOR, FRAME, SPEC, explored, frozen, placed
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.impact import NOTHING
-from vedette.domains.mapping.platform import STAY, MappingPlatform
+from vedette.domains.mapping.platform import MappingPlatform
 from vedette.domains.mapping.stops import CLEARANCES
+from vedette.domains.mapping.tour import STAY
 from vedette.domains.mapping.yardsticks import STICK, BurgardPlatform, NearestPlatform
 from vedette.kernels.distance import distance_field
 from vedette.kernels.frontier import traversable

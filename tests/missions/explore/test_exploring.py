@@ -16,9 +16,9 @@ from vedette.agent.events import Pose
 from vedette.agent.mates import Mate
 from vedette.domains.mapping import views
 from vedette.domains.mapping.planners import planner
-from vedette.domains.mapping.platform import STAY
 from vedette.domains.mapping.sightings import BINS
 from vedette.domains.mapping.stops import CLEARANCES
+from vedette.domains.mapping.tour import STAY
 from vedette.fusion import ReplicatedEvidence
 from vedette.kernels.frontier import traversable
 from vedette.kernels.tiles import TiledGrid

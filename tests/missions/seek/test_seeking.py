@@ -13,9 +13,9 @@ from tests.support.small_missions import TWO_ROOMS, drawn, robots, small_maze, s
 from vedette import InputError, run
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.planners import DEFAULT, PLANNERS
-from vedette.domains.mapping.platform import STAY
 from vedette.domains.mapping.price import EndPrice
 from vedette.domains.mapping.sightings import BINS
+from vedette.domains.mapping.tour import STAY
 from vedette.domains.search.evidence import LEVELS_PER_NAT
 from vedette.kernels import coverage
 from vedette.maps import FREE, OCCUPIED, UNKNOWN

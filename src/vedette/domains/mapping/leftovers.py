@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.domains.mapping.belief import MapBelief
-from vedette.domains.mapping.platform import GivenUp, MappingPlatform
+from vedette.domains.mapping.given_up import GivenUp
+from vedette.domains.mapping.platform import MappingPlatform
 from vedette.domains.mapping.stops import (
     CLEARANCES,
     LEFT_ALONE,

@@ -16,9 +16,10 @@ from vedette.domains.mapping.baselines.optimal import MOST_ROBOTS, OptimalPlatfo
 from vedette.domains.mapping.baselines.team import check_size
 from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.layers import TimeLayers
-from vedette.domains.mapping.platform import MappingPlatform, Tour
+from vedette.domains.mapping.platform import MappingPlatform
 from vedette.domains.mapping.price import FREE, EndPrice
 from vedette.domains.mapping.stops import Stops
+from vedette.domains.mapping.tour import Tour
 from vedette.domains.mapping.views import MOST_STOPS
 from vedette.domains.mapping.yardsticks import BurgardPlatform, NearestPlatform
 from vedette.errors import brief

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -12,8 +11,9 @@ from numpy.typing import NDArray
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.budget import WayLeft
 from vedette.domains.mapping.foreseen import LONG_TOUR, by_way_of_frontier, supposed, with_foreseen
-from vedette.domains.mapping.impact import NOTHING, Impact
-from vedette.domains.mapping.layers import STEP, TimeLayers
+from vedette.domains.mapping.given_up import GivenUp, Place, Visit
+from vedette.domains.mapping.impact import Impact
+from vedette.domains.mapping.layers import STEP
 from vedette.domains.mapping.price import FREE
 from vedette.domains.mapping.sightings import SightingModel, beam_model, measured_model
 from vedette.domains.mapping.stops import (
@@ -30,10 +30,9 @@ from vedette.domains.mapping.stops import (
     survey,
     unknown_near,
 )
+from vedette.domains.mapping.tour import STAY, Tour, on_the_way
 from vedette.domains.mapping.views import by_way, look
 from vedette.kernels import coverage
-from vedette.kernels.coverage import LAYERS, Footprints
-from vedette.kernels.misses import Keys, Misses
 from vedette.team import PlatformSpec
 
 LEAST_AREA = 0.08  # a stop must promise this much [m^2] ...
@@ -42,70 +41,8 @@ HYSTERESIS = 0.03  # a new strategy must gain this share more than the present o
 STICKINESS = 0.1  # to turn away from the stop under way must gain this share more
 WORTH_A_CHANGE, TURNING_BACK = 2.0, 3.0  # where the end of a tour has a price, so much must be saved [s]
 PATIENCE = 4  # times the usual work, if that finds nothing; twice as much each time that is not enough
-ELSEWHERE = 1.5  # who was in the way is so no longer when it is this far from where it was [m]
 SAME_PLACE = 1.2  # a frontier this near a stop of the last round is the same one [m]
-
-
-@dataclass(frozen=True, eq=False)
-class Tour:
-    """A strategy: the stops to visit, in order."""
-
-    targets: NDArray[np.float64]  # (L, 2) the frontiers' middles [m], team frame
-    views: NDArray[np.float64]  # (L, 2) where to stand [m], team frame
-    arrivals: NDArray[np.float64]  # (L,) after the round's t0 [s]
-    unknown: NDArray[np.int64]  # (L,) cells unknown near each frontier when planned
-    stops: NDArray[np.int64]  # (L,) index among the round's stops
-
-    def __len__(self) -> int:
-        return len(self.targets)
-
-    def __eq__(self, other: object) -> bool:
-        """Within a round, tours over the same stops are the same."""
-        return isinstance(other, Tour) and np.array_equal(self.stops, other.stops)
-
-    def __hash__(self) -> int:
-        return hash(self.stops.tobytes())
-
-    def after_first(self) -> Tour:
-        """Return the tour without its first stop."""
-        return Tour(self.targets[1:], self.views[1:], self.arrivals[1:], self.unknown[1:], self.stops[1:])
-
-
-def on_the_way(marks: Footprints, tour: Tour, layers: TimeLayers) -> tuple[Keys, Misses]:
-    """Return what a tour shows of what its stops do, each in the layer of its arrival."""
-    total = NOTHING.sparse
-    for stop, arrival in zip(tour.stops, tour.arrivals, strict=True):
-        row = slice(marks.starts[stop], marks.starts[stop + 1])
-        keys = marks.cells[row] * np.uint32(LAYERS) + np.uint32(layers.layer(arrival))
-        total = coverage.combine(*total, keys, marks.misses[row])
-    return total
-
-
 _NONE, _NOWHERE = np.empty(0, np.int64), np.empty((0, 2))
-STAY = Tour(_NOWHERE, _NOWHERE, np.empty(0), _NONE, _NONE)
-
-
-Place = tuple[int, float, float]  # of a robot: id, -1 the robot itself, and x, y [m]
-# Of a frontier: x, y [m], unknown cells near it when it was planned, from how far away it was looked at [m].
-Visit = tuple[float, float, int, float]
-
-
-@dataclass(frozen=True)
-class GivenUp:
-    """A frontier that a visit did not change: left alone until the map near it does."""
-
-    x: float
-    y: float
-    unknown: int  # cells unknown near it when it was given up
-    visited: bool = True  # otherwise it could not be reached
-    kept_off: tuple[Place, ...] = ()  # who stood about then: while they stand there it is not tried again
-
-    def stands(self, team: Sequence[Place]) -> bool:
-        """Tell whether all who stood about when it was given up are still there."""
-        now = {robot: (x, y) for robot, x, y in team}
-        return all(
-            robot in now and math.dist(now[robot], (x, y)) < ELSEWHERE for robot, x, y in self.kept_off
-        )
 
 
 @dataclass(eq=False)

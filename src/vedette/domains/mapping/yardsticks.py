@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from vedette.domains.mapping.baselines.team import STICK, TeamPlatform
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.impact import Impact
-from vedette.domains.mapping.platform import STAY, MappingPlatform, Tour
+from vedette.domains.mapping.platform import MappingPlatform
+from vedette.domains.mapping.tour import STAY, Tour
 
 __all__ = ["STICK", "BurgardPlatform", "NearestPlatform"]
 

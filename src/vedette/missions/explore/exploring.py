@@ -27,10 +27,11 @@ from vedette.domains.mapping.impact import Impact, MapImpactCodec, check_claim, 
 from vedette.domains.mapping.leftovers import Leftover, given_up, leftovers
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.planners import Planner
-from vedette.domains.mapping.platform import STAY, MappingPlatform, Tour
+from vedette.domains.mapping.platform import MappingPlatform
 from vedette.domains.mapping.prior import PriorMap
 from vedette.domains.mapping.sightings import BINS, pooled
 from vedette.domains.mapping.stops import NEARBY, VIEW_REACH, Disc, around
+from vedette.domains.mapping.tour import STAY, Tour
 from vedette.domains.mapping.views import MOST_STOPS
 from vedette.fusion import Fusion, ShownMap
 from vedette.fusion.signed import SignedEvidence

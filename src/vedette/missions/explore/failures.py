@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from vedette.domains.mapping.platform import SAME_PLACE, GivenUp, MappingPlatform, Place
+from vedette.domains.mapping.given_up import GivenUp, Place
+from vedette.domains.mapping.platform import SAME_PLACE, MappingPlatform
 from vedette.domains.mapping.stops import LEFT_ALONE
 
 AVOID_TIME = 10.0  # a stop that could not be carried out is left alone for so long, longer each time [s]

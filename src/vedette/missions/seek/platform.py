@@ -11,15 +11,10 @@ from numpy.typing import NDArray
 
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.impact import MapImpact
-from vedette.domains.mapping.platform import (
-    HYSTERESIS,
-    STICKINESS,
-    MappingPlatform,
-    Tour,
-    on_the_way,
-)
+from vedette.domains.mapping.platform import HYSTERESIS, STICKINESS, MappingPlatform
 from vedette.domains.mapping.sightings import SightingModel
 from vedette.domains.mapping.stops import LEFT_ALONE, Ground, Stops, legs_between
+from vedette.domains.mapping.tour import Tour, on_the_way
 from vedette.domains.search.belief import SearchBelief
 from vedette.domains.search.impact import quantise
 from vedette.kernels import coverage

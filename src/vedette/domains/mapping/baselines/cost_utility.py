@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from vedette.domains.mapping.baselines.team import STICK
 from vedette.domains.mapping.belief import LN2, MapBelief
 from vedette.domains.mapping.impact import Impact
-from vedette.domains.mapping.platform import STAY, MappingPlatform, Tour
+from vedette.domains.mapping.platform import MappingPlatform
 from vedette.domains.mapping.stops import Stops
+from vedette.domains.mapping.tour import STAY, Tour
 from vedette.kernels.misses import CERTAIN, STEPS_PER_NAT
 
 

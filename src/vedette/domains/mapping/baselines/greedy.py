@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.impact import Impact
-from vedette.domains.mapping.platform import STAY, MappingPlatform, Tour
+from vedette.domains.mapping.platform import MappingPlatform
+from vedette.domains.mapping.tour import STAY, Tour
 
 
 @dataclass(eq=False)

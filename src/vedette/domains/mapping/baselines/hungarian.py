@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from vedette.domains.mapping.baselines.team import TeamPlatform
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.impact import Impact
-from vedette.domains.mapping.platform import STAY, Tour
+from vedette.domains.mapping.tour import STAY, Tour
 
 
 @dataclass(eq=False)

@@ -11,7 +11,7 @@ from vedette.domains.mapping.baselines.routes import Graph, Routes, plan_routes
 from vedette.domains.mapping.baselines.team import STICK, TeamPlatform
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.impact import Impact
-from vedette.domains.mapping.platform import STAY, Tour
+from vedette.domains.mapping.tour import STAY, Tour
 
 
 @dataclass(eq=False)

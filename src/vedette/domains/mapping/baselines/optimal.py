@@ -13,7 +13,8 @@ from vedette.domains.mapping.baselines.team import TeamPlatform, check_size
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.impact import NOTHING, Impact
 from vedette.domains.mapping.objective import MappingObjective
-from vedette.domains.mapping.platform import HYSTERESIS, STAY, STICKINESS, Tour
+from vedette.domains.mapping.platform import HYSTERESIS, STICKINESS
+from vedette.domains.mapping.tour import STAY, Tour
 from vedette.kernels.coverage import LAYERS
 
 MOST_ROBOTS = 4  # joint choices multiply: 40 frontiers, four robots, 2.6 million

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.domains.mapping.belief import MapBelief
-from vedette.domains.mapping.platform import MappingPlatform, Tour
+from vedette.domains.mapping.platform import MappingPlatform
+from vedette.domains.mapping.tour import Tour
 from vedette.errors import InputError
 from vedette.kernels import distance
 
