@@ -22,6 +22,7 @@ from vedette.domains.mapping.baselines.greedy import GreedyPlatform
 from vedette.domains.mapping.planners import Planner
 from vedette.domains.mapping.platform import MappingPlatform
 from vedette.domains.mapping.price import FREE
+from vedette.errors import InputError
 from vedette.record.files import write_text
 from vedette.sim.explore.simulation import ExploreSetup
 from vedette.study.compare import difference, mean
@@ -123,11 +124,15 @@ def ablation(
     """Exchange the parts of the planner one at a time and print what each is worth.
 
     Missions that this code has carried out before are not carried out again; the table is of those that are
-    there. Exit status 0 if all missions ran, 1 if one broke or is still to do.
+    there. Exit status 0 if all missions ran, 1 if one broke or is still to do, 130 if it was interrupted.
     """
     end = math.inf if minutes is None else time.monotonic() + 60.0 * minutes
     planners.PLANNERS.update(variants())
-    names = [name for name in variants() if any(part.strip() in name for part in only.split(","))]
+    words = [word.strip() for word in only.split(",")]
+    for word in words:
+        if not any(word in name for name in variants()):
+            raise InputError(f"only: no part's name holds {word!r}; there are: {', '.join(variants())}")
+    names = [name for name in variants() if any(word in name for word in words)]
     runs = cases(seeds, robots, (WHOLE, *names))
     own = Path(__file__)
     code = fingerprint() + fingerprint(own.parent / "steps") + own.read_text(encoding="utf-8")
@@ -138,7 +143,7 @@ def ablation(
         text = f"{table(figure_rows(done.results))}\n{about}\n"
         write_text(out / "ablation.md", text)
         click.echo(text)
-    raise SystemExit(1 if done.broken or done.missing else 0)
+    raise SystemExit(command.status(done))
 
 
 if __name__ == "__main__":

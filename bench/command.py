@@ -11,6 +11,7 @@ import click
 
 from vedette.errors import InputError
 from vedette.record.files import output_directory
+from vedette.study.conduct import Conducted
 
 BAD_INPUT, INTERRUPTED = 2, 130
 _RANGE = re.compile(r"(\d{1,6})(?:-(\d{1,6}))?")
@@ -50,6 +51,13 @@ def results_folder(path: Path) -> Path:
         InputError: it cannot be made or written to.
     """
     return output_directory(path, force=True)
+
+
+def status(done: Conducted) -> int:
+    """Return the exit status of a study: 130 if it was interrupted, 1 if a run broke or is still to do."""
+    if done.interrupted:
+        return INTERRUPTED
+    return int(bool(done.broken or done.missing))
 
 
 def run(command: click.Command, name: str) -> NoReturn:

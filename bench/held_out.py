@@ -112,7 +112,7 @@ def held_out(
     """Let the default and the yardsticks explore: generated worlds, maps, buildings recorded in CARMEN logs.
 
     Missions that this code has carried out before are not carried out again; the table is of those that are
-    there. Exit status 0 if all missions ran, 1 if one broke or is still to do.
+    there. Exit status 0 if all missions ran, 1 if one broke or is still to do, 130 if it was interrupted.
     """
     end = math.inf if minutes is None else time.monotonic() + 60.0 * minutes
     store = Store.open(out, fingerprint(), files)
@@ -124,7 +124,7 @@ def held_out(
             text = f"{report(figure_rows(done.results))}\n{about} Commit: {machine.commit()}\n"
             write_text(out / "held-out.md", text)
             click.echo(f"\n{text}\nwritten: {out / 'held-out.md'}")
-    raise SystemExit(1 if done.broken or done.missing else 0)
+    raise SystemExit(command.status(done))
 
 
 if __name__ == "__main__":

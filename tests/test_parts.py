@@ -178,7 +178,7 @@ def test_the_example_of_a_planner_finishes_a_mission_by_its_module_and_by_an_ent
         ("DEAR", "platform: OSError: no licence left (own_part_{}.py, line 34)"),
         ("OTHER", "platform: TypeError: gives PlatformSpec; a MappingPlatform is asked for"),
         ("FLAT", " needs layers, a TimeLayers, and a platform that can be called"),
-        ("PRICED", "has 'much' as return_price, not a number >= 0"),
+        ("PRICED", "has 'much' as return_price, not a number from 0 to 1e+06"),
         ("FEWEST", "has 0 as most_robots, not a whole number > 0 or None"),
         ("LOST", "prepare: TypeError: leaves list in self.stops; Stops are asked for"),
         ("BARE", "platform: TypeError: its __init__ does not call that of MappingPlatform"),

@@ -45,9 +45,9 @@ def merge(maps: tuple[Path, ...], out: Path, resolution: float | None, force: bo
     inputs = [file for path in maps for file in map_files(merging.map_path(path))]
     with OutputFolder.make(out, force, "merge", inputs) as folder:
         summary = MergeSummary.told(names, merged.joined)
-        summary.write(folder / "merge.json")
+        _draw(names, merged, folder / "merge.png")  # takes a second or two: who interrupts it finds nothing
         write_map(folder / "map", merged.frame, merged.classes)
-        _draw(names, merged, folder / "merge.png")
+        summary.write(folder / "merge.json")
         lines = [*map(_line, summary.maps[1:]), f"map and picture: {folder.path}"]
     click.echo(summary.to_json() if as_json else "\n".join(lines), nl=not as_json)
 

@@ -189,7 +189,9 @@ def _closing(summary: ReplaySummary, folder: Path, measured: bool) -> str:
     for each in summary.buildings:
         team = many(len(each.robots), "robot")
         seen = many(each.maps, "map") if each.maps else many(each.scans, "scan")
-        agree = "" if len(each.robots) == 1 else ", all of one map" if each.agreed else ", their maps differ"
+        whole = each.frames is None or len(each.frames.components) == 1
+        agree = ", all of one map" if each.agreed and whole else "" if each.agreed else ", their maps differ"
+        agree = "" if len(each.robots) == 1 else agree
         lines.append(
             f"{each.log}: {seen} over {each.way_m:.0f} m, {each.known_m2:.0f} m2 known, "
             f"{each.free_m2:.0f} m2 free, {team}{agree}{_joined(each.frames)}"
@@ -202,5 +204,7 @@ def _joined(found: FramesFound | None) -> str:
     """Return who is joined, and how well."""
     if found is None:
         return ""
+    if all(len(names) == 1 for names in found.components):
+        return "" if len(found.components) == 1 else ", nobody joined"
     off = "" if found.error_m is None else f", {found.error_m:.2f} m off at most"
     return f", joined: {found.told}{off}"

@@ -117,6 +117,8 @@ def _time(each: OrderAt) -> float:
 
 def _order(told: dict[str, Any], where: str) -> OrderAt:
     what = {name: value for name, value in told.items() if name != "at"}
+    if what.get("order") == "look" and "to" in what:  # for in a file `at` is when
+        what["at"] = what.pop("to")
     at = {"at": told["at"]} if "at" in told else {}
     try:
         return as_scenario({**at, "what": what}, OrderAt, where)

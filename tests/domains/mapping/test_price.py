@@ -24,7 +24,7 @@ from vedette.domains.mapping.impact import (
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.planners import planner
 from vedette.domains.mapping.platform import MappingPlatform
-from vedette.domains.mapping.price import FREE, LATEST, EndPrice
+from vedette.domains.mapping.price import DEAREST, FREE, LATEST, EndPrice
 from vedette.domains.mapping.tour import STAY
 from vedette.errors import InputError
 from vedette.kernels.coverage import LAYERS
@@ -134,6 +134,14 @@ def test_a_mission_admits_what_its_own_robots_do_whatever_they_know_and_nothing_
     for price in (-1, most.of(LATEST) + 1):
         with pytest.raises(ValueError, match="has a price"):
             mission.admit(belief, replace(impact, price=price), 1)
+
+
+def test_a_price_beyond_all_measure_is_the_dearest_and_so_many_of_them_are_written() -> None:
+    codec = MapImpactCodec(4)
+    for price in (EndPrice(1e12, 1e12), EndPrice(1e300, 1e300)):
+        assert price.of(100.0) == DEAREST
+        many = Impact(NOTHING.keys, NOTHING.misses, 1024 * price.of(100.0))
+        assert codec.decode(codec.encode(many)) == many
 
 
 @pytest.mark.parametrize("wrong", [-1.0, float("nan"), float("inf"), True, "2"])

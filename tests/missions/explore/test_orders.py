@@ -294,3 +294,10 @@ def test_a_file_of_orders_is_read_in_order_of_time(tmp_path: Path) -> None:
     path = tmp_path / "orders.yaml"
     path.write_text("orders:\n  - {at: 9, order: resume}\n  - {at: 2.5, order: recall, to: [1, 2]}\n")
     assert load_orders(path) == (OrderAt(2.5, Recall(to=(1.0, 2.0))), OrderAt(9.0, Resume()))
+
+
+def test_in_a_file_where_to_look_is_told_as_where_to_drive(tmp_path: Path) -> None:
+    path = tmp_path / "orders.yaml"
+    path.write_text("orders:\n  - {at: 5, order: look, to: [3, 2.5]}\n")
+    (told,) = load_orders(path)
+    assert (told.at, told.what) == (5.0, LookThere(at=(3.0, 2.5)))

@@ -31,6 +31,7 @@ HIDDEN_AREA = 0.5  # expected behind a frontier [m^2]
 RETURN_PRICE = 0.3  # more for a frontier that somebody will have to come back for [m^2 a metre]
 WORLDS = 3  # of a planner that predicts; what it sends and works out grows with them
 MOST_WORLDS = 8
+LARGEST = 1e6  # area that a frontier may stand for [m^2], and price of a metre [m^2]
 
 
 @dataclass(frozen=True)
@@ -89,7 +90,7 @@ PLANNERS = {
     "information": _tours("information first; then tours of what was left behind", turn=1.4),
     "completion": _tours("completion first: tours, dearer to come back to what is left", return_price=2.0),
     "long": Planner(
-        "tours of all frontiers within reach, whose end has a price",
+        "tours of all frontiers within reach, whose end has a price; alone, a route",
         layers.fading(60.0, 10.0),
         lambda spec: MappingPlatform(spec, max_stops=MOST_STOPS, measured="unknown", foresees=True),
         hidden=HIDDEN_AREA,
@@ -162,8 +163,8 @@ def _wrong(part: Any) -> str | None:
         return f"has {brief(part.end_price)} as end_price, not an EndPrice"
     for name in ("hidden", "return_price", "turn"):
         value = getattr(part, name)
-        if not (is_number(value) and value >= 0.0) and not (name == "turn" and value == math.inf):
-            return f"has {brief(value)} as {name}, not a number >= 0"
+        if not (is_number(value) and 0.0 <= value <= LARGEST) and not (name == "turn" and value == math.inf):
+            return f"has {brief(value)} as {name}, not a number from 0 to {LARGEST:g}"
     if not (is_whole(part.worlds) and 1 <= part.worlds <= MOST_WORLDS):
         return f"has {brief(part.worlds)} as worlds, not a whole number from 1 to {MOST_WORLDS}"
     if part.most_robots is not None and not (is_whole(part.most_robots) and part.most_robots > 0):

@@ -10,6 +10,7 @@ from vedette.errors import InputError, brief
 from vedette.number import is_number, many
 
 LATEST = 3600.0  # a tour that ends later costs no more [s]
+DEAREST = 1 << 45  # steps; so the prices of a thousand robots are written in seven bytes
 
 
 @dataclass(frozen=True)
@@ -34,9 +35,9 @@ class EndPrice:
         return EndPrice(factor * self.linear, factor * self.quadratic)
 
     def of(self, end: float) -> int:
-        """Return the price of an end [s], in steps, rounded to the nearest, halves up."""
+        """Return the price of an end [s], in whole steps, halves up; ``DEAREST`` at most."""
         t = min(end, LATEST)
-        return math.floor((self.linear + 0.5 * self.quadratic * t) * t * PRICE_STEPS + 0.5)
+        return math.floor(min((self.linear + 0.5 * self.quadratic * t) * t * PRICE_STEPS + 0.5, DEAREST))
 
     def check(self, impact: Impact, robots: int) -> None:
         """Raise ``ValueError`` for a price that so many robots, combined, cannot have.
