@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.sparse.csgraph import minimum_spanning_tree
-from scipy.spatial.distance import pdist, squareform
 
 from vedette.domains.mapping.frontier_worth import middles
 from vedette.domains.mapping.impact import MIN_SHARE
@@ -80,7 +79,8 @@ def known_share(
     if hidden == 0.0:
         return 1.0
     places = middles(frame, *frontiers)
-    tree = float(minimum_spanning_tree(squareform(pdist(places))).sum()) if len(places) > 1 else 0.0
+    apart = np.hypot(*(places[:, None] - places).T)
+    tree = float(scipy.sparse.csgraph.minimum_spanning_tree(apart).sum())
     return tree / (tree + hidden)
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from vedette.kernels.tiles import TiledGrid
 from vedette.maps import FREE, OCCUPIED
@@ -210,8 +210,10 @@ def _standing_free(angles: Floats, ranges: Floats, hits: Mask) -> tuple[NDArray[
 
 def _small(cells: Mask, most: int) -> Mask:
     """Return those of the cells ``(R, C)`` whose part, corners included, is at most so many cells broad."""
-    labels, _ = ndimage.label(cells, np.ones((3, 3)))
-    small = [False] + [max(b.stop - b.start for b in box) <= most for box in ndimage.find_objects(labels)]
+    labels, _ = scipy.ndimage.label(cells, np.ones((3, 3)))
+    small = [False] + [
+        max(b.stop - b.start for b in box) <= most for box in scipy.ndimage.find_objects(labels)
+    ]
     found: Mask = np.array(small)[labels]
     return found
 
