@@ -29,8 +29,8 @@ Draw: TypeAlias = Callable[[Path], None]  # writes a picture there
 def plot(run: Path, out: Path | None, force: bool, animate: bool) -> None:
     """Draw pictures of a mission, or of what an agent kept, anew: from run.mcap and summary.json in RUN_DIR.
 
-    Pictures that lack what is not recorded, as the truth of a field or the other ways of coordination, are
-    called NAME-recorded.png. Exit status: 0 drawn, 2 bad input.
+    Pictures that lack what is not recorded, as the truth of a field, the other ways of coordination or when
+    maps were joined, are called NAME-recorded.png. Exit status: 0 drawn, 2 bad input.
     """
     from vedette.record.flown import scene_of  # takes a second to import, as drawing does
     from vedette.record.redrawn import flight_pictures
@@ -59,7 +59,11 @@ def _exploration(run: Path, record: Path, figures: Mapping[str, Any]) -> dict[st
     log = ExploreLog(scene)
     for snapshot in read_snapshots(record, scene):
         log.add(snapshot)
-    draws: dict[str, Draw] = {"progress.png": lambda path: progress_png(log, path)}
+    strangers = (
+        summary is not None and summary.frames is not None
+    )  # when whose maps were joined is not recorded
+    progress = "progress-recorded.png" if strangers else "progress.png"
+    draws: dict[str, Draw] = {progress: lambda path: progress_png(log, path)}
     if summary is not None:
         draws["curves.png"] = lambda path: curves_png(log, summary, path)
     return draws | {FILM: lambda path: explore_gif(log, path)}

@@ -111,7 +111,8 @@ def _legend(figure: Figure, layout: Panels, last: ExploreSnapshot) -> None:
         explain(figure, MARGIN, y, link_signs())
         y -= LINE
     explain(figure, MARGIN, y, map_signs())
-    _impact_ramp(figure, layout, y if layout.width >= _WIDE else y - LINE)
+    if last.frames is None:  # else impacts lie on planes of their own
+        _impact_ramp(figure, layout, y if layout.width >= _WIDE else y - LINE)
 
 
 def _team(width: float, last: ExploreSnapshot) -> Key:
