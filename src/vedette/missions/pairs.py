@@ -39,8 +39,8 @@ def scheme_of(planner_name: str, scheme: str | None) -> str:
         raise InputError(
             f"planner {planner_name} negotiates by {own}, which is part of it; leave out scheme {scheme}"
         )
-    if not planner(planner_name).negotiates:
-        return SCHEME  # others ask more than once, or take back what such a planner chose
+    if not planner(planner_name).negotiates and scheme in ("multistart", "fork", "async"):
+        return SCHEME  # these take back what lowers the team's value, which such a planner does not ask for
     return scheme
 
 
