@@ -19,7 +19,7 @@ from vedette.missions.explore.frames.layout import Box, around, laid_out
 from vedette.missions.explore.frames.rendezvous import Guess, guessed
 
 BORNE_OUT = 8.0, 0.15  # walls in common at least [m], and contradicted at most, that an edge may count
-ALLOWED = 2.0, 0.25  # where more contradicts, and a larger share, two are not joined [m, 1]
+ALLOWED = 5.0, 0.25  # where more contradicts, and a larger share, two are not joined [m, 1]
 AGAIN = 8  # versions of both, after which it is looked at anew whether they agree
 
 REFUTED = 2.0, 0.5  # walls in common at most [m], or contradicted at least: two do not lie so
