@@ -49,7 +49,7 @@ class JoinRule:
         return None
 
 
-SAVED = JoinRule(rivalry=0.5, lead=15.0)
+SAVED = JoinRule(rivalry=0.4, lead=15.0)
 OF_THINNED = JoinRule(rivalry=0.75, lead=5.0, same=6.0, common=8.0, deviation=0.2)
 
 
