@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.domains.mapping.belief import MapBelief
+from vedette.domains.mapping.frontier_worth import touching
 from vedette.domains.mapping.platform import MappingPlatform
 from vedette.kernels.coverage import Footprints
 from vedette.kernels.misses import CERTAIN
-from vedette.maps import FREE, UNKNOWN
 
 
 @dataclass(eq=False)
@@ -47,11 +47,6 @@ def _owners(belief: MapBelief) -> NDArray[np.int64]:
 
 def beside(belief: MapBelief) -> tuple[NDArray[np.uint32], NDArray[np.int64]]:
     """Return the planning cells of the unknown cells that touch frontiers, and which each touches."""
-    rows, cols = np.divmod(belief.frontier_cells, belief.classes.shape[1])
-    padded = np.pad(belief.classes, 1, constant_values=FREE)
-    r = rows[:, None] + np.array([-1, 1, 0, 0])
-    c = cols[:, None] + np.array([0, 0, -1, 1])
-    touches = padded[r + 1, c + 1] == UNKNOWN
-    owners = np.broadcast_to(_owners(belief)[:, None], touches.shape)[touches]
-    flat = r[touches] // belief.factor * belief.unknown.shape[1] + c[touches] // belief.factor
-    return belief.planning_cells(flat.astype(np.uint32)), owners
+    frontiers = belief.frontier_cells, belief.frontier_starts
+    touched, of = touching(belief.classes, *frontiers, belief.factor)
+    return belief.planning_cells(touched.astype(np.uint32)), of

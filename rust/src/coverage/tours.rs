@@ -148,7 +148,7 @@ impl<'a> Tours<'a> {
         let seen = miss.map(|miss| (1.0 - miss) as f32);
         let (left, sums, rows) = (weight.clone(), vec![0.0; discounts.len()], Vec::new());
         let reached = stops.first_leg.iter().copied().filter(|leg| leg.is_finite());
-        let stay = reached.fold(0.0, larger);
+        let stay = reached.fold(0.0, f32::max);
         let (held, budget) = (0, 0);
         Tours {
             stops,
@@ -458,15 +458,6 @@ struct Part {
 /// Value with ties inside a time layer broken towards the tour that ends [s] sooner.
 fn score(value: f64, end: f32) -> f64 {
     value * (1.0 - 1e-4 * f64::from(end.min(1e3)) / 1e3)
-}
-
-/// ``f32::max`` of numbers, without a thought for what is none.
-fn larger(a: f32, b: f32) -> f32 {
-    if a > b {
-        a
-    } else {
-        b
-    }
 }
 
 /// Hashes a few bytes, fast; nobody chooses them to collide who could not do worse by lying.

@@ -60,16 +60,22 @@ def spread_behind(
     Returns:
         (r, c) area carried by each planning cell of ``factor x factor`` cells, in the unit of ``areas``.
     """
-    rows, cols = classes.shape
-    padded = np.pad(classes, 1, constant_values=FREE)
-    row, col = np.divmod(cells, cols)
-    cluster = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
-    around = np.array([(-1, 0), (1, 0), (0, -1), (0, 1)])
-    r = row[:, None] + around[:, 0]
-    c = col[:, None] + around[:, 1]
-    touches = padded[r + 1, c + 1] == UNKNOWN
-    owner = np.broadcast_to(cluster[:, None], touches.shape)[touches]
+    touched, owner = touching(classes, cells, starts, factor)
     share = areas[owner] / np.bincount(owner, minlength=len(starts) - 1)[owner]
+    rows, cols = classes.shape
     shape = (-(-rows // factor), -(-cols // factor))
-    flat = r[touches] // factor * shape[1] + c[touches] // factor
-    return np.bincount(flat, share, minlength=shape[0] * shape[1]).reshape(shape).astype(np.float32)
+    return np.bincount(touched, share, minlength=shape[0] * shape[1]).reshape(shape).astype(np.float32)
+
+
+def touching(
+    classes: NDArray[np.uint8], cells: NDArray[np.int64], starts: NDArray[np.int64], factor: int
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Return the flat planning cell of each unknown cell beside a frontier, and which frontier it is."""
+    padded = np.pad(classes, 1, constant_values=FREE)
+    row, col = np.divmod(cells, classes.shape[1])
+    r = row[:, None] + np.array([-1, 1, 0, 0])
+    c = col[:, None] + np.array([0, 0, -1, 1])
+    touches = padded[r + 1, c + 1] == UNKNOWN
+    cluster = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
+    owner = np.broadcast_to(cluster[:, None], touches.shape)[touches]
+    return r[touches] // factor * -(-classes.shape[1] // factor) + c[touches] // factor, owner
