@@ -7,7 +7,7 @@ from pathlib import Path
 
 
 def cell(path: Path, heading: str, column: str, *labels: str) -> str:
-    """Return the number that begins a cell of the first table under a heading.
+    """Return a cell of the first table under a heading, as it stands there.
 
     Args:
         path: the report
@@ -25,5 +25,5 @@ def cell(path: Path, heading: str, column: str, *labels: str) -> str:
     header, _, *rows = ([part.strip() for part in line.split("|")[1:-1]] for line in table[0].splitlines())
     for row in rows:
         if column in header and all(row[i].startswith(label) for i, label in enumerate(labels)):
-            return row[header.index(column)].split(" ", 1)[0]
+            return row[header.index(column)]
     raise LookupError(f"{path.name}, {heading}: no {column!r} of {labels}")

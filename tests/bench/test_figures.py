@@ -125,7 +125,7 @@ def test_a_claim_is_found_and_replaced_across_lines() -> None:
 def test_a_report_is_read_by_heading_column_and_row(tmp_path: Path) -> None:
     path = tmp_path / "report.md"
     path.write_text("# R\n## A\n| n | x | y |\n|---|---|---|\n| `a` (b) | 1.5 (1-2) | 2 |\n\n## B\ntext\n")
-    assert cell(path, "A", "x", "`a`") == "1.5"
+    assert cell(path, "A", "x", "`a`") == "1.5 (1-2)"
     wrong = [
         ("B", "x", "`a`", "no table under 'B'"),
         ("C", "x", "`a`", "no table under 'C'"),
