@@ -41,7 +41,7 @@ class LatePlatform(MappingPlatform):
         self.ground = grounds[-1] if any(len(lot) for lot in lots[2:]) else grounds[0]
         stops = joined(belief, self.ground, lots, self.spec.speed)
         self.considered = stops.targets
-        self.stops = self._affordable(self._without_left_alone(stops, LEFT_ALONE))
+        self.stops = self._open(stops, LEFT_ALONE)
         return self.leads_anywhere or super()._finds_anything(belief, model)
 
     def _stops_of(
@@ -52,7 +52,7 @@ class LatePlatform(MappingPlatform):
         cells = np.concatenate([np.empty(0, np.int64), *parts])
         starts = np.cumsum([0, *map(len, parts)])
         some = replace(belief, frontier_cells=cells, frontier_starts=starts)
-        closer = [(spot.x, spot.y) for spot in self.closer]
+        closer = [spot.at for spot in self.left_alone.closer]
         seen = look(some, ground, self.spec, close=close, closer=closer)
         least = max(LEAST_AREA, 0.5 * belief.frame.resolution**2)
         stops = find_stops(some, ground, self.spec, model, least, seen, tours=False, stall=self.stall)

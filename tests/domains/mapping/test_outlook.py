@@ -270,7 +270,7 @@ def test_when_nothing_else_is_left_a_frontier_seen_too_slantingly_is_looked_at_f
     assert np.hypot(*(near.targets - near.views).T).max() <= CLOSE_VIEW + belief.frame.resolution
     slanting = [target for target in near.targets if np.hypot(*(far.targets - target).T).min() > LEFT_ALONE]
     assert slanting
-    robot.avoided = [(*target, math.inf) for target in far.targets]
+    robot.left_alone.avoided = [(*target, math.inf) for target in far.targets]
     placed(robot, belief, x, y)
     assert robot.stops is not None
     left = robot.stops.targets[np.isfinite(robot.stops.first_leg)]

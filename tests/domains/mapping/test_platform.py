@@ -140,7 +140,7 @@ def test_carrying_over_skips_a_stop_that_cannot_be_reached_any_more() -> None:
     platform = ready()
     old = platform.tour(np.array([2, 4, 13]))
     x, y = old.targets[1]
-    platform.avoided.append((x, y, 99.0))
+    platform.left_alone.avoided.append((x, y, 99.0))
     placed(platform, frozen())
     assert platform.carry_over(old).stops.tolist() == [2, 13]
 
@@ -155,7 +155,7 @@ def test_a_frontier_that_a_visit_did_not_change_stays_given_up_until_the_map_nea
     platform, classes = ready(), explored(CORRIDOR)
     x, y = stops_of(platform).targets[2].tolist()
     unknown = int(stops_of(platform).unknown[2])
-    platform.visited.append((x, y, unknown, 0.4))
+    platform.left_alone.visited.append((x, y, unknown, 0.4))
     for _ in range(3):
         placed(platform, frozen(classes))
         assert not reachable_near(platform, x, y).any()
@@ -170,7 +170,7 @@ def test_a_frontier_that_a_visit_did_not_change_stays_given_up_until_the_map_nea
     far_unknown = far_unknown[np.argsort(-np.hypot(*(far_unknown - 6).T))][: unknown // 8 + 3]
     window[tuple(far_unknown.T)] = FREE
     placed(platform, frozen(classes))
-    assert not platform.given_up
+    assert not platform.left_alone.given_up
     assert reachable_near(platform, x, y).all()
     assert len(reachable_near(platform, x, y))
 
@@ -178,9 +178,9 @@ def test_a_frontier_that_a_visit_did_not_change_stays_given_up_until_the_map_nea
 def test_a_frontier_whose_visit_changed_the_map_is_not_given_up() -> None:
     platform = ready()
     x, y = stops_of(platform).targets[2].tolist()
-    platform.visited.append((x, y, 2 * int(stops_of(platform).unknown[2]), 0.4))
+    platform.left_alone.visited.append((x, y, 2 * int(stops_of(platform).unknown[2]), 0.4))
     placed(platform, frozen())
-    assert not platform.given_up
+    assert not platform.left_alone.given_up
     assert reachable_near(platform, x, y).all()
 
 
@@ -191,18 +191,18 @@ def test_a_frontier_that_a_look_from_afar_did_not_change_is_looked_at_from_as_ne
     k = int(np.argmax(np.where(np.isfinite(stops.first_leg), apart, 0.0)))
     assert apart[k] > 2.0
     (x, y), unknown = stops.targets[k].tolist(), int(stops.unknown[k])
-    platform.visited.append((x, y, unknown, apart[k]))
+    platform.left_alone.visited.append((x, y, unknown, apart[k]))
     placed(platform, frozen())
-    assert not platform.given_up
-    assert [(spot.x, spot.y) for spot in platform.closer] == [(x, y)]
+    assert not platform.left_alone.given_up
+    assert [(spot.x, spot.y) for spot in platform.left_alone.closer] == [(x, y)]
     now = stops_of(platform)
     near = np.hypot(*(now.targets - (x, y)).T) < 0.5
     assert (np.hypot(*(now.targets - now.views)[near].T) <= nearest_view(SPEC, RESOLUTION) + RESOLUTION).all()
     others = np.hypot(*(stops.targets - (x, y)).T) >= 0.5
     np.testing.assert_array_equal(now.views[~near], stops.views[others])
-    platform.visited.append((x, y, unknown, 0.9))  # nearer it could not get
+    platform.left_alone.visited.append((x, y, unknown, 0.9))  # nearer it could not get
     placed(platform, frozen())
-    assert [(spot.x, spot.y) for spot in platform.given_up] == [(x, y)]
+    assert [(spot.x, spot.y) for spot in platform.left_alone.given_up] == [(x, y)]
 
 
 def test_a_frontier_too_narrow_for_the_body_is_given_up_after_a_look_from_within_a_metre() -> None:
@@ -213,34 +213,34 @@ def test_a_frontier_too_narrow_for_the_body_is_given_up_after_a_look_from_within
         classes[43, 38 : 38 + cells] = UNKNOWN
         x, y = FRAME.centres(np.array([44 * FRAME.cols + 38 + cells // 2]))[0].tolist()
         for afar, given_up in ((1.5, False), (0.9, narrow), (0.4, True)):
-            platform.given_up.clear()
-            platform.closer.clear()
-            platform.visited.append((x, y, unknown_near(classes, FRAME, x, y), afar))
+            platform.left_alone.given_up.clear()
+            platform.left_alone.closer.clear()
+            platform.left_alone.visited.append((x, y, unknown_near(classes, FRAME, x, y), afar))
             placed(platform, frozen(classes))
-            assert bool(platform.given_up) == given_up, (cells, afar)
-            assert bool(platform.closer) != given_up
+            assert bool(platform.left_alone.given_up) == given_up, (cells, afar)
+            assert bool(platform.left_alone.closer) != given_up
 
 
 def test_a_visit_is_judged_where_no_frontier_is_left_at_all() -> None:
     platform, classes = ready(), np.where(explored(CORRIDOR) == UNKNOWN, OCCUPIED, explored(CORRIDOR))
     classes[40:43, 38] = UNKNOWN  # behind the wall
     x, y = FRAME.centres(np.array([44 * FRAME.cols + 38]))[0].tolist()
-    platform.visited.append((x, y, unknown_near(classes, FRAME, x, y), 0.9))
+    platform.left_alone.visited.append((x, y, unknown_near(classes, FRAME, x, y), 0.9))
     belief = frozen(classes)
     assert not len(belief.frontier_cells)
     placed(platform, belief)
-    assert len(platform.given_up) == 1
+    assert len(platform.left_alone.given_up) == 1
 
 
 def test_an_avoided_frontier_is_left_alone_for_its_time() -> None:
     platform = ready()
     x, y = stops_of(platform).targets[2].tolist()
-    platform.avoided.append((x, y, 20.0))
+    platform.left_alone.avoided.append((x, y, 20.0))
     placed(platform, frozen(), now=19.9)
     assert not reachable_near(platform, x, y).any()
     placed(platform, frozen(), now=20.0)
     assert reachable_near(platform, x, y).all()
-    assert not platform.avoided
+    assert not platform.left_alone.avoided
 
 
 def by_way(platform: MappingPlatform) -> NDArray[np.float64]:
@@ -259,7 +259,7 @@ def test_a_robot_whose_nearest_stops_are_no_good_takes_those_after_them(
     platform = MappingPlatform(SPEC)
     placed(platform, belief)
     assert by_way(platform).tolist() == whole[:3].tolist()
-    platform.avoided = [(*target, np.inf) for target in whole[:3]]
+    platform.left_alone.avoided = [(*target, np.inf) for target in whole[:3]]
     placed(platform, belief)
     taken = by_way(platform)
     left = [target for target in whole[3:] if np.hypot(*(whole[:3] - target).T).min() >= LEFT_ALONE]
@@ -274,7 +274,7 @@ def test_a_round_that_is_cut_short_promises_no_bound_and_the_next_one_works_more
     belief, whole = frozen(), by_way(ready())
     monkeypatch.setattr(views, "MOST_WORK", 1)
     platform = MappingPlatform(SPEC)
-    platform.avoided = [(*target, np.inf) for target in whole[:-1]]
+    platform.left_alone.avoided = [(*target, np.inf) for target in whole[:-1]]
     rounds = 0
     while platform.stops is None or not len(by_way(platform)):
         placed(platform, belief)

@@ -217,15 +217,15 @@ def test_a_stop_that_cannot_be_carried_out_is_left_alone_longer_each_time_and_gi
     for _ in range(TRIES - 1):
         mission.strategy = tour
         mission.release(now)
-        waits.append(mission.platform.avoided[-1][2] - now)
+        waits.append(mission.platform.left_alone.avoided[-1][2] - now)
         now += waits[-1] + 1.0
     assert waits == sorted(set(waits))
     two_rounds = 8.0  # that agree on the end, at most [s]
     assert sum(waits) + two_rounds <= 40.0  # so long a mission may last with nothing new and nobody driving
-    assert not mission.platform.given_up
+    assert not mission.platform.left_alone.given_up
     mission.strategy = tour
     mission.release(now)
-    assert [(spot.x, spot.y) for spot in mission.platform.given_up] == [tuple(tour.targets[0])]
+    assert [(spot.x, spot.y) for spot in mission.platform.left_alone.given_up] == [tuple(tour.targets[0])]
 
 
 def test_a_stop_that_mates_kept_a_robot_from_is_taken_up_again_when_one_of_them_has_gone() -> None:

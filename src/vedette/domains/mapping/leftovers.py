@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.domains.mapping.belief import MapBelief
-from vedette.domains.mapping.given_up import GivenUp
+from vedette.domains.mapping.left_alone import GivenUp, near_any
 from vedette.domains.mapping.platform import MappingPlatform
 from vedette.domains.mapping.stops import (
     CLEARANCES,
@@ -39,11 +39,10 @@ class Leftover:
 
 def given_up(platform: MappingPlatform) -> list[Leftover]:
     """Return what the robot has given up by now."""
-    looked_at = [*(spot for spot in platform.given_up if spot.visited), *platform.closer]
-    missed = [spot for spot in platform.given_up if not spot.visited]
+    alone = platform.left_alone
     return [
-        *(Leftover(spot.x, spot.y, spot.unknown, "unseeable") for spot in looked_at),
-        *(Leftover(spot.x, spot.y, spot.unknown, "unreached") for spot in missed),
+        *(Leftover(spot.x, spot.y, spot.unknown, "unseeable") for spot in alone.looked_at),
+        *(Leftover(spot.x, spot.y, spot.unknown, "unreached") for spot in alone.missed),
     ]
 
 
@@ -57,19 +56,19 @@ def leftovers(belief: MapBelief, platform: MappingPlatform) -> list[Leftover]:
     if blind(platform.spec, belief.frame.resolution):
         places = _places(belief).tolist()
         return [_left(belief, x, y, "unreached") for x, y in places]
-    alone = survey(belief, platform.spec, platform.x, platform.y, [], CLEARANCES[-1])
-    middles, way = _seen(belief, platform, alone)
+    without_bodies = survey(belief, platform.spec, platform.x, platform.y, [], CLEARANCES[-1])
+    middles, way = _seen(belief, platform, without_bodies)
     open_now = way
     if platform.obstacles and platform.ground is not None:
         _, open_now = _seen(belief, platform, platform.ground)
-    visited = [*(spot for spot in platform.given_up if spot.visited), *platform.closer]
-    missed = [spot for spot in platform.given_up if not spot.visited]
+    alone = platform.left_alone
+    visited, missed, told = alone.looked_at, alone.missed, alone.told
     left = [Leftover(spot.x, spot.y, spot.unknown, "unseeable") for spot in visited]
     for spot in missed:
-        near, here = _near(middles, [spot]), np.array([(spot.x, spot.y)])
-        if near.any() and not _near(here, [*visited, *platform.told]).any():
+        near, here = _near(middles, [spot]), np.array([spot.at])
+        if near.any() and not _near(here, [*visited, *told]).any():
             left.append(Leftover(spot.x, spot.y, spot.unknown, _why(bool(way[near].any()))))
-    untouched = ~_near(middles, [*visited, *missed, *platform.told]) & ~(way & open_now)
+    untouched = ~_near(middles, [*visited, *missed, *told]) & ~(way & open_now)
     for (x, y), reachable in zip(middles[untouched].tolist(), way[untouched].tolist(), strict=True):
         left.append(_left(belief, x, y, _why(reachable)))
     return left
@@ -112,7 +111,4 @@ def _places(belief: MapBelief) -> NDArray[np.float64]:
 
 def _near(places: NDArray[np.float64], spots: Sequence[GivenUp]) -> NDArray[np.bool_]:
     """Tell which places are so near to any of the spots that what holds for it holds for them."""
-    near = np.zeros(len(places), np.bool_)
-    for spot in spots:
-        near |= np.hypot(places[:, 0] - spot.x, places[:, 1] - spot.y) < LEFT_ALONE
-    return near
+    return near_any(places, (spot.at for spot in spots), LEFT_ALONE)

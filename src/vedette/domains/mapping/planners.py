@@ -197,7 +197,7 @@ def _told(own: Planner, name: str) -> Callable[[PlatformSpec], MappingPlatform]:
         with telling(f"{where}: platform"):
             platform = own.platform(spec)
             _check_is(MappingPlatform)(platform)
-            if not hasattr(platform, "given_up"):
+            if not hasattr(platform, "left_alone"):
                 raise TypeError("its __init__ does not call that of MappingPlatform")
 
         def prepared(_: Any) -> None:

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.budget import WayLeft
 from vedette.domains.mapping.foreseen import LONG_TOUR, by_way_of_frontier, supposed, with_foreseen
-from vedette.domains.mapping.given_up import GivenUp, Place, Visit
 from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.layers import STEP
+from vedette.domains.mapping.left_alone import LeftAlone, Place
 from vedette.domains.mapping.price import FREE
 from vedette.domains.mapping.sightings import SightingModel, beam_model, measured_model
 from vedette.domains.mapping.stops import (
@@ -25,10 +25,7 @@ from vedette.domains.mapping.stops import (
     Stops,
     enough_of_sight,
     find_stops,
-    nearest_view,
-    seen_from,
     survey,
-    unknown_near,
 )
 from vedette.domains.mapping.tour import STAY, Tour, on_the_way
 from vedette.domains.mapping.views import by_way, look
@@ -62,21 +59,14 @@ class MappingPlatform:
     obstacles: list[Disc] = field(default_factory=list)
     team: list[Place] = field(default_factory=list)  # all, itself included
     now: float = 0.0
-    visited: list[Visit] = field(default_factory=list)  # since the last round
-    closer: list[GivenUp] = field(default_factory=list)  # seen from afar in vain: to be visited from nearer
-    given_up: list[GivenUp] = field(default_factory=list)  # by this robot
-    told: list[GivenUp] = field(default_factory=list)  # by anybody, as of the last round
-    hearsay: list[GivenUp] = field(default_factory=list)  # by one alone, whose word is not enough in the end
-    avoided: list[tuple[float, float, float]] = field(default_factory=list)  # x, y, until [s]
+    left_alone: LeftAlone = field(init=False)  # frontiers
     doubtful: NDArray[np.bool_] | None = None  # (R, C) of the window: occupied, but not for sure
     ground: Ground | None = None
     daring: bool = False  # the round's stops are behind what is doubtful
     in_vain: int = 0  # doubts in a row that led nowhere
     stops: Stops | None = None
     budget: WayLeft = field(init=False)  # of way
-    short: bool = field(
-        init=False, default=False
-    )  # there are stops, and none that leaves enough to come home
+    short: bool = field(init=False, default=False)  # there are stops that leave too little to come home
     considered: NDArray[np.float64] = field(init=False)  # (N, 2) frontiers of stops, those left alone too [m]
     cut_short: bool = field(init=False, default=False)  # the round's work ended before all was looked at
     patience: int = field(init=False, default=PATIENCE)
@@ -84,6 +74,7 @@ class MappingPlatform:
 
     def __post_init__(self) -> None:
         self.considered, self.budget = _NOWHERE, WayLeft(self.spec.way)
+        self.left_alone = LeftAlone(self.spec)
 
     def place(
         self,
@@ -118,15 +109,15 @@ class MappingPlatform:
         for ways that only doubtful cells close. Its work is bounded: if so much of it finds nothing and there
         are frontiers left, it works more the next time.
         """
-        self._update_given_up(belief)
+        self.left_alone.judge(belief, self.team, self.now)
         self.ahead = self.max_stops if belief.gathering else 1
         self.cut_short = self.daring = self.short = False
         model = self.model(belief)
         if self._finds_anything(belief, model):
             self._foresee(belief)
             return
-        if self.hearsay:
-            self.hearsay = []
+        if self.left_alone.hearsay:
+            self.left_alone.hearsay = []
             if self._finds_anything(belief, model):
                 return
         self.daring = self._dares(belief, model)
@@ -178,7 +169,7 @@ class MappingPlatform:
         """Find the nearest stops, or if they are no good those after them; tell if one can be visited."""
         least = max(LEAST_AREA, 0.5 * belief.frame.resolution**2)
         dare = min(WORTH_A_DARE, 2.0 * enough_of_sight(self.spec)) * 2.0**self.in_vain
-        closer = [(spot.x, spot.y) for spot in self.closer]
+        closer = [spot.at for spot in self.left_alone.closer]
         tried = _NONE
         self.considered = _NOWHERE
         for effort in (1, self.patience):
@@ -196,8 +187,7 @@ class MappingPlatform:
                     stall=self.stall,
                 )
                 self.considered = np.concatenate((self.considered, stops.targets))
-                stops = self._without_left_alone(stops, LEFT_ALONE_AT_LAST if last else LEFT_ALONE)
-                self.stops = self._affordable(stops)
+                self.stops = self._open(stops, LEFT_ALONE_AT_LAST if last else LEFT_ALONE)
                 if self.leads_anywhere:
                     self.cut_short = found.cut_short
                     return True
@@ -218,71 +208,14 @@ class MappingPlatform:
         """Tell whether the robot can reach any stop of the round."""
         return self.stops is not None and bool(np.isfinite(self.stops.first_leg).any())
 
-    def _update_given_up(self, belief: MapBelief) -> None:
-        """Give up frontiers that a visit did not change; take up again those whose surroundings changed.
-
-        A visit from afar that changed nothing calls for one from nearer.
-        """
-
-        much = 0.5 * enough_of_sight(self.spec) / belief.frame.resolution**2
-
-        def unchanged(x: float, y: float, before: int) -> bool:
-            seen = before - unknown_near(belief.classes, belief.frame, x, y)
-            return seen <= max(2, min(before // 8, much))
-
-        self.given_up = [
-            spot
-            for spot in self.given_up
-            if unchanged(spot.x, spot.y, spot.unknown) and spot.stands(self.team)
-        ]
-        self.told = [spot for spot in self.told if unchanged(spot.x, spot.y, spot.unknown)]
-        self.hearsay = [spot for spot in self.hearsay if unchanged(spot.x, spot.y, spot.unknown)]
-        self.closer = [spot for spot in self.closer if unchanged(spot.x, spot.y, spot.unknown)]
-        for x, y, before, afar in self.visited:
-            now_unknown = unknown_near(belief.classes, belief.frame, x, y)
-            if now_unknown and unchanged(x, y, before):
-                in_vain = self.given_up if self._was_near(belief, x, y, afar) else self.closer
-                in_vain.append(GivenUp(x, y, now_unknown))
-        self.visited.clear()
-
-    def _was_near(self, belief: MapBelief, x: float, y: float, afar: float) -> bool:
-        """Tell whether a frontier was looked at from near enough to be given up.
-
-        That is from within a metre; one that the body may fit through, as near as it gets, if it has not been
-        tried to get nearer.
-        """
-        cell = belief.frame.resolution
-        if afar > seen_from(self.spec, cell, close=True) + cell:
-            return False
-        tried = any(np.hypot(x - spot.x, y - spot.y) < LEFT_ALONE for spot in self.closer)
-        if tried or afar <= nearest_view(self.spec, cell) + cell or not len(belief.frontier_cells):
-            return True
-        away = np.hypot(*(belief.frame.centres(belief.frontier_cells) - (x, y)).T)
-        k = int(np.searchsorted(belief.frontier_starts, int(np.argmin(away)), side="right")) - 1
-        return bool(np.diff(belief.frontier_starts)[k] * cell <= 2.0 * self.spec.radius + 1e-9)
-
-    def _without_left_alone(self, stops: Stops, within: float) -> Stops:
-        """Make the stops near given-up or avoided places unreachable, which keeps the arrays aligned."""
-        self.avoided = [spot for spot in self.avoided if spot[2] > self.now]
-        first_leg, legs = stops.first_leg.copy(), stops.legs.copy()
-        places = [(spot.x, spot.y) for spot in (*self.given_up, *self.told, *self.hearsay)]
-        for x, y in places + [spot[:2] for spot in self.avoided]:
-            near = np.hypot(stops.targets[:, 0] - x, stops.targets[:, 1] - y) < within
-            first_leg[near] = np.inf
-            legs[:, near] = np.inf
-        return replace(stops, first_leg=first_leg, legs=legs)
-
-    def _affordable(self, stops: Stops) -> Stops:
-        """Make the stops unreachable from which the robot could not come home."""
+    def _open(self, stops: Stops, within: float) -> Stops:
+        """Shut the stops that are left alone, and those from which the robot could not come home."""
+        stops = stops.shut(self.left_alone.holds(stops.targets, within))
         if not self.budget.limited:
             return stops
-        open_ = np.isfinite(stops.first_leg)
         dear = ~self.budget.affords(stops.views, stops.first_leg.astype(np.float64) * self.spec.speed)
-        self.short |= bool((open_ & dear).any())
-        first_leg, legs = stops.first_leg.copy(), stops.legs.copy()
-        first_leg[dear] = np.inf
-        legs[:, dear] = np.inf
-        return replace(stops, first_leg=first_leg, legs=legs)
+        self.short |= bool((np.isfinite(stops.first_leg) & dear).any())
+        return stops.shut(dear)
 
     def carry_over(self, strategy: Tour) -> Tour:
         """Restate last round's tour over this round's stops: same places, new arrival times."""

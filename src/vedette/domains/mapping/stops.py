@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,6 +62,13 @@ class Stops:
 
     def __len__(self) -> int:
         return len(self.targets)
+
+    def shut(self, which: NDArray[np.bool_]) -> Stops:
+        """Return them with some, ``(K,)``, out of reach."""
+        first_leg, legs = self.first_leg.copy(), self.legs.copy()
+        first_leg[which] = np.inf
+        legs[:, which] = np.inf
+        return replace(self, first_leg=first_leg, legs=legs)
 
 
 def survey(

@@ -167,7 +167,7 @@ class Exploring:
         """Return x, y [cm] and the unknown cells near each."""
         return [
             (round(spot.x * 100), round(spot.y * 100), spot.unknown)
-            for spot in self.platform.given_up
+            for spot in self.platform.left_alone.given_up
             if spot.visited
         ]
 
@@ -176,10 +176,11 @@ class Exploring:
 
         Where notes are signed, they are believed by whose they are.
         """
+        alone = self.platform.left_alone
         if self.signed is not None:
-            self.platform.told, self.platform.hearsay = sifted(self.signed.notes().values())
+            alone.told, alone.hearsay = sifted(self.signed.notes().values())
         else:
-            self.platform.told = [given_up_at(*note) for note in notes]
+            alone.told = [given_up_at(*note) for note in notes]
 
     def ahead(self, now: float) -> list[tuple[float, float, float, float]]:
         """Return the tour's stops: x, y [m], after how long [s], and the unknown ground near each [m^2]."""
@@ -399,7 +400,7 @@ class Exploring:
             return False
         else:
             afar = float(np.hypot(*(self.strategy.targets[0] - self.strategy.views[0])))
-            self.platform.visited.append((x, y, int(self.strategy.unknown[0]), afar))
+            self.platform.left_alone.visited.append((x, y, int(self.strategy.unknown[0]), afar))
             if self.platform.daring:
                 self.platform.in_vain = 0
         self.strategy = self.strategy.after_first()

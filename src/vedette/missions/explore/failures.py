@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from vedette.domains.mapping.given_up import GivenUp, Place
+from vedette.domains.mapping.left_alone import GivenUp, Place
 from vedette.domains.mapping.platform import SAME_PLACE, MappingPlatform
 from vedette.domains.mapping.stops import LEFT_ALONE
 
@@ -33,10 +33,10 @@ class Failures:
         self._released.append((x, y))
         near = [np.hypot(x - u, y - v) < SAME_PLACE for u, v in self._released]
         if sum(near) < TRIES:
-            self.platform.avoided.append((x, y, now + AVOID_TIME * sum(near)))
+            self.platform.left_alone.avoided.append((x, y, now + AVOID_TIME * sum(near)))
         else:
             kept_off = self._kept_off(x, y)
-            self.platform.given_up.append(GivenUp(x, y, unknown, visited=False, kept_off=kept_off))
+            self.platform.left_alone.given_up.append(GivenUp(x, y, unknown, visited=False, kept_off=kept_off))
             self._despaired.append((x, y))
             self._released = [spot for spot, same in zip(self._released, near, strict=True) if not same]
 
@@ -45,7 +45,7 @@ class Failures:
         considered = self.platform.considered
         return any(
             until > now and np.any(np.hypot(*(considered - (x, y)).T) < LEFT_ALONE)
-            for x, y, until in self.platform.avoided
+            for x, y, until in self.platform.left_alone.avoided
         )
 
     def _kept_off(self, x: float, y: float) -> tuple[Place, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from math import dist
 
-from vedette.domains.mapping.given_up import GivenUp
+from vedette.domains.mapping.left_alone import GivenUp
 from vedette.domains.mapping.stops import LEFT_ALONE
 
 

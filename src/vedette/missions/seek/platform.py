@@ -78,8 +78,7 @@ class SeekingPlatform(MappingPlatform):
         )
         legs = legs_between(belief, ground, _cells_of(belief, views)) / np.float32(self.spec.speed)
         shut = np.isinf(first_leg)
-        for x, y, _ in self.avoided:
-            shut[len(stops) :] |= np.hypot(*(places - (x, y)).T) < LEFT_ALONE
+        shut[len(stops) :] |= self.left_alone.avoids(places, LEFT_ALONE)
         legs[:, shut] = np.inf
         marks, none = stops.footprints, np.full(len(cells), stops.footprints.starts[-1])
         return Stops(
