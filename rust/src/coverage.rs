@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 
 use footprint::{footprints, Sensor};
 use impact::{combine, marginal, miss_table};
-use tours::{best_tour, most_any_tour_adds, number_cells, EndPrice, Stops};
+use tours::{best_tour, most_any_tour_adds, number_cells, EndPrice, Stops, TourProblem};
 use viewpoints::{viewpoints, Ground};
 use worth::Worth;
 
@@ -137,78 +137,77 @@ fn py_marginals<'py>(
     Ok(gains.into_pyarray(py))
 }
 
+type PyNumbers<'py> = (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray1<u32>>);
+
 #[pyfunction(name = "number_cells")]
 fn py_number_cells<'py>(py: Python<'py>, cells: PyReadonlyArray1<'py, u32>) -> PyResult<PyNumbers<'py>> {
     let (distinct, local) = number_cells(cells.as_slice()?);
     Ok((distinct.into_pyarray(py), local.into_pyarray(py)))
 }
 
-type PyNumbers<'py> = (Bound<'py, PyArray1<u32>>, Bound<'py, PyArray1<u32>>);
-type PyCells<'py> = (PyReadonlyArray1<'py, u32>, PyReadonlyArray1<'py, u32>);
+/// Footprints (starts, cells, local, misses), first leg, legs, edges.
+type PyStops<'py> = (
+    PyReadonlyArray1<'py, i64>,
+    (PyReadonlyArray1<'py, u32>, PyReadonlyArray1<'py, u32>),
+    PyReadonlyArray1<'py, u8>,
+    PyReadonlyArray1<'py, f32>,
+    PyReadonlyArray2<'py, f32>,
+    PyReadonlyArray1<'py, f64>,
+);
+/// Worth, layer weights, the others' keys and misses, stops, linear and quadratic end price.
+type PyTourProblem<'py> = (
+    PyWorth<'py>,
+    PyReadonlyArray1<'py, f64>,
+    (PyReadonlyArray1<'py, u32>, PyReadonlyArray1<'py, u8>),
+    PyStops<'py>,
+    (f64, f64),
+);
+
+fn stops_of<'a>(
+    (starts, (cells, local), misses, first_leg, legs, edges): &'a PyStops<'_>,
+) -> PyResult<Stops<'a>> {
+    Ok(Stops {
+        starts: starts.as_slice()?,
+        cells: cells.as_slice()?,
+        local: local.as_slice()?,
+        misses: misses.as_slice()?,
+        first_leg: first_leg.as_slice()?,
+        legs: legs.as_slice()?,
+        edges: edges.as_slice()?,
+    })
+}
+
+fn problem_of<'a>(
+    (worth, layer_weights, (keys, misses), stops, (linear, quadratic)): &'a PyTourProblem<'_>,
+) -> PyResult<TourProblem<'a>> {
+    Ok(TourProblem {
+        stops: stops_of(stops)?,
+        worth: worth_of(worth)?,
+        layer_weights: layer_weights.as_slice()?,
+        others: (keys.as_slice()?, misses.as_slice()?),
+        price: EndPrice { linear: *linear, quadratic: *quadratic },
+    })
+}
+
 type PyReply<'py> = (Bound<'py, PyArray1<i64>>, f64, f64);
 
 #[pyfunction(name = "best_tour")]
 fn py_best_tour<'py>(
     py: Python<'py>,
-    worth: PyWorth<'py>,
-    layer_weights: PyReadonlyArray1<'py, f64>,
-    edges: PyReadonlyArray1<'py, f64>,
-    others_keys: PyReadonlyArray1<'py, u32>,
-    others_misses: PyReadonlyArray1<'py, u8>,
-    starts: PyReadonlyArray1<'py, i64>,
-    cells: PyCells<'py>,
-    misses: PyReadonlyArray1<'py, u8>,
-    first_leg: PyReadonlyArray1<'py, f32>,
-    legs: PyReadonlyArray2<'py, f32>,
+    problem: PyTourProblem<'py>,
     current: PyReadonlyArray1<'py, i64>,
     max_stops: usize,
-    turning_and_end_price: ((f64, f64), (f64, f64)),
+    turning: (f64, f64),
 ) -> PyResult<PyReply<'py>> {
-    let stops = Stops {
-        starts: starts.as_slice()?,
-        cells: cells.0.as_slice()?,
-        local: cells.1.as_slice()?,
-        misses: misses.as_slice()?,
-        first_leg: first_leg.as_slice()?,
-        legs: legs.as_slice()?,
-        edges: edges.as_slice()?,
-    };
-    let (worth, layer_weights) = (worth_of(&worth)?, layer_weights.as_slice()?);
-    let (others, current) = ((others_keys.as_slice()?, others_misses.as_slice()?), current.as_slice()?);
-    let (turning, end_price) = turning_and_end_price;
-    let price = EndPrice { linear: end_price.0, quadratic: end_price.1 };
-    let reply =
-        py.detach(|| best_tour(stops, &worth, layer_weights, others, current, max_stops, turning, price));
+    let (problem, current) = (problem_of(&problem)?, current.as_slice()?);
+    let reply = py.detach(|| best_tour(problem, current, max_stops, turning));
     Ok((reply.tour.into_pyarray(py), reply.gain, reply.current_gain))
 }
 
 #[pyfunction(name = "most_any_tour_adds")]
-fn py_most_any_tour_adds(
-    py: Python<'_>,
-    worth: PyWorth<'_>,
-    layer_weights: PyReadonlyArray1<'_, f64>,
-    edges: PyReadonlyArray1<'_, f64>,
-    team_keys: PyReadonlyArray1<'_, u32>,
-    team_misses: PyReadonlyArray1<'_, u8>,
-    starts: PyReadonlyArray1<'_, i64>,
-    cells: PyCells<'_>,
-    misses: PyReadonlyArray1<'_, u8>,
-    first_leg: PyReadonlyArray1<'_, f32>,
-    legs: PyReadonlyArray2<'_, f32>,
-    max_stops: usize,
-) -> PyResult<f64> {
-    let stops = Stops {
-        starts: starts.as_slice()?,
-        cells: cells.0.as_slice()?,
-        local: cells.1.as_slice()?,
-        misses: misses.as_slice()?,
-        first_leg: first_leg.as_slice()?,
-        legs: legs.as_slice()?,
-        edges: edges.as_slice()?,
-    };
-    let (worth, layer_weights) = (worth_of(&worth)?, layer_weights.as_slice()?);
-    let team = (team_keys.as_slice()?, team_misses.as_slice()?);
-    Ok(py.detach(|| most_any_tour_adds(stops, &worth, layer_weights, team, max_stops)))
+fn py_most_any_tour_adds(py: Python<'_>, problem: PyTourProblem<'_>, max_stops: usize) -> PyResult<f64> {
+    let problem = problem_of(&problem)?;
+    Ok(py.detach(|| most_any_tour_adds(problem, max_stops)))
 }
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {

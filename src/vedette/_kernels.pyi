@@ -3,6 +3,21 @@ from numpy.typing import NDArray
 
 _Tiles = tuple[NDArray[np.int32], NDArray[np.int8], tuple[int, int]]
 _Worth = tuple[NDArray[np.float32], tuple[int, int], tuple[int, int], tuple[float, float, float, float]]
+_Stops = tuple[
+    NDArray[np.int64],
+    tuple[NDArray[np.uint32], NDArray[np.uint32]],
+    NDArray[np.uint8],
+    NDArray[np.float32],
+    NDArray[np.float32],
+    NDArray[np.float64],
+]
+_TourProblem = tuple[
+    _Worth,
+    NDArray[np.float64],
+    tuple[NDArray[np.uint32], NDArray[np.uint8]],
+    _Stops,
+    tuple[float, float],
+]
 
 # lidar
 def cast_rays(
@@ -149,33 +164,9 @@ def marginals(
 ) -> NDArray[np.float64]: ...
 def number_cells(cells: NDArray[np.uint32]) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]: ...
 def best_tour(
-    worth: _Worth,
-    layer_weights: NDArray[np.float64],
-    edges: NDArray[np.float64],
-    others_keys: NDArray[np.uint32],
-    others_misses: NDArray[np.uint8],
-    starts: NDArray[np.int64],
-    cells: tuple[NDArray[np.uint32], NDArray[np.uint32]],
-    misses: NDArray[np.uint8],
-    first_leg: NDArray[np.float32],
-    legs: NDArray[np.float32],
-    current: NDArray[np.int64],
-    max_stops: int,
-    turning_and_end_price: tuple[tuple[float, float], tuple[float, float]],
+    problem: _TourProblem, current: NDArray[np.int64], max_stops: int, turning: tuple[float, float]
 ) -> tuple[NDArray[np.int64], float, float]: ...
-def most_any_tour_adds(
-    worth: _Worth,
-    layer_weights: NDArray[np.float64],
-    edges: NDArray[np.float64],
-    team_keys: NDArray[np.uint32],
-    team_misses: NDArray[np.uint8],
-    starts: NDArray[np.int64],
-    cells: tuple[NDArray[np.uint32], NDArray[np.uint32]],
-    misses: NDArray[np.uint8],
-    first_leg: NDArray[np.float32],
-    legs: NDArray[np.float32],
-    max_stops: int,
-) -> float: ...
+def most_any_tour_adds(problem: _TourProblem, max_stops: int) -> float: ...
 
 # tracking
 def track_values(

@@ -22,10 +22,8 @@ _Singles = NDArray[np.float32]
 _Doubles = NDArray[np.float64]
 _Beyond = tuple[float, float, float, float]
 _CellWeights = tuple[_Singles, tuple[int, int], tuple[int, int], _Beyond]
-_Arrays = tuple[
-    _CellWeights, _Doubles, _Doubles, Keys, Misses, NDArray[np.int64], tuple[Keys, Keys], Misses,
-    _Singles, _Singles,
-]  # fmt: skip
+_Stops = tuple[NDArray[np.int64], tuple[Keys, Keys], Misses, _Singles, _Singles, _Doubles]
+_TourProblem = tuple[_CellWeights, _Doubles, tuple[Keys, Misses], _Stops, tuple[float, float]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,13 +103,11 @@ class TourProblem:
     end_price: tuple[float, float] = (0.0, 0.0)  # linear and quadratic, of when a tour ends [1/s], [1/s^2]
 
     @property
-    def arrays(self) -> _Arrays:
+    def arrays(self) -> _TourProblem:
         """All of it, as the kernels take it."""
         marks = self.footprints
-        return (
-            self.weights.arrays, self.layer_weights, self.edges, *self.others,
-            marks.starts, marks.numbers, marks.misses, self.first_leg, self.legs,
-        )  # fmt: skip
+        stops = marks.starts, marks.numbers, marks.misses, self.first_leg, self.legs, self.edges
+        return self.weights.arrays, self.layer_weights, self.others, stops, self.end_price
 
 
 def viewpoints(
@@ -228,10 +224,9 @@ def best_tour(
         the tour, its marginal value less its price, and that of the present tour. To stay costs what the
         farthest single stop does.  docs/theory.md (V194)
     """
-    terms = (stickiness, margin), problem.end_price
-    return _kernels.best_tour(*problem.arrays, current, max_stops, terms)
+    return _kernels.best_tour(problem.arrays, current, max_stops, (stickiness, margin))
 
 
 def most_any_tour_adds(problem: TourProblem, max_stops: int) -> float:
     """An upper bound on what any tour adds to the team's impact.  docs/mapping.md (V26)"""
-    return _kernels.most_any_tour_adds(*problem.arrays, max_stops)
+    return _kernels.most_any_tour_adds(problem.arrays, max_stops)
