@@ -34,6 +34,11 @@ class Outcome(StrEnum):
     TEAM_LOST = "team_lost", 1, "none of the team is alive"
     MAPS_DIFFER = "maps_differ", 1, "all are done, but they hold different maps"
     UNHEARD = "unheard", 1, "all who are heard are done, but others that run are not heard any more"
+    UNJOINED = (
+        "unjoined",
+        1,
+        "all are done whose maps are joined, but work is left on maps that nothing joins",
+    )
     SPENT = "spent", 1, "work is left, but all who could do it turned back while they could come home"
     ORDERED = "ordered", 0, "the operator ordered the end"
     INTERRUPTED = "interrupted", 130, "it was interrupted; the files hold what was done until then"
@@ -69,7 +74,7 @@ def together(endings: Iterable[str]) -> Outcome:
     said.discard(Outcome.SPENT)
     if said == {Outcome.ENCLOSED}:
         return Outcome.ENCLOSED
-    return Outcome.UNREACHED if Outcome.UNREACHED in said else Outcome.COMPLETE
+    return next((each for each in (Outcome.UNREACHED, Outcome.UNJOINED) if each in said), Outcome.COMPLETE)
 
 
 class Agreement:

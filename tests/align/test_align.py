@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tests.support.frames import Part, building, off, part, shell
 from vedette.align import FramePose, align, charted, judged, shifts
 from vedette.align.agreement import agreement, middles
-from vedette.align.fitted import fitted, pulled
+from vedette.align.fitted import fitted
 from vedette.align.verdict import bare
 from vedette.kernels.reference import align as reference
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
@@ -186,6 +186,6 @@ def test_walls_pull_a_map_that_lies_askew_back_by_as_much(shift: float, degrees:
     agrees = agreement(a.charted, b.charted, taken)
     assert agrees.same > 8.0
     assert agrees.contradicted < 0.15
-    moved, turned = pulled(a.charted, b.charted, taken, 800)
+    moved, turned = fitted(a.charted, b.charted, taken, 800).pose.apart(taken, np.zeros(2))
     assert moved == pytest.approx(abs(shift), abs=0.05)
     assert math.degrees(turned) == pytest.approx(abs(degrees), abs=0.3)

@@ -57,14 +57,16 @@ def test_a_patch_before_any_map_says_nothing() -> None:
     assert grids.latest is None
 
 
-def test_with_evidence_map_the_map_comes_in_the_teams_frame_and_scans_say_nothing() -> None:
+def test_with_evidence_map_the_map_comes_in_the_teams_frame_and_scans_are_no_evidence() -> None:
     door = FakeDoor([*at(1.0, 0.0), *at(2.0, 0.0), scan(1.5), grid(frame="odom")])
     settings = Ros2Settings(start=(10.0, 5.0, 90.0), evidence="map")
     then, seen, now, told = Ros2Body(PlatformSpec(), settings, door).sense(0.0)
     assert isinstance(then, Pose)
     assert isinstance(seen, Scan)
     assert isinstance(now, Pose)
-    assert np.isnan(seen.ranges).all()
+    assert seen.mapped
+    assert np.isnan(seen.unread.ranges).all()
+    np.testing.assert_array_equal(seen.unread.angles, seen.angles)
     assert isinstance(told, Sensed)
     assert isinstance(told.data, OwnMap)
     assert (told.data.x, told.data.y, told.data.heading) == pytest.approx((12.0, 4.0, pi / 2))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -38,6 +38,12 @@ class Scan:
     ranges: NDArray[np.float64]  # (B,) [m]; inf where nothing is, nan where the beam says nothing
     offset: tuple[float, float] = (0.0, 0.0)  # of the lidar from the pose [m], team frame
     age: float = 0.0  # how long ago it was taken [s]
+    mapped: bool = False  # by the robot itself, whose map is the evidence: it is none
+
+    @property
+    def unread(self) -> Scan:
+        """The same, telling no more than where the robot has looked."""
+        return replace(self, ranges=np.full(len(self.ranges), np.nan))
 
 
 @dataclass(frozen=True, eq=False)

@@ -155,6 +155,9 @@ class Framing(Protocol):
             ValueError: it cannot be.
         """
 
+    def ground(self) -> Reach | None:
+        """Return where on the round's plane what this robot is joined with can be; None: it is not on it."""
+
     def in_own(self, robot: int) -> Transform | None:
         """Return where a robot's frame lies in this one's; None: it is not known."""
 

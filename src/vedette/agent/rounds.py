@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import partial, reduce
 from math import inf
 from typing import Any
 
@@ -19,7 +19,7 @@ from vedette.agent.effects import Effect, Job, Shun
 from vedette.agent.events import Pose, TreeChanged
 from vedette.agent.mates import Mate
 from vedette.agent.messages import Begin, Call, Flushed, Freeze, Negotiate
-from vedette.agent.mission import Mission
+from vedette.agent.mission import Framing, Mission
 from vedette.agent.opinion import Opinion
 from vedette.agent.pace import Pace
 from vedette.agent.participant import RoundParticipant
@@ -41,6 +41,7 @@ class Decision:
 
     time: float
     value: float  # of the team's choice: as this robot sees it, if it sees all of it, prices not taken off
+    elsewhere: bool  # it is worth something, too, on maps that nothing joins with this robot's
     approximate: bool  # its belief was not the root's, or it decided without the team or its own say
     blocked: bool  # this robot planned with its mates in the way
     alone: bool = False  # nobody else had part in the round, though there are others
@@ -263,15 +264,34 @@ class Rounds:
             )
         self._end(now)
         self.team_impact = round_.team_seen
-        told, seen = self._told(outcome, round_.participant), self._seen(round_, round_.participant)
+        value, elsewhere = self._worth(outcome, round_, round_.participant)
         approximate = round_.approximate or not took_part
-        self.decided(Decision(now, self._opinion.of(told, seen), approximate, round_.blocked, lonely))
+        self.decided(Decision(now, value, elsewhere, approximate, round_.blocked, lonely))
         if lonely:
             return effects
         self._wanted |= not took_part
         if not took_part:
             return [*effects, *self._fail()]
         return [*effects, *(self._shun() if self._upwards.ends(self.tree, round_.approximate) else [])]
+
+    def _worth(
+        self, outcome: RoundOutcome, round_: Round, own: RoundParticipant[Any, Any, Any]
+    ) -> tuple[float, bool]:
+        """Return what the team's choice is worth to who is joined, and whether it is to anybody else.
+
+        On a map that nothing joins with this robot's, who is there can claim what it likes, and nobody else
+        can do anything about it: that keeps nobody at work.
+        """
+        value = self._opinion.of(self._told(outcome, own), self._seen(round_, own))
+        ground = self.mission.ground() if isinstance(self.mission, Framing) else None
+        if ground is None:
+            return value, False
+        team = self.team_impact
+        if team is None:
+            team = reduce(own.combine, round_.claims.values(), own.impact)
+        here, rest = own.clip(team, ground), own.value(team) + own.price(team)
+        worth = own.value(here) + own.price(here)
+        return worth, rest > worth
 
     def _told(self, outcome: RoundOutcome, own: RoundParticipant[Any, Any, Any]) -> float:
         """Return what the team's choice is told to be worth, which is with prices taken off.

@@ -105,6 +105,7 @@ class Agent:
     proofs: Proofs | None = field(default=None, init=False)  # of lies, where robots sign
     framing: Framing | None = field(default=None, init=False)  # where robots share no frame
     quiet: int = 0  # rounds in a row with nothing to gain for anybody
+    elsewhere: bool = False  # there is, for who is on maps that nothing joins with this robot's
     beacons: int = 0  # sent
     due: dict[str, float] = field(default_factory=dict)  # when what is to be done next [s]
     news: bool = False  # a new decision waits to be carried out
@@ -181,13 +182,15 @@ class Agent:
     @property
     def ending(self) -> Outcome:
         """How the mission ends for this robot, once it is done."""
-        return self.behaviour.ending
+        ending = self.behaviour.ending
+        return Outcome.UNJOINED if self.elsewhere and ending is Outcome.COMPLETE else ending
 
     def _decided(self, decision: Decision) -> None:
         """Count rounds with nothing to gain; one alone with nothing to gain says nothing of the team's."""
         exact = decision.alone or not decision.approximate
         quiet = exact and not decision.blocked and self.mission.nothing_left(decision.value, decision.time)
         self.quiet = self.quiet + (not decision.alone) if quiet else 0
+        self.elsewhere = decision.elsewhere
         self.news = True
 
     def is_due(self, what: str, period: float, now: float) -> bool:

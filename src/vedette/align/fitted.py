@@ -45,17 +45,3 @@ def fitted(a: Charted, b: Charted, guess: FramePose, walls: int) -> Fit:
     spread = (FLOOR**2 + laid.squares) * max(1.0, INDEPENDENT / (b.cell * step))
     covariance = np.asarray(np.linalg.inv(laid.matrix + _SINGULAR * np.eye(3)) * spread, np.float64)
     return Fit(FramePose.of(*laid.pose.tolist()), covariance, laid.paired * step)
-
-
-def pulled(a: Charted, b: Charted, taken: FramePose, walls: int) -> tuple[float, float]:
-    """Return how far the walls of both pull B from where it is taken to lie, at its middle [m], [rad].
-
-    Walls that lie a few degrees askew still fall near each other, and contradict nothing; but they pull.
-
-    Args:
-        a: whose walls stay.
-        b: whose walls move.
-        taken: T_a_b between the middles.
-        walls: how many of B's are used at most.
-    """
-    return fitted(a, b, taken, walls).pose.apart(taken, np.zeros(2))

@@ -44,6 +44,11 @@ class FrameEdge(NamedTuple):
         """The same as it is seen from b."""
         return FrameEdge(self.b, self.a, self.there.inverse(), self.weight, self.kind)
 
+    @property
+    def upwards(self) -> FrameEdge:
+        """The same as it is seen from the lower contributor."""
+        return self if self.a < self.b else self.inverse
+
 
 def room_for(robots: int) -> int:
     """Return how many numbers one contributor has for its edges, in a team of so many."""

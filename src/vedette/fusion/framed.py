@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from vedette.fusion.digest import fingerprint
 from vedette.fusion.frame_edges import FrameEdge, room_for, unpacked
-from vedette.fusion.link import RESEND_AFTER, Key
+from vedette.fusion.link import Key
 from vedette.fusion.rendering import Frames, Rendering
 from vedette.fusion.replicated import ReplicatedEvidence
 from vedette.fusion.replicated_map import ReplicatedMap, SnapshotT
@@ -137,23 +137,14 @@ class FramedEvidence(FramedMap[Snapshot[np.uint8]], ReplicatedEvidence):
     out = frozenset()
 
     def __init__(
-        self,
-        robot: int,
-        boot: int,
-        frame: GridFrame,
-        counts_size: int,
-        robots: int,
-        *,
-        mark: int = 0,
-        resend_after: float = RESEND_AFTER,
+        self, robot: int, boot: int, frame: GridFrame, counts_size: int, robots: int, *, mark: int = 0
     ) -> None:
         """Start with nothing known; as `ReplicatedEvidence`.
 
         ``frame``: of everybody's cells, each about the origin of its own frame. ``counts_size``: numbers that
         are counts; behind them come each contributor's edges, of which there is room for some a robot.
         """
-        size = counts_size + room_for(robots)
-        super().__init__(robot, boot, frame.shape, size, mark=mark, resend_after=resend_after)
+        super().__init__(robot, boot, frame.shape, counts_size + room_for(robots), mark=mark)
         self._begin(frame, counts_size, mark)
 
     def _merge(self, changes: Mapping[Key, Change | None]) -> NDArray[np.int64]:

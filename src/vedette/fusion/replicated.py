@@ -26,19 +26,12 @@ class ReplicatedEvidence(ReplicatedMap[Snapshot[np.uint8]]):
     """
 
     def __init__(
-        self,
-        robot: int,
-        boot: int,
-        shape: tuple[int, int],
-        counts_size: int,
-        *,
-        mark: int = 0,
-        resend_after: float = RESEND_AFTER,
+        self, robot: int, boot: int, shape: tuple[int, int], counts_size: int, *, mark: int = 0
     ) -> None:
         """Start with nothing known; ``boot < 2**38`` must differ from those of the robot's earlier starts."""
         tiling = Tiling(*shape)
         contributors: Contributors[Snapshot[np.uint8], Delta[np.uint8]] = Contributors(
-            robot, boot, lambda: Snapshot(tiling, counts_size, np.uint8), resend_after
+            robot, boot, lambda: Snapshot(tiling, counts_size, np.uint8), RESEND_AFTER
         )
         codec = EvidenceCodec(tiling, counts_size, CodePacking())
         super().__init__(tiling, counts_size, mark, codec, contributors)

@@ -12,6 +12,7 @@ from vedette.fusion import particulars as wire
 from vedette.fusion.codec import EvidenceCodec
 from vedette.fusion.contributors import Contributors
 from vedette.fusion.link import RESEND_AFTER, Key
+from vedette.fusion.own_word import OwnWord
 from vedette.fusion.packing import CodePacking
 from vedette.fusion.particulars import Capabilities, Note, Particulars, SignedPlace
 from vedette.fusion.replicated import summed
@@ -80,7 +81,6 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
         notary: Notary,
         limits: Capabilities,
         mark: int = 0,
-        resend_after: float = RESEND_AFTER,
         behind: int = 0,
     ) -> None:
         """Start with nothing known; ``boot < 2**38`` must differ from those of the robot's earlier starts.
@@ -92,7 +92,7 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
         standing = Standing(notary)
         sealing = MapSealings(standing, tiling, counts_size, counted, limits)
         contributors: Contributors[SealedSnapshot, Delta[np.uint8]] = Contributors(
-            robot, boot, lambda: SealedSnapshot(tiling, counts_size), resend_after, sealing
+            robot, boot, lambda: SealedSnapshot(tiling, counts_size), RESEND_AFTER, sealing
         )
         codec = EvidenceCodec(tiling, counts_size, CodePacking(), sealed=True)
         super().__init__(tiling, counts_size, mark, codec, contributors)
@@ -100,6 +100,7 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
         self.unsettled = False  # time alone may change who is believed
         self.standing = standing
         self._trust = Trust(tiling, limits.resolution)
+        self._own_word = OwnWord(tiling, limits)
         self._excluded, self._reinstated = frozenset[int](), frozenset[int]()  # by the operator's word
         self._again: dict[int, int] = {}  # tiles to look at again, since evidence grows firm: when [0.1 s]
         self._told: Particulars | None = None  # by this robot
@@ -120,7 +121,8 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
     def complaints(self) -> dict[int, str]:
         """What is wrong with whom, by robot."""
         alone = "its evidence contradicts that of two others or more: the map and the plans leave it out"
-        return dict.fromkeys(self.out, alone) | self._contributors.complaints | self.standing.said
+        told = dict.fromkeys(self.out, alone) | self._own_word.complaints
+        return told | self._contributors.complaints | self.standing.said
 
     def heed(self) -> None:
         """Take up that somebody has gone."""
@@ -205,7 +207,10 @@ class SignedEvidence(ReplicatedMap[SealedSnapshot]):
         for key, change in changes.items():
             copy = self._contributors.copies[key]
             if change is not None and key != self._contributors.key and copy.place:
-                self._placed[key] = wire.decode_place(copy.place), copy.seal.time
+                place = wire.decode_place(copy.place)
+                self._placed[key] = place, copy.seal.time
+                if copy.particulars:
+                    self._own_word.take(key, place, wire.decode(copy.particulars), copy)
 
     @property
     def _times(self) -> TimesOf:

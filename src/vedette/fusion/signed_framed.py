@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from vedette.fusion import particulars as wire
 from vedette.fusion.frame_edges import room_for
 from vedette.fusion.framed import FramedMap
-from vedette.fusion.link import RESEND_AFTER, Key
+from vedette.fusion.link import Key
 from vedette.fusion.particulars import Capabilities, Note
 from vedette.fusion.rendering import Frames
 from vedette.fusion.sealed import SealedSnapshot
@@ -55,16 +55,11 @@ class SignedFramedEvidence(FramedMap[SealedSnapshot], SignedEvidence):
         notary: Notary,
         limits: Capabilities,
         mark: int = 0,
-        resend_after: float = RESEND_AFTER,
     ) -> None:
         """Start with nothing known; as `FramedEvidence` and `SignedEvidence`."""
+        behind = room_for(robots)
         super().__init__(
-            *(robot, boot, frame.shape, counts_size),
-            notary=notary,
-            limits=limits,
-            mark=mark,
-            resend_after=resend_after,
-            behind=room_for(robots),
+            robot, boot, frame.shape, counts_size, notary=notary, limits=limits, mark=mark, behind=behind
         )
         self._trust = TrustAcrossFrames(Tiling(*frame.shape), limits.resolution)
         self._told_at: dict[Key, dict[int, Times]] = {}  # of each contributor's tiles on the plane

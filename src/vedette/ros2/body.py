@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from math import atan2, hypot, nan
+from math import atan2, hypot
 
 import numpy as np
 
@@ -226,10 +226,9 @@ class Ros2Body:
         """Return a scan in the team's frame, as taken where the robot was in its middle."""
         knots = [self.settings.T_team_map @ T for T in placed.knots]
         seen = beams(placed.sweep, knots, self.settings.no_return)
-        if self.settings.evidence == "map":  # it only tells where the robot has looked
-            seen = replace(seen, ranges=np.full(len(seen.ranges), nan))
         pose = self._pose_at(placed.T_map_base)
-        return pose, Scan(seen.angles, seen.ranges, (seen.x - pose.x, seen.y - pose.y), placed.age)
+        mapped = self.settings.evidence == "map"
+        return pose, Scan(seen.angles, seen.ranges, (seen.x - pose.x, seen.y - pose.y), placed.age, mapped)
 
     def _own_map(self, now: float) -> list[Event]:
         """Return the robot's own map, if that is its evidence and there is news of it."""

@@ -113,12 +113,12 @@ class Robots:
         return 0.0, 0.0, 0.0
 
     def _seen(self, i: int, pose: Pose, now: float, arrived: bool) -> list[Event]:
-        """Return a scan; of a robot with a SLAM where it has looked, and its map if there is a new one."""
+        """Return a scan; of a robot with a SLAM its map, too, if there is a new one."""
         scan, slam = self._scan(i, pose.heading), self._slams[i]
         if slam is None:
             return [scan]
         own_map = slam.look(scan, now, arrived)
-        looked = replace(scan, ranges=np.full(len(scan.ranges), math.nan))
+        looked = replace(scan, mapped=True)
         return [looked] if own_map is None else [looked, Sensed(own_map, now)]
 
     def _scan(self, i: int, told_heading: float) -> Scan:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
 
 from tests.support.small_missions import robots, small_office
 from vedette.agent.events import Sensed
+from vedette.missions.explore.frames.exploring import FramedExploring
 from vedette.missions.explore.own_map import OwnMap
-from vedette.sim.explore.run import explore, prepare
+from vedette.sim.explore.run import ExploreRun, explore, prepare
 from vedette.sim.explore.simulation import ExploreSetup
 from vedette.sim.framed import FramedRobots
 
@@ -23,6 +26,23 @@ def test_robots_that_drift_find_each_others_frames_and_map_an_office_together() 
     assert summary.map_error_share < 0.01
     assert summary.frames is not None
     assert summary.frames.components == (("robot-1", "robot-2"),)
+
+
+def test_robots_with_a_slam_meet_and_what_it_puts_right_since_bends_no_join() -> None:
+    team = [replace(spec, drift=0.005) for spec in robots(2)]
+    simulation = prepare(small_office(seed=1), team, ExploreSetup(seed=9, frames="unknown"))
+    missions = [cast(FramedExploring, mission) for mission in simulation.missions]
+    for mission in missions:
+        mission.matcher._due = math.inf  # nobody lays their maps on each other
+    run = ExploreRun(simulation)
+    while simulation.now < 90.0 and missions[0].frames.own(1) is None:
+        run.step()
+    simulation.stop()
+    found = run.run().summary.frames
+    assert found is not None
+    assert [join.by for join in found.joins] == ["meeting"]
+    assert found.joins[0].error_m < 0.4
+    assert found.joins[0].error_deg < 4.0
 
 
 def test_the_map_that_a_slam_tells_lies_in_the_robots_own_frame() -> None:

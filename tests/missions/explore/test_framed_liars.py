@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any, cast
 
 import numpy as np
 import pytest
 
-from tests.support.lies import Free, Occupied
+from tests.support.lies import Claims, Far, Free, Occupied
 from tests.support.notaries import PlainNotary
 from tests.support.small_missions import robots, small_office
 from vedette.agent import Agent
@@ -16,6 +17,7 @@ from vedette.maps.transform import TURN, Transform
 from vedette.missions.explore.assemble import assemble
 from vedette.missions.explore.exploring import Exploring
 from vedette.missions.explore.frames.exploring import FramedExploring
+from vedette.outcome import Outcome
 from vedette.record.explore.score import map_errors
 from vedette.sim.explore.frames import FrameWatch
 from vedette.sim.explore.run import views
@@ -48,6 +50,18 @@ class FramedFree(Free, FramedExploring):
     """There are no walls."""
 
 
+class FramedClaims(Claims, FramedExploring):
+    """It will soon see the whole of what is worth most."""
+
+
+class FreeClaims(Claims, FramedFree):
+    """The same, where there are no walls, and it shows what it claims."""
+
+
+class FramedFar(Far, FramedExploring):
+    """There is a free place far away."""
+
+
 class Insider(ExploreSimulation):
     """A team of three that signs and shares no frame, whose last one is an insider."""
 
@@ -65,6 +79,12 @@ class Insider(ExploreSimulation):
         team = self.lattice, self.specs[robot], self.setup.options, robot, boot
         notary = PlainNotary(robot, lambda: self.now)
         return assemble(*team, robots=3, most=Most.of(self.specs), notary=notary, **how)
+
+    @property
+    def over(self) -> Outcome | None:
+        """When the honest are done."""
+        done = all(self.network.agents[i].done for i in range(LIAR))
+        return Outcome.COMPLETE if done else super().over
 
     def look(self) -> None:
         """Note who is joined, and whom the honest complain of."""
@@ -112,3 +132,37 @@ def test_what_an_insider_says_of_walls_spoils_nobodys_map_and_nobody_honest_is_n
     liar: type[Exploring],
 ) -> None:
     played(liar, 120.0)
+
+
+@cache
+def without() -> float:
+    """Return when the others are done where the insider is dead from the beginning [s]."""
+    team = Insider(FramedExploring, 300.0)
+    team.field.kill(LIAR)
+    team.network.killed(LIAR, 0.0)
+    assert team.run(team.look, 2.0) is Outcome.COMPLETE
+    return team.now
+
+
+@pytest.mark.parametrize(
+    "liar",
+    [
+        FreeClaims,
+        *(
+            pytest.param(each, marks=pytest.mark.slow)
+            for each in (FramedFree, FramedOccupied, FramedFar, FramedClaims)
+        ),
+    ],
+)
+def test_what_an_insider_claims_of_a_map_of_its_own_keeps_nobody_else_at_work(liar: type[Exploring]) -> None:
+    team = Insider(liar, 300.0)
+    assert team.run(team.look, 2.0) is Outcome.COMPLETE
+    assert team.now <= 1.2 * without()
+    for agent, view in zip(team.network.agents[:LIAR], views(team), strict=False):
+        assert agent.ending in (Outcome.COMPLETE, Outcome.UNJOINED)
+        assert agent.signed is not None
+        assert agent.signed.out <= {LIAR}
+        seen = np.where(_looked(team), view.classes_on(team.world.frame), 0)
+        wrong, known = map_errors(team.world, seen)
+        assert wrong <= 0.01 * known
+        assert known > 0.9 * np.count_nonzero(~team.world.solid)

@@ -14,7 +14,7 @@ from scipy.ndimage import distance_transform_edt
 
 from tests.support.small_missions import robots, small_office
 from vedette.errors import InputError
-from vedette.fusion.frame_edges import FrameEdge
+from vedette.fusion.frame_edges import EdgeKind, FrameEdge
 from vedette.fusion.link import Key
 from vedette.kernels.coverage import Footprints
 from vedette.maps import GridFrame
@@ -60,7 +60,7 @@ def test_whoever_a_chain_of_edges_joins_lies_where_the_truth_says_in_the_lowest_
         a, b = (i, j) if rng.random() < 0.5 else (j, i)
         there = true[a].inverse().after(true[b])
         edges.append(FrameEdge(keys[a], keys[b], there, int(rng.integers(500, 9000))))
-    graph = solved(edges, keys, dict.fromkeys(keys, (1.0, 2.0)), always, always)
+    graph = solved(edges, keys, dict.fromkeys(keys, (1.0, 2.0)), always)
     group = list(range(n))  # by the definition: who can be reached
     for i, j in pairs:
         group = [min(group[i], group[j]) if g in (group[i], group[j]) else g for g in group]
@@ -80,7 +80,7 @@ def test_one_wrong_edge_in_a_cycle_bends_nothing_if_it_is_the_lightest(wrong: in
         if number == wrong:
             there = Transform(there.x + 900, there.y, there.angle)
         edges.append(FrameEdge(keys[a], keys[b], there, 1000 if number == wrong else 5000))
-    graph = solved(edges, keys, dict.fromkeys(keys, (0.0, 0.0)), always, always)
+    graph = solved(edges, keys, dict.fromkeys(keys, (0.0, 0.0)), always)
     assert all(is_close(graph[key].there, there, 0.01) for key, there in zip(keys, true, strict=True))
 
 
@@ -91,12 +91,12 @@ def test_edges_that_nearly_agree_share_the_difference() -> None:
         FrameEdge(keys[1], keys[2], Transform(1000, 0, 0), 5000),
         FrameEdge(keys[0], keys[2], Transform(2090, 0, 0), 5000),
     ]
-    graph = solved(edges, keys, dict.fromkeys(keys, (0.0, 0.0)), always, always)
+    graph = solved(edges, keys, dict.fromkeys(keys, (0.0, 0.0)), always)
     assert graph[keys[1]].there.x == pytest.approx(1030, abs=2)  # by hand: 9 cm over three edges alike
     assert graph[keys[2]].there.x == pytest.approx(2060, abs=2)
 
 
-def test_what_evidence_does_not_bear_out_joins_nobody_and_what_it_contradicts_parts_at_the_lightest() -> None:
+def test_a_meeting_that_evidence_refuses_joins_nobody_and_what_it_contradicts_parts_at_the_lightest() -> None:
     keys = keys_of(4)
     edges = [
         FrameEdge(keys[0], keys[1], Transform(1000, 0, 0), 5000),
@@ -104,9 +104,10 @@ def test_what_evidence_does_not_bear_out_joins_nobody_and_what_it_contradicts_pa
         FrameEdge(keys[2], keys[3], Transform(1000, 0, 0), 4000),
     ]
     at = dict.fromkeys(keys, (0.0, 0.0))
-    graph = solved(edges, keys, at, lambda a, b, there: (a, b) != (keys[2], keys[3]), always)
+    met = [*edges[:2], edges[2]._replace(kind=EdgeKind.MEETING)]
+    graph = solved(met, keys, at, lambda a, b, there: (a, b) != (keys[2], keys[3]))
     assert [graph[key].anchor for key in keys] == [keys[0], keys[0], keys[0], keys[3]]
-    graph = solved(edges, keys, at, always, lambda a, b, there: (a, b) != (keys[0], keys[3]))
+    graph = solved(edges, keys, at, lambda a, b, there: (a, b) != (keys[0], keys[3]))
     assert [graph[key].anchor for key in keys] == [keys[0], keys[0], keys[2], keys[2]]
     assert graph[keys[3]] == Placed(keys[2], Transform(1000, 0, 0))
 
@@ -114,7 +115,7 @@ def test_what_evidence_does_not_bear_out_joins_nobody_and_what_it_contradicts_pa
 def test_of_two_edges_between_a_pair_the_heavier_counts_whoever_tells_it() -> None:
     a, b = keys_of(2)
     edges = [FrameEdge(a, b, Transform(1, 0, 0), 10), FrameEdge(b, a, Transform(7000, 0, 0), 20)]
-    graph = solved(edges, [a, b], {a: (0.0, 0.0), b: (0.0, 0.0)}, always, always)
+    graph = solved(edges, [a, b], {a: (0.0, 0.0), b: (0.0, 0.0)}, always)
     assert graph[b].there == Transform(-7000, 0, 0)
 
 
@@ -158,6 +159,15 @@ def test_a_component_that_the_plane_has_no_room_for_is_left_out() -> None:
     graph = {a: Placed(a, IDENTITY), b: Placed(b, IDENTITY)}
     box = (-30.0, -30.0, 30.0, 30.0)
     assert [each.key for each in laid_out(graph, {a: box, b: box}, 17.0, 40.0)] == [a]
+
+
+def test_whoever_tells_of_a_boundless_map_leaves_the_others_their_room() -> None:
+    keys = keys_of(3)
+    graph = {key: Placed(key, IDENTITY) for key in keys}
+    boxes = {keys[0]: (-390.0, -390.0, 390.0, 390.0)} | dict.fromkeys(keys[1:], (-30.0, -20.0, 30.0, 20.0))
+    laid = laid_out(graph, boxes, 41.0, 400.0)
+    assert [each.key for each in laid] == keys[1:]
+    assert laid[0].there == IDENTITY
 
 
 def test_footprints_on_the_plane_cover_what_they_cover_in_the_robots_own_frame() -> None:

@@ -32,6 +32,12 @@ class Given:
     def of(self, key: Key) -> Charted:
         return self.charts[key]
 
+    def ground(self, key: Key) -> float:
+        return len(self.charts[key].free) * self.charts[key].cell ** 2
+
+    def name(self, key: Key) -> bytes:
+        return self.charts[key].classes.tobytes()
+
     def versions(self, *keys: Key) -> int:
         return 7
 
@@ -102,3 +108,12 @@ def test_what_evidence_has_contradicted_is_not_judged_again_as_it_is() -> None:
     one.drop((A, B))
     look(one, 30, 300)
     assert not one.found
+
+
+def test_who_tells_of_many_starts_takes_nobodys_turn() -> None:
+    one, _ = matcher(part(building(1), 0.0, 9.0, HERE), part(building(2), 0.0, 9.0, THERE))
+    keys: list[Key] = [(0, boot) for boot in range(5)] + [(1, 6), (2, 7)]
+    graph = {key: Placed(key, IDENTITY) for key in keys}
+    pairs = list(one._mine(graph, {0, 1, 2}))
+    assert set(pairs[:2]) == {((0, 4), (1, 6)), ((0, 4), (2, 7))}
+    assert len(pairs) == 5 * 4 // 2 + 5 * 2

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from typing import cast
 
 import numpy as np
@@ -11,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.support.small_missions import robots, small_office
+from vedette.agent.events import Pose
 from vedette.agent.mates import Mate
 from vedette.fusion.frame_edges import EdgeKind, FrameEdge, packed, room_for, unpacked
 from vedette.fusion.link import Key
@@ -39,7 +41,12 @@ def moved(track: Floats, x: float, y: float) -> Floats:
     return track + np.array((x, y))
 
 
-def watch(seen: list[Floats], said: dict[Key, Floats], noise: float = 0.01) -> Meetings:
+def watch(
+    seen: list[Floats],
+    said: dict[Key, Floats],
+    noise: float = 0.01,
+    unplaced: Collection[Key] | None = None,
+) -> Meetings:
     """Let a robot see discs on some ways, and hear mates say theirs, each in its frame."""
     meetings, rng = Meetings(OWN), np.random.default_rng(3)
     for tick in range(max(len(track) for track in (*seen, *said.values()))):
@@ -53,7 +60,7 @@ def watch(seen: list[Floats], said: dict[Key, Floats], noise: float = 0.01) -> M
         if tick % 2 == 0:
             places = [track[tick] + rng.normal(0.0, noise, 2) for track in seen if tick < len(track)]
             meetings.see([(float(x), float(y), 0.2) for x, y in places], now)
-        meetings.compare(now)
+        meetings.compare(said.keys() if unplaced is None else unplaced, now)
     return meetings
 
 
@@ -92,6 +99,33 @@ def test_of_two_mates_that_say_the_same_way_neither_is_met() -> None:
     assert meetings.refused["several might have been met"] > 0
 
 
+def test_who_says_the_way_of_a_mate_that_is_known_to_be_there_is_not_met() -> None:
+    walked = way(CORNERS)
+    said = {MATE: walked, THIRD: moved(walked, 3.0, 1.0)}
+    meetings = watch([walked], said, unplaced=[THIRD])
+    assert not meetings.found
+    assert meetings.refused["several might have been met"] > 0
+    alone = watch([walked], {MATE: walked, THIRD: moved(way(CORNERS[::-1]), 3.0, 1.0)}, unplaced=[THIRD])
+    assert not alone.found  # nor is he who is known, again
+
+
+def test_where_a_slam_puts_its_place_right_a_meeting_is_less_certain_and_taken_back_in_the_end() -> None:
+    walked = way(CORNERS)
+    meetings = watch([walked], {MATE: walked})
+    weights = [meetings.found[OWN, MATE].weight]
+    meetings.stand(Pose(0.0, 0.0, 0.0), 0.5, 100.0)
+    meetings.stand(Pose(0.1, 0.0, 0.0), 0.5, 100.2)  # as far as it drives
+    assert meetings.found[OWN, MATE].weight == weights[0]
+    for number in range(2):
+        meetings.stand(Pose(0.2 + 0.1 * number, 0.0, 0.0), 0.5, 100.2)  # by ten centimetres
+        weights.append(meetings.found[OWN, MATE].weight)
+    # by hand: 10 m leave 2 cm, and at least the square of 10 and of 20 cm is left
+    assert weights[0] > 40 >= weights[1] > 10 >= weights[2]
+    meetings.stand(Pose(0.5, 0.0, 0.0), 0.5, 100.2)
+    assert not meetings.found
+    assert meetings.refused["put right since"] == 1
+
+
 def test_two_discs_are_told_apart_by_their_ways() -> None:
     there, other = Transform(4000, -2000, 9000), Transform(-500, 900, 40_000)
     one, two = way(CORNERS), way([(8.0, 1.0), (6.0, 1.0), (6.0, 4.0), (9.0, 4.0)])
@@ -123,6 +157,11 @@ def test_a_meeting_counts_if_both_tell_it_and_about_the_same() -> None:
     mine, theirs = met(OWN, MATE, there), met(MATE, OWN, Transform(1520, -700, 8020).inverse())
     assert set(told_by_both({OWN: [mine], MATE: [theirs]}, AT)) == {mine, theirs}
     assert told_by_both({OWN: [mine]}, AT) == []
+    boast = met(MATE, OWN, there.inverse(), 1 << 40)
+    doubted = met(OWN, MATE, there, 9)
+    assert {edge.weight for edge in told_by_both({OWN: [doubted], MATE: [boast]}, AT)} == {9}
+    boasts = {OWN: [met(OWN, MATE, there, 1 << 40)], MATE: [boast]}
+    assert {edge.weight for edge in told_by_both(boasts, AT)} == {700}
     elsewhere = met(MATE, OWN, Transform(2500, -700, 8000).inverse())
     assert told_by_both({OWN: [mine], MATE: [elsewhere]}, AT) == []
     assert told_by_both({OWN: [mine], MATE: [theirs]}, {OWN: (0.0, 0.0)}) == []  # nothing seen to lay

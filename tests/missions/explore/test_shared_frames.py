@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from itertools import permutations
 
 import msgspec
 import numpy as np
@@ -18,6 +19,9 @@ from vedette.fusion.link import Key
 from vedette.kernels.tiles import TiledGrid
 from vedette.maps import GridFrame
 from vedette.maps.transform import IDENTITY, Transform
+from vedette.missions.explore.frames import charts
+from vedette.missions.explore.frames.borne_out import BorneOut
+from vedette.missions.explore.frames.charts import Charts
 from vedette.missions.explore.frames.shared import SharedFrames
 
 KEYS: list[Key] = [(0, 5), (1, 5)]
@@ -50,11 +54,15 @@ def team(second: NDArray[np.int8], edges: list[FrameEdge]) -> list[SharedFrames]
 def talk(both: list[FramedEvidence]) -> None:
     for one, other in ((0, 1), (1, 0)):
         both[one].set_neighbours([other])
+    exchange(both)
+
+
+def exchange(team: list[FramedEvidence]) -> None:
     for second in range(6):
-        for one, other in ((0, 1), (1, 0)):
-            payload = both[one].outgoing(other, 3.0 * second)
+        for one, other in permutations(range(len(team)), 2):
+            payload = team[one].outgoing(other, 3.0 * second)
             if payload is not None:
-                both[other].receive(one, payload, 3.0 * second)
+                team[other].receive(one, payload, 3.0 * second)
 
 
 def moved(grid: NDArray[np.int8]) -> NDArray[np.int8]:
@@ -109,6 +117,68 @@ def test_a_join_that_evidence_comes_to_contradict_is_undone_and_nothing_is_lost(
     assert held == two.evidence.copies[KEYS[1]].version
     alone = one.evidence.classes.window()
     assert np.array_equal(alone != 0, seen(slice(0, 100)) != 0)
+
+
+def test_a_match_is_renewed_by_all_as_maps_change_whatever_was_told_of_it_first() -> None:
+    one, two = team(moved(seen(slice(0, 100))), [edge(THERE)])
+    assert is_joined(one)
+    bent = np.roll(moved(seen(slice(0, 100))), 2, axis=1)  # its SLAM has put all of it right by 20 cm
+    for _ in range(5):
+        two.evidence.publish(TiledGrid.of(-bent), None, None)
+        two.evidence.publish(TiledGrid.of(bent), None, None)
+    talk([one.evidence, two.evidence])
+    right = Transform(THERE.x - 200, THERE.y, 0)
+    told = one.lay_out()
+    assert two.take(told)
+    assert one.take(told)
+    for there in (one.own(1), two.graph[KEYS[1]].there):
+        assert there is not None
+        assert there.apart(right, 0.0, 0.0)[0] < 0.02
+
+
+def test_others_word_of_a_match_counts_where_none_of_the_two_has_one_that_counts() -> None:
+    keys: list[Key] = [*KEYS, (2, 5)]
+    all_ = [FramedEvidence(*key, FRAME, 1, 3) for key in keys]
+    false = FrameEdge(keys[0], keys[1], Transform(90_000, 0, 0), 9000)
+    third = edge(Transform(THERE.x + 100, THERE.y, 0))._replace(weight=1 << 30)
+    for own in (edge(THERE), false, None):
+        told = [np.concatenate(([0], packed([each] if each else [], room_for(3)))) for each in (own, third)]
+        all_[0].publish(TiledGrid.of(seen(slice(0, 100))), None, np.zeros(len(told[0]), np.int64))
+        all_[1].publish(TiledGrid.of(moved(seen(slice(0, 100)))), None, told[0])
+        all_[2].publish(TiledGrid.of(seen(slice(0, 0))), None, told[1])
+        for one in all_:
+            one.set_neighbours([k for k in range(3) if k != one.key[0]])
+        exchange(all_)
+        found = BorneOut(all_[0], Charts(all_[0], FRAME)).matches(all_[0].told, keys[:2])
+        assert {(each.a, each.b) for each in found} == {tuple(keys[:2])}
+        assert all(each.there.apart(THERE, 0.0, 0.0)[0] < 0.02 for each in found)
+        assert len(found) == 1
+        assert found[0].weight == 9000 if own is not None and own.there == THERE else found[0].weight < 20_000
+
+
+def test_edges_that_change_at_every_version_are_kept_no_longer_than_they_are_told() -> None:
+    one, two = team(moved(seen(slice(0, 100))), [])
+    for version in range(12):
+        wild = [edge(Transform(version * 997, 31 * version, version * 5077))]
+        told = np.concatenate(([0], packed(wild, room_for(2))))
+        two.evidence.publish(TiledGrid.of(moved(seen(slice(0, 100)))), None, told)
+        talk([one.evidence, two.evidence])
+        one.solve()
+        one.solve()
+    assert len(one._borne_out._verdicts) + len(one._borne_out._pulled) <= 4
+
+
+@pytest.mark.parametrize("told", [(0, 0), (0, 511)])
+def test_a_map_that_says_to_reach_across_the_world_joins_nobody_and_is_not_drawn_up(
+    told: tuple[int, int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(charts, "LARGEST", 200 * 200)
+    far = moved(seen(slice(0, 100)))
+    far[told] = -20
+    one, _ = team(far, [edge(THERE)])
+    assert one.charts.of(KEYS[1]) is None
+    assert not is_joined(one)
+    assert one.charts.of(KEYS[0]) is not None
 
 
 def test_who_solves_otherwise_than_the_root_knows_that_the_round_is_approximate() -> None:

@@ -133,7 +133,7 @@ def test_a_corridor_as_wide_as_the_robot_is_reachable_to_neither(bent: bool) -> 
 
 
 def test_a_team_ends_as_its_robots_say_in_the_simulator_and_in_the_watch_alike() -> None:
-    words = (Outcome.COMPLETE, Outcome.UNREACHED, Outcome.ENCLOSED)
+    words = (Outcome.COMPLETE, Outcome.UNREACHED, Outcome.ENCLOSED, Outcome.UNJOINED)
     world, specs = room_with_a_wall(0.1), robots(3)
     plan = ExplorePlan(world, specs, np.zeros((3, 3)), ExploreOptions(), 0, 1.0)
     (condition,) = conditions()
@@ -142,11 +142,42 @@ def test_a_team_ends_as_its_robots_say_in_the_simulator_and_in_the_watch_alike()
             wanted = Outcome.ENCLOSED  # nobody can move
         elif Outcome.UNREACHED in said:
             wanted = Outcome.UNREACHED
+        elif Outcome.UNJOINED in said:
+            wanted = Outcome.UNJOINED
         else:
             wanted = Outcome.COMPLETE
         assert together(said) is wanted
         heard = [structs.replace(condition, ending=word.value, state="done") for word in said]
         assert ExploreWatcher(plan, Setting(seed=0)).over(1.0, heard, silent=False) is wanted
+
+
+def test_who_works_on_on_a_map_of_its_own_is_waited_for_as_long_again_as_most_took_and_300_s_at_least() -> (
+    None
+):
+    world, specs = room_with_a_wall(0.1), robots(3)
+    plan = ExplorePlan(world, specs, np.zeros((3, 3)), ExploreOptions(frames="unknown"), 0, 1.0)
+    (condition,) = conditions()
+    works = structs.replace(condition, state="driving")
+    done = structs.replace(condition, state="done", ending="unjoined")
+    for took, wanted in ((50.0, 350.0), (400.0, 800.0)):
+        watcher = ExploreWatcher(plan, Setting(seed=0))
+        ended = None
+        for now in np.arange(0.0, 1000.0, 10.0).tolist():
+            watcher._ways[0] = now  # it gets on
+            heard = [done, done if now >= took else works, works]
+            ended = watcher.over(now, heard, silent=False)
+            if ended is not None:
+                break
+        assert ended is Outcome.UNJOINED
+        assert now == wanted + 10.0
+    watcher = ExploreWatcher(plan, Setting(seed=0))
+    for now in np.arange(
+        0.0, 1000.0, 10.0
+    ).tolist():  # one of three is no reason, nor is who has come to an end
+        watcher._ways[0] = now
+        assert watcher.over(now, [done, works, works], silent=False) is None
+        whole = structs.replace(done, ending="complete")
+        assert watcher.over(now, [whole, whole, works], silent=False) is None
 
 
 def test_parts_that_are_cut_off_from_each_other_and_hold_other_maps_are_not_called_complete() -> None:

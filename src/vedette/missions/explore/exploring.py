@@ -126,7 +126,7 @@ class Exploring:
             row, col = self.frame.cell(pose.x, pose.y)
             self.signed.set_out(max(row, 0), max(col, 0))
         if isinstance(seen, Scan):
-            self.own.add(seen, pose, mates, now)
+            self.own.add(seen.unread if seen.mapped else seen, pose, mates, now)
             self._at = pose.x, pose.y
             self._looking.add(pose, seen.angles)
         elif isinstance(seen.data, OwnMap):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import replace
+from math import inf
 
 import numpy as np
 
@@ -47,6 +48,7 @@ class ExploreWatcher:
         self._frames: FramesSeen | None = None if shared else FramesSeen(plan)
         self._ways: dict[int, float] = {}  # of each robot by now [m]
         self._agreement = Agreement()
+        self._most_done = inf  # since when most are done [s]
         self._moved = (0.0, 0.0)  # way of all robots [m], and when it last grew [s]
 
     @property
@@ -79,12 +81,24 @@ class ExploreWatcher:
             )
             return Outcome.UNHEARD if silent else ended
         self._agreement.off()
+        if self._are_left_alone(now, heard):
+            return Outcome.UNJOINED
         way = sum(self._ways.values())
         if any(each.state == State.PAUSED.value for each in heard):  # somebody holds it there
             self._moved = self._moved[0], now
         if way > self._moved[0] + MOVED:
             self._moved = way, now
         return Outcome.NO_PROGRESS if now > self._moved[1] + NO_PROGRESS else None
+
+    def _are_left_alone(self, now: float, heard: Sequence[Condition]) -> bool:
+        """Tell whether most are done, and who is on maps that nothing joins with theirs has had its time."""
+        done = [each for each in heard if each.state == State.DONE.value]
+        if 2 * len(done) <= len(heard):
+            self._most_done = inf
+            return False
+        self._most_done = min(self._most_done, now)
+        late = now > max(2.0 * self._most_done, self._most_done + NO_PROGRESS)
+        return late and any(each.ending == Outcome.UNJOINED.value for each in done)
 
     def report(self, outcome: Outcome, timing: Timing, now: float) -> ExploreReport:
         """Return what ``vedette explore`` would."""

@@ -19,6 +19,7 @@ from vedette.logs.recorded import way_of
 from vedette.maps import UNKNOWN, GridFrame
 from vedette.maps.bounds import Bounds, Extent
 from vedette.missions.explore.assemble import assemble
+from vedette.missions.explore.frames.matching import EVERY, SETTLED
 from vedette.missions.explore.options import ExploreOptions
 from vedette.number import many
 from vedette.record.replay.summary import Replayed
@@ -116,7 +117,7 @@ class Replay:
 
     def run(self, told: Callable[[float], None] = lambda share: None) -> Replayed:
         """Replay to the end, or until stopped; ``told`` hears, now and then, which share of it is done."""
-        simulation, end = self.simulation, self.robots.duration + SETTLING
+        simulation, end = self.simulation, self.robots.duration + self._settling
         times, known, due = [0.0], [0.0], 0.0
         while simulation.now < end and not self._stopped:
             simulation.step()
@@ -128,6 +129,13 @@ class Replay:
                     self._watch.look()
                 told(min(simulation.now / end, 1.0))
         return self._replayed(times, known)
+
+    @property
+    def _settling(self) -> float:
+        """How long a team goes on after the last scan [s]: until maps that stand still are judged."""
+        if self.frames is None:
+            return SETTLING
+        return SETTLING + SETTLED[0] + 2.0 * EVERY * len(self.specs)
 
     def _known(self) -> float:
         """Area that the robot knows that knows most [m^2]."""

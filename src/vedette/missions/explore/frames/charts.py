@@ -5,23 +5,35 @@ from __future__ import annotations
 import math
 from collections import OrderedDict
 from hashlib import blake2b
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vedette.align import Charted, FramePose, charted
-from vedette.align.agreement import MapAgreement, agreement, middles
+from vedette.align.agreement import MapAgreement, agreement, middles, own_frames
 from vedette.align.candidates import ROUGHLY
-from vedette.align.fitted import pulled
+from vedette.align.fitted import fitted
 from vedette.fusion.framed import FramedMap
 from vedette.fusion.link import Key
 from vedette.fusion.tiles import CLASSES
 from vedette.kernels.tiles import SIDE, TiledGrid, Tiling
-from vedette.maps import GridFrame
+from vedette.maps import FREE, GridFrame
 from vedette.maps.transform import Transform
 
 MOST = 64  # charts that are kept
+LARGEST = 1 << 24  # that a chart is made of: 410 m square at 0.1 m [cells]
+
+
+class _Told(NamedTuple):
+    """A version of a map, by its content."""
+
+    version: int
+    name: bytes
+    free: int  # cells
+
+
+_NOTHING = _Told(0, b"", 0)
 
 
 class Charts:
@@ -31,30 +43,47 @@ class Charts:
 
     def __init__(self, evidence: FramedMap[Any], frame: GridFrame) -> None:
         self._evidence, self._frame = evidence, frame
-
-    def size(self, key: Key) -> int:
-        """Return how much a contributor has seen [tiles]."""
-        copy = self._evidence.copies.get(key)
-        return 0 if copy is None else len(copy.known_tiles)
+        self._told: dict[Key, _Told] = {}  # the latest that has been looked at
 
     def versions(self, *keys: Key) -> int:
         """Return how often contributors have told something new."""
         return sum(self._evidence.copies[key].version for key in keys)
 
+    def ground(self, key: Key) -> float:
+        """Return how much free ground a contributor's map has [m^2]."""
+        return self._latest(key).free * self._frame.resolution**2
+
+    def name(self, key: Key) -> bytes:
+        """Return what is the same for two maps iff they are."""
+        return self._latest(key).name
+
     def of(self, key: Key) -> Charted | None:
-        """Return a contributor's chart in its own frame; None: it has no wall beside free ground."""
+        """Return a contributor's chart in its own frame.
+
+        None: it has no wall beside free ground, or says to reach so far that nobody would draw it up.
+        """
         copy = self._evidence.copies.get(key)
         if copy is None or not len(copy.known_tiles):
             return None
-        tiles = copy.known_tiles
-        codes = copy.values.read(tiles)
-        name = blake2b(tiles.tobytes() + codes.tobytes(), digest_size=16).digest(), self._frame
+        name = self.name(key), self._frame
         if name not in self._kept:
-            self._kept[name] = self._made(tiles, CLASSES[codes])
+            tiles = copy.known_tiles
+            self._kept[name] = self._made(tiles, CLASSES[copy.values.read(tiles)])
             if len(self._kept) > MOST:
                 self._kept.popitem(last=False)
         self._kept.move_to_end(name)
         return self._kept[name]
+
+    def _latest(self, key: Key) -> _Told:
+        """Return what a contributor's latest version is, without drawing it up."""
+        copy, known = self._evidence.copies.get(key), self._told.get(key, _NOTHING)
+        if copy is not None and known.version != copy.version:
+            tiles = copy.known_tiles
+            codes = copy.values.read(tiles)
+            name = blake2b(tiles.tobytes() + codes.tobytes(), digest_size=16).digest()
+            free = int(np.count_nonzero(CLASSES[codes] == FREE))
+            known = self._told[key] = _Told(copy.version, name, free)
+        return known
 
     def agreement(self, a: Key, b: Key, there: Transform) -> MapAgreement | None:
         """Return how far two contributors agree where b lies in a's frame so; None: one has no chart."""
@@ -63,12 +92,18 @@ class Charts:
             return None
         return agreement(on, of, middles(on, of, pose_of(there)))
 
-    def pulled(self, a: Key, b: Key, there: Transform) -> tuple[float, float]:
-        """Return how far walls pull b from where it is taken to lie [m], [rad]; infinite without charts."""
+    def pulled(self, a: Key, b: Key, there: Transform) -> tuple[Transform, float, float]:
+        """Return where walls have b lie that is taken to lie there, and how far that is [m], [rad].
+
+        Without charts it is infinitely far.
+        """
         on, of = self.of(a), self.of(b)
         if on is None or of is None:
-            return math.inf, math.inf
-        return pulled(on, of, middles(on, of, pose_of(there)), ROUGHLY)
+            return there, math.inf, math.inf
+        taken = middles(on, of, pose_of(there))
+        pose = fitted(on, of, taken, ROUGHLY).pose
+        to = own_frames(on, of, pose)
+        return Transform.of(to.x, to.y, to.angle), *pose.apart(taken, np.zeros(2))
 
     def _made(self, tiles: NDArray[np.int64], classes: NDArray[np.uint8]) -> Charted | None:
         tiling = Tiling(*self._frame.shape)
@@ -77,6 +112,8 @@ class Charts:
         top, left = tiling.corners(tiles)
         rows = slice(int(top.min()), min(int(top.max()) + SIDE, tiling.rows))
         cols = slice(int(left.min()), min(int(left.max()) + SIDE, tiling.cols))
+        if (rows.stop - rows.start) * (cols.stop - cols.start) > LARGEST:
+            return None
         return charted(self._frame.window(rows, cols), grid.window(rows, cols))
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette.agent.effects import Job
-from vedette.agent.events import Pose
+from vedette.agent.events import Pose, Scan, Sensed
 from vedette.agent.mates import Mate
 from vedette.agent.messages import FrameTold
 from vedette.agent.orders import OrderBook
@@ -25,11 +25,13 @@ from vedette.missions.explore.exploring import Exploring
 from vedette.missions.explore.frames.footprints import on_plane
 from vedette.missions.explore.frames.matching import Matcher
 from vedette.missions.explore.frames.meetings import Meetings
+from vedette.missions.explore.frames.onlooker import Onlooker
 from vedette.missions.explore.frames.rendezvous import chances, worth_more
 from vedette.missions.explore.frames.shared import SharedFrames
 from vedette.missions.explore.frames.walls import closed
-from vedette.missions.explore.passers_by import PassersBy
+from vedette.missions.explore.passers_by import Disc, PassersBy
 from vedette.missions.ordered import no_go_areas, priority_areas
+from vedette.problem import Reach
 
 ASKEW = 0.5  # of a cell: no frame of a robot's own has its cells along the walls
 ERRAND = -1  # epoch of a job that belongs to no round
@@ -50,6 +52,8 @@ class FramedExploring(Exploring):
     _heeded: Areas | None = None  # no-go areas and priorities in the robot's own frame
     _local: MapBelief | None = None  # the round's belief in the robot's own frame
     _errands: int = 0
+    _onlooker: Onlooker = field(init=False)
+    _latest: tuple[Scan, Pose, float] | None = None  # scan, from where and when [s]
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -60,6 +64,7 @@ class FramedExploring(Exploring):
         self.frames = SharedFrames(evidence, self.frame, gap=2.0 * reach + 1.0)
         self.matcher = Matcher(evidence.key[0], self.frames.charts)
         self.meetings = Meetings(evidence.key)
+        self._onlooker = Onlooker(self.frame, self.spec)
 
     # -- evidence -----------------------------------------------------------------------------------
 
@@ -91,14 +96,29 @@ class FramedExploring(Exploring):
         edges = packed(self._edges, len(evidence.counts) - evidence.edges_from)
         return np.concatenate((super()._own_counts(), edges))
 
+    def observe(self, seen: Scan | Sensed, pose: Pose, mates: Sequence[Mate], now: float) -> None:
+        """Take in what the robot sees; where its SLAM puts its place right, meetings are less certain."""
+        super().observe(seen, pose, mates, now)
+        self.meetings.stand(pose, self.spec.speed, now)
+        if isinstance(seen, Scan):
+            self._latest = seen, pose, now
+
     def meet(self, mates: Sequence[Mate], now: float) -> None:
         """Compare what has been seen of discs that move with what mates say, each in its own frame."""
+        unplaced = {(mate.robot, mate.boot) for mate in mates if self.frames.own(mate.robot) is None}
+        if not unplaced:
+            return
+        self.meetings.hear(mates)
+        if self._latest is not None and self._latest[2] == now:
+            self.meetings.see(self._moving(*self._latest), now)
+        self.meetings.compare(unplaced, now)
+
+    def _moving(self, scan: Scan, pose: Pose, now: float) -> Sequence[Disc]:
+        """Return what may move in the latest scan, own frame."""
+        if scan.mapped:
+            return self._onlooker.look(scan, pose, now)
         assert self.own.passers_by is not None
-        unplaced = [mate for mate in mates if self.frames.own(mate.robot) is None]
-        self.meetings.hear(unplaced)
-        if unplaced and self.own.passers_by.seen == now:
-            self.meetings.see(self.own.passers_by.discs(now), now)
-        self.meetings.compare(now)
+        return self.own.passers_by.discs(now)
 
     def errand(self, living: Collection[int], now: float) -> Job | None:
         """Return a job that finds out how two contributors' frames lie, if it is time for one."""
@@ -123,6 +143,11 @@ class FramedExploring(Exploring):
             if not joined and edge in self.frames.evidence.edges:
                 self.matcher.drop(pair)
         return agrees
+
+    def ground(self) -> Reach | None:
+        """Return where on the round's plane what this robot is joined with can be; None: it is not on it."""
+        box = self.frames.ground()
+        return None if box is None else (box,)
 
     def heed(self, book: OrderBook) -> None:
         """Leave alone what is forbidden, and go first where there is priority, as far as it knows where."""

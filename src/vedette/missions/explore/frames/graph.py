@@ -19,6 +19,7 @@ from vedette.maps.transform import IDENTITY, Transform
 CLOSED = 0.3, math.radians(2.0)  # an edge that disagrees more with heavier ones counts for nothing [m, rad]
 TOLERANCE = 0.05, math.radians(0.5)  # within which two robots' solutions are one [m, rad]
 ARM = 5.0  # about the middle of a map, places of which edges say where they lie [m]
+MOST_MET = 700  # that a meeting weighs, as walls in common [cm]: no more than any match
 STEPS = 6  # of Gauss and Newton
 
 Floats = NDArray[np.float64]
@@ -42,27 +43,25 @@ def solved(
     edges: Iterable[FrameEdge],
     keys: Collection[Key],
     middles: Mapping[Key, tuple[float, float]],
-    borne_out: Agrees,
     allowed: Agrees,
 ) -> dict[Key, Placed]:
     """Return where all contributors lie that edges join; one that nothing joins lies in its own frame.
 
-    A match counts if evidence bears it out, a meeting if evidence does not speak against it; of those between
-    two the heaviest. Heavier ones go first, and one that would close a cycle has to close it. Where two that
-    are joined contradict each other, the lightest edge between them is left out, and so on until nobody does.
+    A meeting counts if evidence does not speak against it; of edges between two the heaviest. Heavier ones go
+    first, and one that would close a cycle has to close it. Where two that are joined contradict each other,
+    the lightest edge between them is left out, and so on until nobody does.
 
     Args:
-        edges: matches that anybody tells, and meetings that both who met tell.
+        edges: matches that evidence bears out, and meetings that both who met tell.
         keys: contributors.
         middles: of each one's map [m], its own frame.
-        borne_out: whether the evidence of two bears out that b lies in a's frame so.
-        allowed: whether it does not speak against it.
+        allowed: whether the evidence of two does not speak against it that b lies in a's frame so.
     """
     counting = [
         edge
-        for edge in (edge if edge.a < edge.b else edge.inverse for edge in edges)
+        for edge in (edge.upwards for edge in edges)
         if edge.a in keys and edge.b in keys
-        if (allowed if edge.met else borne_out)(edge.a, edge.b, edge.there)
+        if not edge.met or allowed(edge.a, edge.b, edge.there)
     ]
     left = _heaviest(counting)
     while True:
@@ -76,7 +75,7 @@ def solved(
 def told_by_both(
     told: Mapping[Key, Sequence[FrameEdge]], middles: Mapping[Key, tuple[float, float]]
 ) -> list[FrameEdge]:
-    """Return the meetings of which both robots tell, and about the same.
+    """Return the meetings of which both robots tell, and about the same, as certain as the less certain is.
 
     Args:
         told: by contributor, edges of any kind.
@@ -91,9 +90,10 @@ def told_by_both(
         for edge in edges:
             if not {a, edge.b} <= middles.keys():
                 continue
-            theirs = [other.inverse.there for other in met.get(edge.b, ()) if other.b == a]
-            if any(_is_closed(edge, there, middles) for there in theirs):
-                kept.add(edge)
+            theirs = [other.inverse for other in met.get(edge.b, ()) if other.b == a]
+            alike = [other.weight for other in theirs if _is_closed(edge, other.there, middles)]
+            if alike:
+                kept.add(edge._replace(weight=min(edge.weight, max(alike), MOST_MET)))
     return sorted(kept)
 
 

@@ -11,6 +11,7 @@ from vedette.maps.transform import Transform
 from vedette.missions.explore.frames.graph import Graph
 
 STEP = 8.0  # rims of components are taken at multiples of it, so that they seldom move [m]
+LARGE = 128.0  # components up to this side come first; those of twice as much next, and so on [m]
 
 Box = tuple[float, float, float, float]  # lowest x, lowest y, highest x, highest y [m]
 
@@ -26,7 +27,8 @@ class PlacedOnPlane(NamedTuple):
 def laid_out(graph: Graph, boxes: Mapping[Key, Box], gap: float, most: float) -> list[PlacedOnPlane]:
     """Return where contributors lie on one plane: one component after another along x, then in another row.
 
-    The first component's frame is the plane's. Components for which there is no room are left out.
+    The first component's frame is the plane's. Components for which there is no room are left out; large ones
+    come last, so that nobody who tells of a boundless map leaves the others no room.
 
     Args:
         graph: where contributors lie in their components.
@@ -36,11 +38,13 @@ def laid_out(graph: Graph, boxes: Mapping[Key, Box], gap: float, most: float) ->
     """
     laid: list[PlacedOnPlane] = []
     right, low, row = 0.0, 0.0, 0.0
-    anchors = sorted({placed.anchor for key, placed in graph.items() if key in boxes})
-    for part, anchor in enumerate(anchors):
-        members = {
-            key: placed.there for key, placed in graph.items() if placed.anchor == anchor and key in boxes
-        }
+    components = dict[Key, dict[Key, Transform]]()
+    for key, placed in sorted(graph.items()):
+        if key in boxes:
+            components.setdefault(placed.anchor, {})[key] = placed.there
+    ranked = sorted((_size(around(members, boxes)), anchor) for anchor, members in components.items())
+    for part, (_, anchor) in enumerate(ranked):
+        members = components[anchor]
         x0, y0, x1, y1 = around(members, boxes)
         if part == 0:
             x, y = 0.0, 0.0
@@ -55,6 +59,11 @@ def laid_out(graph: Graph, boxes: Mapping[Key, Box], gap: float, most: float) ->
         onto = Transform.of(x, y, 0.0)
         laid += [PlacedOnPlane(key, part, onto.after(there)) for key, there in sorted(members.items())]
     return laid
+
+
+def _size(box: Box) -> int:
+    """Return how many times the larger side of a box is twice what is not large."""
+    return max(0, math.ceil(math.log2(max(box[2] - box[0], box[3] - box[1]) / LARGE)))
 
 
 def around(members: Mapping[Key, Transform], boxes: Mapping[Key, Box]) -> Box:

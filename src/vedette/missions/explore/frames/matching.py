@@ -48,15 +48,15 @@ class _Attempts:
     when: float = 0.0  # [s]
     held: list[FramePose] = field(default_factory=list)  # poses, since the rule holds
     grown: tuple[float, float] = 0.0, 0.0  # of both, when they had grown last [m^2], and when [s]
-    judged: tuple[Charted, Charted] | None = None  # as saved maps, the latest
+    judged: tuple[bytes, bytes] | None = None  # maps by their names, as saved ones, the latest
 
-    def settled(self, a: Charted, b: Charted, now: float) -> bool:
+    def settled(self, ground: float, names: tuple[bytes, bytes], now: float) -> bool:
         """Tell whether neither map has grown for a while, and they have not been judged as they are."""
-        ground, (before, since) = _ground(a) + _ground(b), self.grown
+        before, since = self.grown
         if ground > SETTLED[1] * before:
             self.grown = ground, now
             return False
-        return now >= since + SETTLED[0] and not (self.judged and all(map(_is_same, self.judged, (a, b))))
+        return now >= since + SETTLED[0] and self.judged != names
 
 
 @dataclass
@@ -81,25 +81,29 @@ class Matcher:
             return None
         self._due = now + EVERY
         for pair in self._mine(graph, living):
-            a, b = (self.charts.of(key) for key in pair)
-            if a is None or b is None or min(_ground(a), _ground(b)) < LEAST:
+            grounds = [self.charts.ground(key) for key in pair]
+            if min(grounds) < LEAST:
                 continue
             there = _between(graph, *pair)
             attempts = self._attempts.setdefault(pair, _Attempts())
-            settled = attempts.settled(a, b, now) and there is None and pair not in self.found
-            ground, versions = _ground(a) + _ground(b), self.charts.versions(*pair)
+            ground, names = sum(grounds), (self.charts.name(pair[0]), self.charts.name(pair[1]))
+            settled = attempts.settled(ground, names, now) and there is None and pair not in self.found
+            versions = self.charts.versions(*pair)
             steady = there is not None and pair in self.found
             grown = FITTED_AGAIN if steady else GROWN_LITTLE if there or attempts.held else GROWN
             bent = there is not None and now >= attempts.when + FITTED_AFTER and versions > attempts.versions
             due = bent or ground >= grown * attempts.ground
             if not due and not settled:
                 continue
+            a, b = (self.charts.of(key) for key in pair)
+            if a is None or b is None:
+                continue
             attempts.ground, attempts.versions, attempts.when = ground, versions, now
             self._at_work = True
             if there is not None:
                 return partial(self._fit, pair, a, b, there)
             if not due:
-                attempts.grown, attempts.judged = (attempts.grown[0], now), (a, b)
+                attempts.grown, attempts.judged = (attempts.grown[0], now), names
                 return partial(self._judge, pair, a, b)
             return partial(self._look, pair, a, b)
         return None
@@ -119,13 +123,20 @@ class Matcher:
         self.refused["taken back"] += 1
 
     def _mine(self, graph: Graph, living: Collection[int]) -> Iterator[Pair]:
-        """Yield the pairs that this robot looks at: each the first living one of both, else of all."""
-        keys = sorted(graph)
-        for at, a in enumerate(keys):
-            for b in keys[at + 1 :]:
-                whose = next((key[0] for key in (a, b) if key[0] in living), min(living))
-                if whose == self.robot:
-                    yield a, b
+        """Yield the pairs that this robot looks at: each the first living one of both, else of all.
+
+        Latest starts come first: who tells of many takes nobody's turn.
+        """
+        keys, starts = sorted(graph), Counter[int]()
+        later = dict[Key, int]()  # starts of the same robot
+        for key in reversed(keys):
+            later[key] = starts[key[0]]
+            starts[key[0]] += 1
+        pairs = [(a, b) for at, a in enumerate(keys) for b in keys[at + 1 :]]
+        for a, b in sorted(pairs, key=lambda pair: later[pair[0]] + later[pair[1]]):
+            whose = next((key[0] for key in (a, b) if key[0] in living), min(living))
+            if whose == self.robot:
+                yield a, b
 
     def _look(self, pair: Pair, a: Charted, b: Charted) -> None:
         alignment = align(a, b)
@@ -198,15 +209,6 @@ def _between(graph: Graph, a: Key, b: Key) -> Transform | None:
 
 def _edge(pair: Pair, pose: FramePose, same: float) -> FrameEdge:
     return FrameEdge(*pair, Transform.of(pose.x, pose.y, pose.angle), round(100.0 * same))
-
-
-def _is_same(one: Charted, other: Charted) -> bool:
-    return one.frame == other.frame and np.array_equal(one.classes, other.classes)
-
-
-def _ground(chart: Charted) -> float:
-    """Return how much free ground a map has [m^2]."""
-    return len(chart.free) * chart.cell**2
 
 
 def _kind(doubt: str) -> str:

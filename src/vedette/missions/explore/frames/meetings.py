@@ -7,17 +7,19 @@ from __future__ import annotations
 
 import math
 from collections import Counter, deque
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.agent.events import Pose
 from vedette.agent.mates import Mate
 from vedette.fusion.frame_edges import EdgeKind, FrameEdge
 from vedette.fusion.link import Key
 from vedette.maps.transform import Transform
+from vedette.missions.explore.frames.graph import MOST_MET
 from vedette.missions.explore.passers_by import Disc
 
 LATELY = 10.0  # sightings and beacons count for so long [s]
@@ -35,7 +37,8 @@ CERTAIN = math.radians(1.0), 0.1  # deviations of a meeting's turn, and of its p
 SAME = 1.0, math.radians(6.0)  # two meetings with one mate that differ by more cannot both be [m, rad]
 ARM = 5.0  # about the mate, up to which a meeting has to tell how its frame lies [m]
 WALL = 10.0, 0.02  # walls in common, and the deviation that they leave [m]
-MOST = 700  # that a meeting weighs, as walls in common [cm]: no more than any match
+JUMP = 0.05  # farther than it drives a robot comes only by its SLAM, which puts it right [m]
+UNCERTAIN = 0.3  # a meeting whose place deviates more is taken back [m]
 
 Floats = NDArray[np.float64]
 Pair = tuple[Key, Key]
@@ -50,8 +53,7 @@ class Met(NamedTuple):
     @property
     def weight(self) -> int:
         """As much wall in common as leaves the same deviation, (V210) [cm]."""
-        walls, leaves = WALL
-        return max(1, min(MOST, round(100.0 * walls * (leaves / self.deviation) ** 2)))
+        return _weight(self.deviation)
 
 
 _Fits = tuple[Key, int, Met]  # whose beacons follow which disc
@@ -75,6 +77,27 @@ class Meetings:
     _discs: list[_Seen] = field(default_factory=list)
     _heard: dict[Key, deque[tuple[float, float, float]]] = field(default_factory=dict)  # when, x, y
     _due: float = 0.0
+    _deviations: dict[Pair, float] = field(default_factory=dict)  # of what has been found [m]
+    _stood: tuple[float, float, float] | None = None  # x, y [m], and when [s]
+
+    def stand(self, pose: Pose, speed: float, now: float) -> None:
+        """Take in where the robot takes itself to be, which drives at such a speed at most [m/s].
+
+        Where it has moved farther than it drives, its frame has been put right under the meetings: by how
+        much where they were nobody knows, so they are as much less certain, and in the end taken back.
+        """
+        (x, y, since), self._stood = self._stood or (pose.x, pose.y, now), (pose.x, pose.y, now)
+        shift = math.dist((x, y), (pose.x, pose.y)) - speed * (now - since) - 2.0 * pose.deviation
+        if shift <= JUMP:
+            return
+        self._discs.clear()
+        for pair, edge in list(self.found.items()):
+            self._deviations[pair] += shift
+            if self._deviations[pair] > UNCERTAIN:
+                del self.found[pair], self._deviations[pair]
+                self.refused["put right since"] += 1
+            else:
+                self.found[pair] = edge._replace(weight=_weight(self._deviations[pair]))
 
     def see(self, discs: Iterable[Disc], now: float) -> None:
         """Note where discs that may move are now, own frame."""
@@ -98,8 +121,11 @@ class Meetings:
             while said[0][0] < mate.heard - LATELY:
                 said.popleft()
 
-    def compare(self, now: float) -> None:
-        """Tell who has been met lately, if it is time to look."""
+    def compare(self, unplaced: Collection[Key], now: float) -> None:
+        """Tell who has been met lately of those whose frames are unknown, if it is time to look.
+
+        Others count as rivals: who is known to be somewhere has been seen there, whoever says the same way.
+        """
         if now < self._due:
             return
         self._due = now + EVERY
@@ -111,6 +137,8 @@ class Meetings:
                 if met is not None:
                     fits.append((key, number, met))
         for key, number, met in fits:
+            if key not in unplaced:
+                continue
             if any(_rivals((key, number, met), other) for other in fits):
                 self.refused["several might have been met"] += 1
             else:
@@ -121,7 +149,14 @@ class Meetings:
         pair = self.own, key
         known = self.found.get(pair)
         if known is None or met.weight > known.weight:
+            self._deviations[pair] = met.deviation
             self.found[pair] = FrameEdge(*pair, met.there, met.weight, EdgeKind.MEETING)
+
+
+def _weight(deviation: float) -> int:
+    """Return the walls in common [cm] that leave a deviation [m]."""
+    walls, leaves = WALL
+    return max(1, min(MOST_MET, round(100.0 * walls * (leaves / deviation) ** 2)))
 
 
 def _rivals(one: _Fits, other: _Fits) -> bool:

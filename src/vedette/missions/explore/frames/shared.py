@@ -2,38 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any
 
 from vedette.agent.messages import FrameTold
-from vedette.fusion.frame_edges import EdgeKind, FrameEdge
+from vedette.fusion.frame_edges import EdgeKind
 from vedette.fusion.framed import FramedMap
 from vedette.fusion.link import Key
 from vedette.kernels.tiles import SIDE, Tiling
 from vedette.maps import GridFrame
 from vedette.maps.transform import IDENTITY, Transform
+from vedette.missions.explore.frames.borne_out import BorneOut
 from vedette.missions.explore.frames.charts import Charts
-from vedette.missions.explore.frames.graph import CLOSED, Placed, solved, told_by_both, within
-from vedette.missions.explore.frames.layout import Box, around, laid_out
+from vedette.missions.explore.frames.graph import Placed, solved, told_by_both, within
+from vedette.missions.explore.frames.layout import Box, PlacedOnPlane, around, laid_out
 from vedette.missions.explore.frames.rendezvous import Guess, guessed
-
-BORNE_OUT = 8.0, 0.15  # walls in common at least [m], and contradicted at most, that an edge may count
-ALLOWED = 5.0, 0.25  # where more contradicts, and a larger share, two are not joined [m, 1]
-AGAIN = 8  # versions of both, after which it is looked at anew whether they agree
-
-REFUTED = 2.0, 0.5  # walls in common at most [m], or contradicted at least: two do not lie so
-PATIENCE = 24  # versions of whoever tells of such an edge, in which it could have taken it back
-
-
-class PairVerdict(NamedTuple):
-    """What the evidence of two says of where one lies on the other."""
-
-    versions: int  # of both
-    bears_out: bool
-    allows: bool = True
-    refutes: bool = False
-    same: int = 0  # walls in common [cm]
 
 
 @dataclass(eq=False)
@@ -47,11 +31,11 @@ class SharedFrames:
     graph: dict[Key, Placed] = field(default_factory=dict)
     plane: dict[Key, Transform] = field(default_factory=dict)  # T_plane_contributor of the latest round
     parts: dict[Key, int] = field(default_factory=dict)  # the component of each, then
-    _verdicts: dict[tuple[Key, Key, Transform], PairVerdict] = field(default_factory=dict)
-    _refuted: dict[tuple[Key, FrameEdge], int] = field(default_factory=dict)  # by whom, since which version
+    _borne_out: BorneOut = field(init=False)
 
     def __post_init__(self) -> None:
         self.charts = Charts(self.evidence, self.frame)
+        self._borne_out = BorneOut(self.evidence, self.charts)
         self.graph = {self.key: Placed(self.key, IDENTITY)}
 
     @property
@@ -76,15 +60,10 @@ class SharedFrames:
         keys = self.known
         middles = {key: _middle(box) for key, box in self._boxes(keys).items()}
         told = self.evidence.told
-        self._find_false(told, middles)
-        matches = {
-            self._weighed(edge)
-            for edges in told.values()
-            for edge in edges
-            if edge.kind is EdgeKind.MATCH and edge.a in middles and edge.b in middles
-        }
-        edges = [*matches, *told_by_both(told, middles)]
-        self.graph = solved(edges, keys, middles, self._bears_out, self._allows)
+        self._borne_out.begin()
+        self._borne_out.find_false(told, middles, self.key)
+        edges = [*self._borne_out.matches(told, middles), *told_by_both(told, middles)]
+        self.graph = solved(edges, keys, middles, self._borne_out.allows)
         anchor, own, _ = self.graph[self.key]
         back = own.inverse()
         self.evidence.place_own(
@@ -105,9 +84,11 @@ class SharedFrames:
     def lay_out(self) -> tuple[FrameTold, ...]:
         """As the root: return where contributors lie on the plane of a round that begins."""
         self.solve()
+        return tuple(FrameTold(*each.key, each.part, *each.there) for each in self._laid_out())
+
+    def _laid_out(self) -> list[PlacedOnPlane]:
         most = self.frame.resolution * min(self.frame.shape) / 2.0
-        laid = laid_out(self.graph, self._boxes(self.known), self.gap, most)
-        return tuple(FrameTold(*each.key, each.part, *each.there) for each in laid)
+        return laid_out(self.graph, self._boxes(self.known), self.gap, most)
 
     def take(self, told: Sequence[FrameTold]) -> bool:
         """Draw the plane as the root says; tell whether this robot has come to the same.
@@ -126,21 +107,38 @@ class SharedFrames:
         self.parts = {key: each.part for key, each in zip(keys, told, strict=True)}
         return self._agrees(self.parts)
 
-    def guesses(self) -> list[Guess]:
-        """Return where components of the latest round's plane may lie on each other, as anybody guesses."""
-        boxes, ground = self._boxes(self.plane), dict[Key, Box]()
+    def ground(self) -> Box | None:
+        """Return what of the latest round's plane is this robot's component's: a gap ends halfway [m].
+
+        None: the component is not on the plane.
+        """
+        box = self._grounds().get(self.parts.get(self.key, -1))
+        if box is None:
+            return None
+        beside = self.gap / 2.0
+        return box[0] - beside, box[1] - beside, box[2] + beside, box[3] + beside
+
+    def _grounds(self) -> dict[int, Box]:
+        """Return a box on the latest round's plane around what each component has seen [m]."""
+        boxes, grounds = self._boxes(self.plane), dict[int, Box]()
         for part in set(self.parts.values()):
             members = {key: self.plane[key] for key in boxes if self.parts[key] == part}
             if members:
-                ground |= dict.fromkeys(members, around(members, boxes))
+                grounds[part] = around(members, boxes)
+        return grounds
+
+    def guesses(self) -> list[Guess]:
+        """Return where components of the latest round's plane may lie on each other, as anybody guesses."""
+        grounds = self._grounds()
+        ground = {key: grounds[part] for key, part in self.parts.items() if part in grounds}
         edges = [edge for edge in self.evidence.edges if edge.kind is EdgeKind.GUESS]
         return guessed(edges, self.plane, ground)
 
     def _agrees(self, parts: dict[Key, int]) -> bool:
         """Tell whether the root's components are this robot's, and lie within a tolerance as it has them."""
-        boxes = self._boxes(self.known)
-        if parts.keys() != boxes.keys():
+        if parts.keys() != {each.key for each in self._laid_out()}:
             return False
+        boxes = self._boxes(parts)
         first: dict[int, Key] = {}
         anchors = dict[int, Key]()
         for key in sorted(parts):
@@ -167,62 +165,6 @@ class SharedFrames:
                 y1 = self.frame.origin_y + (rows.max() + SIDE) * cell
                 boxes[key] = float(x0), float(y0), float(x1), float(y1)
         return boxes
-
-    def _bears_out(self, a: Key, b: Key, there: Transform) -> bool:
-        return self._verdict(a, b, there).bears_out
-
-    def _allows(self, a: Key, b: Key, there: Transform) -> bool:
-        return self._verdict(a, b, there).allows
-
-    def _weighed(self, edge: FrameEdge) -> FrameEdge:
-        """Return a match that weighs no more than the evidence of both says, whatever is told of it."""
-        a, b, there = edge[:3] if edge.a < edge.b else edge.inverse[:3]
-        return edge._replace(weight=min(edge.weight, self._verdict(a, b, there).same))
-
-    def _find_false(self, told: Mapping[Key, Sequence[FrameEdge]], seen: Collection[Key]) -> None:
-        """Note who goes on telling of matches that the evidence of both refutes.
-
-        An honest robot takes such an edge back as soon as it knows of that evidence.
-        """
-        refuted: dict[tuple[Key, FrameEdge], int] = {}
-        for key, edges in told.items():
-            for edge in edges:
-                if edge.kind is not EdgeKind.MATCH or edge.a not in seen or edge.b not in seen:
-                    continue
-                a, b, there = edge[:3] if edge.a < edge.b else edge.inverse[:3]
-                if self._verdict(a, b, there).refutes:
-                    version = self.evidence.copies[key].version
-                    refuted[key, edge] = self._refuted.get((key, edge), version)
-        self._refuted = refuted
-        late = {
-            key[0]
-            for (key, _), since in refuted.items()
-            if key != self.key and self.evidence.copies[key].version >= since + PATIENCE
-        }
-        self.evidence.misleading = frozenset(late)
-
-    def _verdict(self, a: Key, b: Key, there: Transform) -> PairVerdict:
-        """Return what the evidence of two says of where one lies on the other, looked at now and then."""
-        copies = self.evidence.copies
-        versions = copies[a].version + copies[b].version
-        known = self._verdicts.get((a, b, there))
-        if known is not None and versions < known.versions + AGAIN:
-            return known
-        found = self.charts.agreement(a, b, there)
-        if found is None:
-            verdict = PairVerdict(versions, False)
-        else:
-            shift, turn = self.charts.pulled(a, b, there)
-            straight = shift <= CLOSED[0] and turn <= CLOSED[1]
-            verdict = PairVerdict(
-                versions,
-                straight and found.same >= BORNE_OUT[0] and found.contradicted <= BORNE_OUT[1],
-                found.against < ALLOWED[0] or found.contradicted <= ALLOWED[1],
-                found.same < REFUTED[0] or found.contradicted > REFUTED[1],
-                round(100.0 * found.same),
-            )
-        self._verdicts[a, b, there] = verdict
-        return verdict
 
 
 def _middle(box: Box) -> tuple[float, float]:
