@@ -25,8 +25,8 @@ from vedette.missions.explore.exploring import Exploring
 from vedette.missions.explore.frames.footprints import on_plane
 from vedette.missions.explore.frames.matching import Matcher
 from vedette.missions.explore.frames.meetings import Meetings
-from vedette.missions.explore.frames.onlooker import Onlooker
 from vedette.missions.explore.frames.rendezvous import chances, worth_more
+from vedette.missions.explore.frames.seen_moving import SeenMoving
 from vedette.missions.explore.frames.shared import SharedFrames
 from vedette.missions.explore.frames.walls import closed
 from vedette.missions.explore.passers_by import Disc, PassersBy
@@ -52,7 +52,7 @@ class FramedExploring(Exploring):
     _heeded: Areas | None = None  # no-go areas and priorities in the robot's own frame
     _local: MapBelief | None = None  # the round's belief in the robot's own frame
     _errands: int = 0
-    _onlooker: Onlooker = field(init=False)
+    _seen_moving: SeenMoving = field(init=False)
     _latest: tuple[Scan, Pose, float] | None = None  # scan, from where and when [s]
 
     def __post_init__(self) -> None:
@@ -64,7 +64,7 @@ class FramedExploring(Exploring):
         self.frames = SharedFrames(evidence, self.frame, gap=2.0 * reach + 1.0)
         self.matcher = Matcher(evidence.key[0], self.frames.charts)
         self.meetings = Meetings(evidence.key)
-        self._onlooker = Onlooker(self.frame, self.spec)
+        self._seen_moving = SeenMoving(self.frame, self.spec)
 
     # -- evidence -----------------------------------------------------------------------------------
 
@@ -116,7 +116,7 @@ class FramedExploring(Exploring):
     def _moving(self, scan: Scan, pose: Pose, now: float) -> Sequence[Disc]:
         """Return what may move in the latest scan, own frame."""
         if scan.mapped:
-            return self._onlooker.look(scan, pose, now)
+            return self._seen_moving.look(scan, pose, now)
         assert self.own.passers_by is not None
         return self.own.passers_by.discs(now)
 

@@ -15,7 +15,7 @@ from vedette.team import PlatformSpec
 
 
 @dataclass(eq=False)
-class Onlooker:
+class SeenMoving:
     """Follows what stands free and may move, and leaves the robot's map alone."""
 
     frame: GridFrame
