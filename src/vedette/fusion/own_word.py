@@ -58,7 +58,7 @@ class OwnWord:
     def _is_within_walls(self, x: float, y: float, copy: SealedSnapshot) -> bool:
         codes = self._about(x, y, copy)
         free, walls = np.isin(codes, (FREE, WEAKLY_FREE)), np.count_nonzero(codes == OCCUPIED)
-        return len(codes) > 0 and not bool(free.any()) and 2 * walls >= len(codes)
+        return bool(len(codes) and not free.any() and 2 * walls >= len(codes))
 
     def _about(self, x: float, y: float, copy: SealedSnapshot) -> NDArray[np.uint8]:
         """Return what a contributor says of the cells about a place of its frame [m], as far as there are."""
