@@ -310,6 +310,18 @@ def test_numbers_that_are_believed_give_a_bound_that_holds(data: st.DataObject) 
         assert best <= found.bound * (1.0 + 1e-12)
 
 
+@pytest.mark.parametrize("units", [(1.0, 1.0), (1e-12, 1e12), (1e150, 1e-150)], ids=str)
+def test_a_prior_that_only_rounding_makes_definite_is_refused_in_any_units(
+    units: tuple[float, float],
+) -> None:
+    scale = np.diag(units)
+    alike = scale @ np.full((2, 2), 0.5) @ scale
+    with pytest.raises(InputError, match=r"^belief: information must be positive definite"):
+        agree(LogDet(), alike, [[EYE]], Tree.chain(1))
+    apart = scale @ np.array([[0.5, 0.5 - 1e-12], [0.5 - 1e-12, 0.5]]) @ scale
+    assert agree(LogDet(), apart, [[np.zeros((2, 2))]], Tree.chain(1)).value == 0.0
+
+
 @settings(deadline=None, max_examples=150)
 @given(st.data())
 def test_matrices_that_are_believed_give_a_bound_that_holds(data: st.DataObject) -> None:

@@ -58,9 +58,7 @@ class LogDet(Objective[NDArray[np.float64], NDArray[np.float64]]):
             return f"information must be a square matrix; got shape {belief.shape}"
         if _skewed(belief):
             return _skew(belief)
-        try:
-            np.linalg.cholesky(belief)
-        except np.linalg.LinAlgError:
+        if _singular(belief):
             least = np.linalg.eigvalsh(belief)[0]
             return f"information must be positive definite; its least eigenvalue is {least:.6g}"
         return None
@@ -79,6 +77,16 @@ class LogDet(Objective[NDArray[np.float64], NDArray[np.float64]]):
             least = eigenvalues[k, 0]
             return int(k), f"information must be positive semi-definite; its least eigenvalue is {least:.6g}"
         return None
+
+
+def _singular(matrix: NDArray[np.float64]) -> bool:
+    """Return whether only rounding, if anything, makes a symmetric matrix positive definite, in any units."""
+    diagonal = matrix.diagonal()
+    if diagonal.min() <= 0.0:
+        return True
+    scale = 1.0 / np.sqrt(diagonal)
+    least = np.linalg.eigvalsh(matrix * scale[:, None] * scale)[0]
+    return bool(least <= len(matrix) * np.finfo(np.float64).eps)
 
 
 def _skewed(matrices: NDArray[np.float64]) -> NDArray[np.bool_]:
