@@ -30,7 +30,7 @@ from vedette.domains.mapping.planners import Planner
 from vedette.domains.mapping.platform import MappingPlatform
 from vedette.domains.mapping.prior import PriorMap
 from vedette.domains.mapping.sightings import BINS, pooled
-from vedette.domains.mapping.stops import NEARBY, VIEW_REACH, Disc, around
+from vedette.domains.mapping.stops import NEARBY, Disc, around
 from vedette.domains.mapping.tour import STAY, Tour
 from vedette.domains.mapping.views import MOST_STOPS
 from vedette.fusion import Fusion, ShownMap
@@ -48,6 +48,7 @@ from vedette.missions.explore.notes import given_up as given_up_at
 from vedette.missions.explore.notes import sifted
 from vedette.missions.explore.own_map import OwnMap
 from vedette.missions.explore.resort import LastResort, hemmed_in
+from vedette.missions.explore.visits import THERE, Visits
 from vedette.missions.explore.ways import Ways
 from vedette.missions.ordered import no_go_areas, priority_areas, trusted
 from vedette.outcome import Outcome
@@ -55,10 +56,6 @@ from vedette.problem import Codec, Objective
 from vedette.team import Most, PlatformSpec
 
 COUNTS_PERIOD = 10.0  # the model's counts are shared at most so often [s]
-THERE = 0.35  # a robot this near a stop's viewpoint is at it; more by two deviations of its pose [m]
-WELL_SEEN = 0.5  # nothing is concluded from a look at what is nearer the end of the lidar's range ... [m]
-IN_THE_WAY = 1.0  # a mate this near a frontier may hide it [m]
-SERVED_SHARE = 0.4  # a frontier with less than this of its unknown cells left has lost its point
 
 
 @dataclass(eq=False)
@@ -83,7 +80,7 @@ class Exploring:
     _looking: Looking = field(init=False)
     _resort: LastResort = field(init=False)
     _doubts: Doubts = field(init=False)
-    _failures: Failures = field(init=False)
+    _visits: Visits = field(init=False)
     _ways: Ways = field(init=False)
     _leave: Leave = field(init=False)  # where the team may work
     _priorities: list[tuple[Area, float]] = field(default_factory=list)
@@ -96,8 +93,9 @@ class Exploring:
         self.own = OwnEvidence(self.lattice, self.spec)
         self._looking = Looking(self.spec, self.frame.resolution)
         self._resort = LastResort(self._looking)
+        failures = Failures(self.platform)
+        self._visits = Visits(self.platform, self._looking, self._resort, failures, self._unknown_at)
         self._doubts = Doubts(self.spec.radius)
-        self._failures = Failures(self.platform)
         self._leave = Leave(self.lattice.area)
         ground = self.lattice, self.spec.radius, self.fusion, self.own.log_odds, self._doubts
         self._ways = Ways(*ground, self._leave)
@@ -360,61 +358,22 @@ class Exploring:
 
     def goal(self) -> tuple[float, float] | None:
         """Return the next viewpoint of the tour; without one, where there is something left to try."""
-        if not len(self.strategy):
-            return self._resort.goal
-        if self.platform.is_ahead_of_map(self.strategy):
-            return None
-        x, y = self.strategy.views[0].tolist()
-        return x, y
+        return self._visits.goal(self.strategy)
 
     def served(self) -> bool:
         """Tell whether most of what the next stop was to reveal is known by now."""
-        if not len(self.strategy):
-            return False
-        planned = int(self.strategy.unknown[0])
-        return self._unknown_at(self.strategy.targets[0]) < SERVED_SHARE * planned
+        return self._visits.served(self.strategy)
 
     def _unknown_at(self, target: NDArray[np.float64]) -> int:
         near = self._to_plan_by(self.fusion.classes.window(*around(self.frame, *target)))
         return int(np.count_nonzero(near == UNKNOWN))
 
     def reached(self, pose: Pose, mates: Sequence[Mate], now: float) -> bool:
-        """Go on to the tour's next stop; the next round sees whether this one changed the map.
-
-        False: the robot has not yet looked where it was planned to look. A stop that a mate kept the robot
-        from, or stands in front of, or whose frontier is out of the lidar's range, has not been visited.
-        """
-        if not len(self.strategy):
-            return self._resort.goal is None or self._resort.reached(pose)
-        x, y = self.strategy.targets[0].tolist()
-        away = np.hypot(pose.x - self.strategy.views[0, 0], pose.y - self.strategy.views[0, 1])
-        in_the_way = any(
-            np.hypot(mate.x - x, mate.y - y) < IN_THE_WAY for mate in mates if not mate.silent(now)
-        )
-        beyond = np.hypot(pose.x - x, pose.y - y) > max(
-            self.spec.range - WELL_SEEN, VIEW_REACH * self.spec.range
-        )
-        if away > THERE + 2.0 * pose.deviation or in_the_way or beyond:
-            self._put_off(now)
-        elif not self.served() and self._facing(pose) is not None:
-            return False
-        else:
-            afar = float(np.hypot(*(self.strategy.targets[0] - self.strategy.views[0])))
-            self.platform.left_alone.visited.append((x, y, int(self.strategy.unknown[0]), afar))
-            if self.platform.daring:
-                self.platform.in_vain = 0
-        self.strategy = self.strategy.after_first()
-        return True
-
-    def _facing(self, pose: Pose) -> float | None:
-        """Return the heading to turn to next where the robot goes; None: it has looked as planned."""
-        if not len(self.strategy):
-            return self._resort.facing(pose)
-        ahead = self.strategy.targets[0] - self.strategy.views[0]
-        distance = float(np.hypot(*ahead))
-        if distance < self.frame.resolution:
-            return self._resort.facing(pose)
-        return self._looking.toward(pose, float(np.arctan2(ahead[1], ahead[0])), distance)
+        """Go on to the tour's next stop; False: the robot has not yet looked where it was planned to look."""
+        done = self._visits.reached(self.strategy, pose, mates, now)
+        if done and len(self.strategy):
+            self.strategy = self.strategy.after_first()
+        return done
 
     def stand_by(self) -> None:
         """Drop the tour; nothing is held against its stops."""
@@ -429,20 +388,14 @@ class Exploring:
             self._doubts.settle(*self._at)
             self.platform.in_vain += 1
         elif len(self.strategy):
-            self._put_off(now)
-        self.strategy, self._resort.goal = STAY, None
-
-    def _put_off(self, now: float) -> None:
-        """Leave the first stop alone, for a while or for good."""
-        target = self.strategy.targets[0]
-        x, y = target.tolist()
-        self._failures.put_off(x, y, self._unknown_at(target), now)
+            self._visits.put_off(self.strategy, now)
+        self.stand_by()
 
     def nothing_left(self, value: float, now: float) -> bool:
         """Tell whether nothing reachable is worth seeing, now or in a while, and all was tried."""
         tried = self._at_work and not self.platform.cut_short and self._resort.goal is None
         settled = self.signed is None or not self.signed.unsettled
-        return value <= 0.0 and tried and settled and not self._failures.postponed(now)
+        return value <= 0.0 and tried and settled and not self._visits.failures.postponed(now)
 
     def route(
         self, pose: Pose, goal: tuple[float, float], mates: Sequence[Mate], blocked: bool, now: float
@@ -452,4 +405,6 @@ class Exploring:
         discs = self._discs(pose, mates, blocked, now)
         route = self._ways.find((pose.x, pose.y), goal, discs, self.platform.daring and ours)
         there = np.hypot(pose.x - goal[0], pose.y - goal[1]) <= THERE and ours
-        return route if route is None or not there else replace(route, facing=self._facing(pose))
+        if route is None or not there:
+            return route
+        return replace(route, facing=self._visits.facing(self.strategy, pose))
