@@ -13,7 +13,7 @@ from vedette.cli.domain import STATUS, domain_options, kind_of
 from vedette.cli.exploring import EXPLORING, exploring_options, team_named, world_named
 from vedette.cli.options import Output, output_options
 from vedette.cli.searching import SEARCHING, searching_options
-from vedette.cli.teams import TeamRun, process_options
+from vedette.cli.teams import Processes, process_options
 from vedette.cli.tracking import TRACKING, tracking_options
 from vedette.errors import InputError
 from vedette.missions.explore.old_map import read_prior
@@ -41,11 +41,11 @@ from vedette.record.search.curves import ideal
 from vedette.record.search.log import SearchScene
 from vedette.record.summary import Setting
 from vedette.record.track.log import TrackScene
-from vedette.run.inputs import files_of, orders_in, schedule_of, world_of
+from vedette.run.inputs import files_of, orders_in, world_of
 from vedette.run.searching import case_of, heat_maps
 from vedette.run.tracking import scenario_of
 from vedette.sim.domains import DOMAINS, DomainEntry, entry_of, own_domain
-from vedette.sim.orders import check_flight_orders, check_frames, check_orders
+from vedette.sim.orders import check_frames, check_orders
 from vedette.sim.search.hidden import Hidden
 from vedette.sim.starts import choose_starts
 from vedette.sim.track.targets import Targets
@@ -96,11 +96,7 @@ def explore(
     prior: Path | None,
     frames: str,
     rendezvous: bool,
-    speed: float,
-    lease: float,
-    faults: str | None,
-    orders: Path | None,
-    watch: bool,
+    processes: Processes,
     ros2: bool,
     output: Output,
 ) -> None:
@@ -112,7 +108,7 @@ def explore(
     """
     agreed = scheme_of(planner, scheme)
     world, specs = world_of(world_named(map_path, resolution), seed), team_named(team, robots, starts, drift)
-    tell_unheeded(planner, len(specs), scheme, fusion=fusion, lease=lease)
+    tell_unheeded(planner, len(specs), scheme, fusion=fusion, lease=processes.lease)
     if ros2 and unbounded:
         raise InputError("--unbounded: robots that run ROS 2 are never told how far it goes; leave it out")
     if ros2 and any(spec.sensor for spec in specs):
@@ -128,17 +124,17 @@ def explore(
     area_of = lattice.area
     places = choose_starts(world, specs, np.random.default_rng([seed, 1]), area_of)
     kind = Ros2Plan if ros2 else ExplorePlan
-    plan = kind(world, specs, places, options, seed, speed, lease)
-    given = orders_in(orders)
-    check_orders(given, world, specs, str(orders), signed=fusion == "replicated")
+    plan = kind(world, specs, places, options, seed, processes.speed, processes.lease)
+    given = orders_in(processes.orders)
+    check_orders(given, world, specs, str(processes.orders), signed=fusion == "replicated")
     check_frames(given, frames, len(specs))
     page = ExploreOnlooker(world.name, [spec.name for spec in specs])
-    run = TeamRun(plan, max_time, schedule_of(faults, plan.size, clocks=False), page, watch, given)
-    setting = Setting(seed=seed, faults=faults)
+    run = processes.run(plan, max_time, page, given)
+    setting = Setting(seed=seed, faults=processes.faults)
     EXPLORING.run(
         ExploreScene.of(world, [spec.name for spec in specs]),
         output,
-        files_of(map_path, team, faults, prior, orders),
+        files_of(map_path, team, processes.faults, prior, processes.orders),
         lambda sinks, folder: run.watched_by(ExploreWatcher(plan, setting, sinks), folder),
     )
 
@@ -156,11 +152,7 @@ def track(
     objective: str | None,
     continuous: bool,
     max_time: float | None,
-    speed: float,
-    lease: float,
-    faults: str | None,
-    orders: Path | None,
-    watch: bool,
+    processes: Processes,
     output: Output,
 ) -> None:
     """Let a team of agent processes follow the targets of SCENARIO: one process a vehicle.
@@ -171,22 +163,21 @@ def track(
     if coordination == "optimum":
         raise InputError("--coordination optimum: nobody on a network can work it out; see `vedette track`")
     scenario, name = scenario_of(scenario_path)
-    tell_unsaid(coordination, len(scenario.vehicles), scheme, fusion=fusion, lease=lease)
+    size = len(scenario.vehicles)
+    tell_unsaid(coordination, size, scheme, fusion=fusion, lease=processes.lease)
     tell_objective(objective, scenario.objective, default_scenario().objective)
     tell_duration(max_time, scenario.duration)
     options = TrackOptions(coordination, scheme, fusion, objective, continuous)
-    plan = FlightsPlan("track", options, scenario_path, len(scenario.vehicles), seed, speed, lease)
+    plan = FlightsPlan("track", options, scenario_path, size, seed, processes.speed, processes.lease)
     vehicles = TrackTeam(scenario, options, plan.times)
     limit = scenario.duration + 1.0 if max_time is None else max_time
-    given = orders_in(orders)
-    check_flight_orders(given, vehicles.grounds, str(orders))
     page = TrackOnlooker(scenario, name)
-    run = TeamRun(plan, limit, schedule_of(faults, plan.size, clocks=False), page, watch, given)
-    setting, truth = Setting(seed=seed, faults=faults), Targets.of(vehicles, seed)
+    run = processes.fly(plan, limit, page, vehicles.grounds)
+    setting, truth = Setting(seed=seed, faults=processes.faults), Targets.of(vehicles, seed)
     TRACKING.run(
         TrackScene.of(scenario, name),
         output,
-        files_of(None, scenario_path, faults, orders),
+        files_of(None, scenario_path, processes.faults, processes.orders),
         lambda sinks, folder: run.watched_by(TrackWatcher(vehicles, name, setting, truth.at, sinks), folder),
     )
 
@@ -202,11 +193,7 @@ def search(
     scheme: str | None,
     fusion: str,
     max_time: float | None,
-    speed: float,
-    lease: float,
-    faults: str | None,
-    orders: Path | None,
-    watch: bool,
+    processes: Processes,
     output: Output,
 ) -> None:
     """Let a team of agent processes look for the hidden target of SCENARIO: one process a vehicle.
@@ -215,22 +202,21 @@ def search(
     status: 0 found, 1 not found in time or declared where it is not, 2 bad input, 130 interrupted.
     """
     case = case_of(scenario_path)
-    tell_unsaid(coordination, len(case.names), scheme, fusion=fusion, lease=lease)
+    size = len(case.names)
+    tell_unsaid(coordination, size, scheme, fusion=fusion, lease=processes.lease)
     tell_duration(max_time, case.scenario.duration)
     options = SearchOptions(coordination, scheme, fusion)
-    plan = FlightsPlan("search", options, scenario_path, len(case.names), seed, speed, lease)
+    plan = FlightsPlan("search", options, scenario_path, size, seed, processes.speed, processes.lease)
     vehicles = SearchTeam(case, options, plan.times)
     duration = case.scenario.duration if max_time is None else min(max_time, case.scenario.duration)
-    given = orders_in(orders)
-    check_flight_orders(given, vehicles.grounds, str(orders))
     page = SearchOnlooker(case)
-    run = TeamRun(plan, duration, schedule_of(faults, plan.size, clocks=False), page, watch, given)
-    setting, hidden = Setting(seed=seed, faults=faults), Hidden.of(case, seed)
+    run = processes.fly(plan, duration, page, vehicles.grounds)
+    setting, hidden = Setting(seed=seed, faults=processes.faults), Hidden.of(case, seed)
     curves = ideal(case, floor(duration / case.scenario.step + 1e-6))
     SEARCHING.run(
         SearchScene.of(case, duration),
         output,
-        files_of(None, scenario_path, faults, orders, *heat_maps(case, scenario_path)),
+        files_of(None, scenario_path, processes.faults, processes.orders, *heat_maps(case, scenario_path)),
         lambda sinks, folder: run.watched_by(
             SearchWatcher(vehicles, duration, setting, hidden.at, curves, sinks), folder
         ),
@@ -244,11 +230,7 @@ def _domain_command(declared: DomainEntry) -> click.Command:
         scenario_path: Path | None,
         seed: int,
         max_time: float | None,
-        speed: float,
-        lease: float,
-        faults: str | None,
-        orders: Path | None,
-        watch: bool,
+        processes: Processes,
         output: Output,
         **how: Any,
     ) -> None:
@@ -260,21 +242,19 @@ def _domain_command(declared: DomainEntry) -> click.Command:
             )
         case = domain.case(scenario_path)
         size = len(case.names)
-        tell_unsaid(options.coordination, size, options.scheme, fusion=options.fusion, lease=lease)
+        tell_unsaid(options.coordination, size, options.scheme, fusion=options.fusion, lease=processes.lease)
         tell_duration(max_time, case.scenario.duration)
-        plan = FlightsPlan("domain", options, scenario_path, size, seed, speed, lease)
+        plan = FlightsPlan("domain", options, scenario_path, size, seed, processes.speed, processes.lease)
         vehicles = domain.team(case, options, plan.times)
         limit = case.scenario.duration + 1.0 if max_time is None else max_time
-        given = orders_in(orders)
-        check_flight_orders(given, vehicles.grounds, str(orders))
         page = DomainOnlooker(domain, case)
-        processes = TeamRun(plan, limit, schedule_of(faults, size, clocks=False), page, watch, given)
-        setting = Setting(seed=seed, faults=faults)
+        team_run = processes.fly(plan, limit, page, vehicles.grounds)
+        setting = Setting(seed=seed, faults=processes.faults)
         kind_of(domain).run(
             domain.scene(case),
             output,
-            (*files_of(None, scenario_path, faults, orders), *case.files),
-            lambda sinks, folder: processes.watched_by(
+            (*files_of(None, scenario_path, processes.faults, processes.orders), *case.files),
+            lambda sinks, folder: team_run.watched_by(
                 DomainWatcher(domain, vehicles, setting, sinks), folder
             ),
         )

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass
+from functools import wraps
 from pathlib import Path
 from shutil import rmtree
 from tempfile import TemporaryDirectory
-from typing import Any, TypeVar
+from typing import Any
 
 import click
 
@@ -18,6 +19,7 @@ from vedette.cli.staging import Stage
 from vedette.cli.windows import opened
 from vedette.errors import InputError
 from vedette.interrupt import ending_on_ctrl_c
+from vedette.missions.sense import Grounds
 from vedette.net.explore.ros2_plan import Ros2Plan, environment, strangers
 from vedette.net.feed import Onlooker, TeamFeed
 from vedette.net.giving import Giving
@@ -26,20 +28,51 @@ from vedette.net.names import robot_name
 from vedette.net.team import TeamWatch, Watcher
 from vedette.net.transport import Operator
 from vedette.record.folder import OutputFolder
+from vedette.run.inputs import orders_in, schedule_of
 from vedette.sim.faults import Schedule, faults_text
-from vedette.sim.orders import OrderAt
+from vedette.sim.orders import OrderAt, check_flight_orders
 from vedette.window.hub import Hub
 from vedette.window.picture import said
 
-CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 SPEED = 3.0  # more costs mission time, as thoughts and messages take as long as ever: 5 % at 5, 16 % at 10
 KEPT_UP = 0.8  # of the speed asked for; less is worth a remark
 
 
-def process_options(command: CommandT) -> CommandT:
-    """``--orders``, ``--speed``, ``--lease``, ``--faults`` and ``--watch``."""
+@dataclass(frozen=True)
+class Processes:
+    """How the processes of a team run, and what befalls them."""
+
+    speed: float  # of the mission, in seconds a second
+    lease: float  # [s] of real time
+    faults: str | None
+    orders: Path | None
+    watch: bool
+
+    def run(
+        self, plan: TeamPlan, max_time: float, onlooker: Onlooker[Any, Any], orders: tuple[OrderAt, ...]
+    ) -> TeamRun:
+        """Return the team that is to be started, for so long at most [s]."""
+        schedule = schedule_of(self.faults, plan.size, clocks=False)
+        return TeamRun(plan, max_time, schedule, onlooker, self.watch, orders)
+
+    def fly(self, plan: TeamPlan, max_time: float, onlooker: Onlooker[Any, Any], grounds: Grounds) -> TeamRun:
+        """Return a team of vehicles likewise, whose orders can be about these grounds."""
+        orders = orders_in(self.orders)
+        check_flight_orders(orders, grounds, str(self.orders))
+        return self.run(plan, max_time, onlooker, orders)
+
+
+def process_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """``--orders``, ``--speed``, ``--lease``, ``--faults`` and ``--watch``, all as one `Processes`."""
+
+    @wraps(command)
+    def taken(
+        speed: float, lease: float, faults: str | None, orders: Path | None, watch: bool, **others: Any
+    ) -> Any:
+        return command(processes=Processes(speed, lease, faults, orders, watch), **others)
+
     return with_options(
-        command,
+        taken,
         orders_option,
         click.option(
             "--speed", type=Positive("times real time", most=50.0), default=SPEED, show_default=True,
