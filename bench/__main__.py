@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from bench import RESULTS, command, machine
+from bench import command, machine
 from bench.criteria import BenchReport, Criterion, Measurement, verdicts
 from bench.frontiers import Effort, measure_frontiers
 from bench.heartbeats import measure_heartbeats
@@ -24,8 +24,8 @@ QUICK_EFFORT = {SMALL: Effort(1, 200, 2), LARGE: Effort(1, 50, 1)}
 
 @click.command()
 @click.option("--quick", is_flag=True, help="A smoke run: few repeats, short missions.")
-@click.option("--date", help="Of the run, to be put into the JSON.  [default: the commit's]")
-@click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for the JSON.")
+@command.date_option
+@command.out_option("the JSON")
 def bench(quick: bool, date: str | None, out: Path) -> None:
     """Measure what the project has to reach, and say MET or MISSED. Exit status 0 either way.
 

@@ -110,14 +110,12 @@ def _row(rows: Sequence[Row], name: str) -> tuple[str, ...]:
 
 
 @click.command()
-@click.option(
-    "--seeds", type=command.WholeNumbers(0), default="100-103", show_default=True, help="Of the worlds."
-)
+@command.seeds_option("100-103", "Of the worlds.")
 @click.option("--robots", type=click.IntRange(1, 64), default=3, show_default=True, help="In every team.")
 @click.option("--only", default="", help="Only the parts whose names hold one of these, with commas.")
-@click.option("--jobs", type=click.IntRange(min=1), default=2, show_default=True, help="Processes.")
-@click.option("--minutes", type=click.FloatRange(min=0.0), help="Begin no mission after so long.")
-@click.option("--out", type=Path, default=RESULTS / "ablation", metavar="DIR", help="Folder for the results.")
+@command.jobs_option(2)
+@command.minutes_option
+@command.out_option("the results", RESULTS / "ablation")
 def ablation(
     seeds: tuple[int, ...], robots: int, only: str, jobs: int, minutes: float | None, out: Path
 ) -> None:

@@ -17,7 +17,7 @@ import click
 import numpy as np
 from numpy.typing import NDArray
 
-from bench import RESULTS, command, machine
+from bench import command, machine
 from bench.table import figure, markdown
 from vedette.negotiation import Tree, negotiate
 from vedette.problem.coverage import Coverage
@@ -102,7 +102,7 @@ def central_row(n: int, width: float) -> CentralRow:
 
 @click.command()
 @click.option("--platforms", type=command.WholeNumbers(2), default="4,16,64,128", show_default=True)
-@click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for the table.")
+@command.out_option("the table")
 def central(platforms: tuple[int, ...], out: Path) -> None:
     """Measure CPU and value of negotiations over those of a centralised lazy greedy."""
     folder = command.results_folder(out)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import minimum_spanning_tree
 
-from bench import RESULTS, command
+from bench import command
 from bench.table import figure, markdown
 from vedette.agent import messages
 from vedette.agent.effects import Send, TrafficKind
@@ -96,8 +96,8 @@ class Beaconing:
 
 
 @click.command()
-@click.option("--robots", type=command.WholeNumbers(2), default="16,64,256,1024", show_default=True)
-@click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for the table.")
+@command.robots_option("16,64,256,1024", least=2)
+@command.out_option("the table")
 def city(robots: tuple[int, ...], out: Path) -> None:
     """Measure beacons, replicated evidence and the time of a sweep as a team and its ground grow."""
     folder = command.results_folder(out)

@@ -1,18 +1,21 @@
-"""What both commands share: lists of numbers as options, and errors told in one line."""
+"""What the commands share: options, and errors told in one line."""
 
 from __future__ import annotations
 
 import re
 import sys
+from collections.abc import Callable
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn, TypeVar
 
 import click
 
+from bench import RESULTS
 from vedette.errors import InputError
 from vedette.record.files import output_directory
 from vedette.study.conduct import Conducted
 
+CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 BAD_INPUT, INTERRUPTED = 2, 130
 _RANGE = re.compile(r"(\d{1,6})(?:-(\d{1,6}))?")
 
@@ -42,6 +45,35 @@ class WholeNumbers(click.ParamType[tuple[int, ...]]):
         if not numbers or min(numbers) < self.least:
             raise InputError(f"{option} must be at least one number from {self.least} up; got {value!r}")
         return tuple(dict.fromkeys(numbers))
+
+
+def seeds_option(default: str, of: str = "Of the worlds.") -> Callable[[CommandT], CommandT]:
+    """``--seeds``; ``of``: what they decide, for the help."""
+    return click.option("--seeds", type=WholeNumbers(0), default=default, show_default=True, help=of)
+
+
+def robots_option(
+    default: str, where: str = "Sizes of the teams.", least: int = 1
+) -> Callable[[CommandT], CommandT]:
+    """``--robots``, several sizes of teams."""
+    return click.option("--robots", type=WholeNumbers(least), default=default, show_default=True, help=where)
+
+
+def jobs_option(default: int) -> Callable[[CommandT], CommandT]:
+    """``--jobs``."""
+    many = click.IntRange(min=1)
+    return click.option("--jobs", type=many, default=default, show_default=True, help="Processes.")
+
+
+def out_option(holds: str, default: Path = RESULTS) -> Callable[[CommandT], CommandT]:
+    """``--out``; ``holds``: what the folder is for."""
+    return click.option("--out", type=Path, default=default, metavar="DIR", help=f"Folder for {holds}.")
+
+
+date_option = click.option("--date", help="Of the run, to be put into the JSON.  [default: the commit's]")
+minutes_option = click.option(
+    "--minutes", type=click.FloatRange(min=0.0), help="Begin no mission after so long."
+)
 
 
 def results_folder(path: Path) -> Path:

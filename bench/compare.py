@@ -13,7 +13,7 @@ import click
 import numpy as np
 from numpy.typing import NDArray
 
-from bench import RESULTS, command, machine
+from bench import command, machine
 from bench.criteria import BenchReport
 from bench.latency import Trip, play, root_of
 from bench.scale.team import Team
@@ -183,7 +183,7 @@ def robots(n: int, seeds: Sequence[int], progress: Callable[[str], None]) -> lis
 @click.command()
 @click.option("--quick", is_flag=True, help="A smoke run: 2 and 4 radars, no missions.")
 @click.option("--seeds", default=1, show_default=True, type=click.IntRange(1), help="Missions of each kind.")
-@click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for JSON and table.")
+@command.out_option("JSON and table")
 def bench(quick: bool, seeds: int, out: Path) -> None:
     """Compare Stone Soup's managers, a centre, trees and frontier explorers. Exit status 0 either way."""
     folder = command.results_folder(out)

@@ -12,7 +12,7 @@ from typing import Literal
 import click
 import numpy as np
 
-from bench import RESULTS, command
+from bench import command
 from bench.idleness import Idleness
 from bench.missions import tabulate
 from bench.table import figure, markdown
@@ -121,13 +121,13 @@ def run_crowd(case: Crowd, commit: str) -> CrowdResult:
 @click.option(
     "--worlds", default=",".join(SEEDS), show_default=True, help="Kinds of generated worlds, with commas."
 )
-@click.option("--robots", type=command.WholeNumbers(1), default="8,10,12,20,40", show_default=True)
+@command.robots_option("8,10,12,20,40")
 @click.option(
     "--seeds", type=command.WholeNumbers(0), help="Of each kind.  [default: 0-9 of offices, else 0-2]"
 )
-@click.option("--jobs", type=click.IntRange(min=1), default=2, show_default=True, help="Processes.")
+@command.jobs_option(2)
 @click.option("--fresh", is_flag=True, help="Run the missions anew that were run before.")
-@click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for results and table.")
+@command.out_option("results and table")
 def crowds(
     worlds: str, robots: tuple[int, ...], seeds: tuple[int, ...] | None, jobs: int, fresh: bool, out: Path
 ) -> None:

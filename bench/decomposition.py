@@ -18,7 +18,7 @@ import click
 import numpy as np
 from numpy.typing import NDArray
 
-from bench import RESULTS, command
+from bench import command
 from bench.crowds import known_world
 from bench.missions import planner_name, tabulate
 from bench.table import figure, markdown
@@ -155,11 +155,11 @@ def run_case(case: Case, commit: str) -> Shares:
 @click.command()
 @click.option("--worlds", default="office,cave,maze", show_default=True, help="Kinds of worlds, with commas.")
 @click.option("--planners", default="tours,burgard", show_default=True, help="By name, with commas.")
-@click.option("--robots", type=command.WholeNumbers(1), default="3", show_default=True)
-@click.option("--seeds", type=command.WholeNumbers(0), default="0-9", show_default=True, help="Of each kind.")
-@click.option("--jobs", type=click.IntRange(min=1), default=2, show_default=True, help="Processes.")
+@command.robots_option("3")
+@command.seeds_option("0-9", "Of each kind.")
+@command.jobs_option(2)
 @click.option("--fresh", is_flag=True, help="Run the missions anew that were run before.")
-@click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for results and table.")
+@command.out_option("results and table")
 def decomposition(
     worlds: str,
     planners: str,

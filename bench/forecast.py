@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
-from bench import RESULTS, command
+from bench import command
 from bench.missions import tabulate
 from bench.table import markdown
 from vedette.missions.explore.expected import ENDED, KNOWN, Forecaster, Progress
@@ -228,9 +228,9 @@ def forecast_table(results: Sequence[ForeseenResult]) -> str:
 @click.command()
 @click.option("--fit", type=command.WholeNumbers(0), default=FIT, help="Seeds to fit on, below 1000.")
 @click.option("--check", type=command.WholeNumbers(1000), default=CHECK, help="Seeds to check on.")
-@click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Processes.")
+@command.jobs_option(1)
 @click.option("--fresh", is_flag=True, help="Run the missions anew that were run before.")
-@click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for results and table.")
+@command.out_option("results and table")
 def forecast(fit: tuple[int, ...], check: tuple[int, ...], jobs: int, fresh: bool, out: Path) -> None:
     """Fit and check what is expected of explorations; exit status 1 if a mission broke."""
     cases = [Foreseen(seed) for seed in (*fit, *check)]

@@ -87,19 +87,15 @@ def runs(seeds: Sequence[int], large: Sequence[MapWorld], teams: Sequence[int], 
 
 @click.command()
 @click.argument("files", nargs=-1, metavar="[MAP.yaml | LOG]...", type=Path)
-@click.option(
-    "--seeds", type=command.WholeNumbers(0), default="420-439", show_default=True, help="Of each kind."
-)
-@click.option(
-    "--robots", type=command.WholeNumbers(1), default="3,8,1", show_default=True, help="Teams, in this order."
-)
+@command.seeds_option("420-439", "Of each kind.")
+@command.robots_option("3,8,1", "Teams, in this order.")
 @click.option(
     "--max-time", type=click.FloatRange(min=1.0), default=4 * 3600.0, show_default=True,
     help="Of a mission [s]; one that is not done by then counts as unfinished.",
 )  # fmt: skip
-@click.option("--jobs", type=click.IntRange(min=1), default=2, show_default=True, help="Processes.")
-@click.option("--minutes", type=click.FloatRange(min=0.0), help="Begin no mission after so long.")
-@click.option("--out", type=Path, default=RESULTS / "held-out", metavar="DIR", help="Folder for the results.")
+@command.jobs_option(2)
+@command.minutes_option
+@command.out_option("the results", RESULTS / "held-out")
 def held_out(
     files: tuple[Path, ...],
     seeds: tuple[int, ...],

@@ -16,7 +16,7 @@ import click
 import numpy as np
 from numpy.typing import NDArray
 
-from bench import RESULTS, command, machine
+from bench import command, machine
 from bench.criteria import BenchReport, Criterion, Measurement, verdicts
 from bench.scale import trees
 from bench.scale.series import DOMAINS
@@ -236,7 +236,7 @@ def judge(rows: Sequence[Row]) -> list[Measurement]:
 
 @click.command()
 @click.option("--quick", is_flag=True, help="A smoke run: teams of 8 and 16.")
-@click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for JSON and table.")
+@command.out_option("JSON and table")
 def bench(quick: bool, out: Path) -> None:
     """Measure how long rounds take over slow links. Exit status 0 whatever comes out."""
     folder = command.results_folder(out)

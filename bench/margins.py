@@ -61,9 +61,9 @@ def row(robots: int, deviation: float, margins: Iterable[Margin]) -> list[str]:
 
 
 @click.command()
-@click.option("--robots", type=command.WholeNumbers(2), default="3,5", show_default=True)
+@command.robots_option("3,5", least=2)
 @click.option("--deviations", type=command.WholeNumbers(0), default="5,15", show_default=True, help="[cm]")
-@click.option("--seeds", type=command.WholeNumbers(0), default="0-4", show_default=True)
+@command.seeds_option("0-4")
 def margins(robots: tuple[int, ...], deviations: tuple[int, ...], seeds: tuple[int, ...]) -> None:
     """Measure how far honest robots are from being expelled; exit status 1 if one was."""
     rows = []

@@ -10,7 +10,7 @@ from typing import NoReturn, Protocol, TypeVar
 import click
 from joblib import Parallel, delayed
 
-from bench import RESULTS, command, journal, machine
+from bench import command, journal, machine
 from bench.cases import Result, map_cases, office_cases, run_case
 from bench.criteria import verdicts
 from bench.missions_table import JUDGED, judge, missions_table
@@ -33,20 +33,16 @@ class Todo(Protocol):
 
 @click.command()
 @click.option("--maps", type=Path, metavar="DIR", help="Run the maps of this folder too.")
-@click.option(
-    "--seeds", type=command.WholeNumbers(0), default="0-9", show_default=True, help="Of the offices."
-)
-@click.option(
-    "--robots", type=command.WholeNumbers(1), default="1,3,6", show_default=True, help="In the offices."
-)
+@command.seeds_option("0-9", "Of the offices.")
+@command.robots_option("1,3,6", "In the offices.")
 @click.option(
     "--planners", default=f"{JUDGED},nearest,burgard", show_default=True, help="By name, with commas."
 )
 @click.option("--only-offices", is_flag=True, help="Leave the maps out.")
 @click.option("--only-maps", is_flag=True, help="Leave the offices out.")
-@click.option("--jobs", type=click.IntRange(min=1), default=2, show_default=True, help="Processes.")
+@command.jobs_option(2)
 @click.option("--fresh", is_flag=True, help="Run the missions anew that were run before.")
-@click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for results and table.")
+@command.out_option("results and table")
 def missions(
     maps: Path | None,
     seeds: tuple[int, ...],

@@ -15,7 +15,7 @@ from typing import Any, Literal
 
 import click
 
-from bench import RESULTS, command
+from bench import command
 from bench.missions import tabulate
 from bench.sgp import ways
 from bench.table import figure, markdown
@@ -173,10 +173,10 @@ def _against(results: Sequence[FieldRun], own: Sequence[FieldRun], other: str, w
 @click.option("--fields", default=",".join(FIELDS), show_default=True, help="By name, with commas.")
 @click.option("--coordinations", default=",".join(OWN), show_default=True, help="By name, with commas.")
 @click.option("--sgptools", metavar="PYTHON", help=f"Compare SGP-Tools too: {ways.HOW}.")
-@click.option("--seeds", type=command.WholeNumbers(0), default="0-4", show_default=True)
-@click.option("--jobs", type=click.IntRange(min=1), default=2, show_default=True, help="Processes.")
+@command.seeds_option("0-4")
+@command.jobs_option(2)
 @click.option("--fresh", is_flag=True, help="Run the missions anew that were run before.")
-@click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for results and table.")
+@command.out_option("results and table")
 def monitoring(
     fields: str,
     coordinations: str,

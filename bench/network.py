@@ -16,7 +16,7 @@ from tempfile import TemporaryDirectory
 import click
 import numpy as np
 
-from bench import RESULTS, command, machine
+from bench import command, machine
 from bench.criteria import BenchReport, Criterion, Measurement, verdicts
 from bench.members import ALL, modes_of, results, sizes_of, table
 from tests.support.net_processes import (
@@ -54,8 +54,8 @@ Progress = Callable[[str], None]
     "--modes", help=f"Only teams with a member that misbehaves so, with commas between: {', '.join(ALL)}."
 )
 @click.option("--robots", default="3,5", show_default=True, help="Of such teams, with commas between.")
-@click.option("--date", help="Of the run, to be put into the JSON.  [default: the commit's]")
-@click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for the JSON.")
+@command.date_option
+@command.out_option("the JSON")
 def network(quick: bool, speed: float, modes: str | None, robots: str, date: str | None, out: Path) -> None:
     """Measure teams of processes, and say MET or MISSED. Exit status 0 either way."""
     folder = command.results_folder(out)

@@ -15,7 +15,7 @@ from pathlib import Path
 import click
 import numpy as np
 
-from bench import RESULTS, command
+from bench import command
 from bench.crowds import known_world
 from bench.missions import planner_name, tabulate
 from bench.watchman import KnownWorld, plan
@@ -60,11 +60,11 @@ def run_case(case: Case, commit: str) -> Timed:
 @click.command()
 @click.option("--worlds", default="office,cave,maze", show_default=True, help="Kinds of worlds, with commas.")
 @click.option("--planners", default="tours,burgard", show_default=True, help="By name, with commas.")
-@click.option("--robots", type=command.WholeNumbers(1), default="3", show_default=True)
-@click.option("--seeds", type=command.WholeNumbers(0), default="200-203", show_default=True, help="Of each.")
-@click.option("--jobs", type=click.IntRange(min=1), default=2, show_default=True, help="Processes.")
+@command.robots_option("3")
+@command.seeds_option("200-203", "Of each.")
+@command.jobs_option(2)
 @click.option("--fresh", is_flag=True, help="Plan and run anew what was there before.")
-@click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for results and table.")
+@command.out_option("results and table")
 def omniscient(
     worlds: str,
     planners: str,

@@ -14,7 +14,7 @@ from pathlib import Path
 import click
 import numpy as np
 
-from bench import RESULTS, command
+from bench import command
 from bench.crowds import known_world
 from bench.missions import tabulate
 from bench.ways import Case, Timed, ratio_table
@@ -64,12 +64,12 @@ def run_case(case: Case, commit: str) -> Timed:
 
 @click.command()
 @click.option("--worlds", default="office,cave,maze", show_default=True, help="Kinds of worlds, with commas.")
-@click.option("--robots", type=command.WholeNumbers(1), default="3", show_default=True)
-@click.option("--seeds", type=command.WholeNumbers(0), default="400-405", show_default=True, help="Of each.")
+@command.robots_option("3")
+@command.seeds_option("400-405", "Of each.")
 @click.option("--ways", default=",".join(WAYS), show_default=True, help="Of them these, with commas.")
-@click.option("--jobs", type=click.IntRange(min=1), default=2, show_default=True, help="Processes.")
+@command.jobs_option(2)
 @click.option("--fresh", is_flag=True, help="Run the missions anew that were run before.")
-@click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for results and table.")
+@command.out_option("results and table")
 def prior(
     worlds: str,
     robots: tuple[int, ...],

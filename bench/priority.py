@@ -12,7 +12,7 @@ import click
 import numpy as np
 from numpy.typing import NDArray
 
-from bench import RESULTS, command
+from bench import command
 from bench.missions import tabulate
 from bench.table import figure, markdown
 from vedette.agent.orders import Priority
@@ -155,10 +155,10 @@ def _ratio(ordered: float | None, plain: float | None) -> float:
 
 
 @click.command()
-@click.option("--seeds", type=command.WholeNumbers(0), default="1-20", show_default=True)
-@click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Processes.")
+@command.seeds_option("1-20")
+@command.jobs_option(1)
 @click.option("--fresh", is_flag=True, help="Run the missions anew that were run before.")
-@click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for results and table.")
+@command.out_option("results and table")
 def priority(seeds: tuple[int, ...], jobs: int, fresh: bool, out: Path) -> None:
     """Compare missions with and without a priority area; exit status 1 if one broke."""
     cases = [Errand(seed, ordered) for seed in seeds for ordered in (False, True)]

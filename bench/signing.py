@@ -164,9 +164,9 @@ def table(costs: Sequence[tuple[int, int, Cost, Cost]]) -> str:
 
 
 @click.command()
-@click.option("--robots", type=command.WholeNumbers(2), default="3,5", show_default=True)
+@command.robots_option("3,5", least=2)
 @click.option("--world", default="14x12", show_default=True, help="Office [m].")
-@click.option("--seeds", type=command.WholeNumbers(0), default="0-2", show_default=True)
+@command.seeds_option("0-2")
 def signing(robots: tuple[int, ...], world: str, seeds: tuple[int, ...]) -> None:
     """Measure what signing adds to teams in an office: bytes, and CPU time by part."""
     side = world_of(world)

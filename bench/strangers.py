@@ -10,7 +10,7 @@ from typing import Literal
 
 import click
 
-from bench import RESULTS, command
+from bench import command
 from bench.missions import tabulate
 from bench.table import figure, markdown
 from vedette.record.summary import SCHEMA_VERSION
@@ -125,10 +125,10 @@ def _ratio(unknown: float | None, known: float | None) -> float | None:
 
 
 @click.command()
-@click.option("--seeds", type=command.WholeNumbers(0), default="1-20", show_default=True)
-@click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Processes.")
+@command.seeds_option("1-20")
+@command.jobs_option(1)
 @click.option("--fresh", is_flag=True, help="Run the missions anew that were run before.")
-@click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for results and table.")
+@command.out_option("results and table")
 def strangers(seeds: tuple[int, ...], jobs: int, fresh: bool, out: Path) -> None:
     """Compare teams that share no frame with teams that share one; exit status 1 if a mission broke."""
     arms: tuple[Arm, ...] = ("known", "unknown", "seeking")

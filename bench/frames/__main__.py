@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from bench import RESULTS, command, journal
+from bench import command, journal
 from bench.frames.pairs import Pair, Sources
 from bench.frames.picture import curve_png
 from bench.frames.tables import tables
@@ -26,7 +26,7 @@ SORTS = ("one", "two", "alike")
 )
 @click.option("--maps", type=Path, metavar="DIR", help="Folder of floors, map_server pairs.")
 @click.option("--logs", type=Path, metavar="DIR", help="Folder of CARMEN logs, *.log.gz.")
-@click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for results and tables.")
+@command.out_option("results and tables")
 def frames(pairs: tuple[int, ...], sorts: str, maps: Path | None, logs: Path | None, out: Path) -> None:
     """Judge pairs of maps; those that are in the results file already are not judged again."""
     folder = command.results_folder(out)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from bench import RESULTS, command
+from bench import command
 from bench.large.cases import LargeResult, Size, large_cases, run_large
 from bench.large.tables import large_table
 from bench.large.trees import built, present
@@ -23,13 +23,13 @@ _WORLD = re.compile(r"(\d{1,3})x(\d{1,3})")
 @click.option("--before", metavar="COMMIT", help="Measure this commit too, built in build/before.")
 @click.option("--worlds", default="30x20,60x40,120x80,200x200", show_default=True, help="Offices [m].")
 @click.option("--resolutions", default="0.1,0.05", show_default=True, help="Sides of a cell [m].")
-@click.option("--robots", type=command.WholeNumbers(1), default="1,3,4,16,50", show_default=True)
+@command.robots_option("1,3,4,16,50")
 @click.option(
     "--max-time", type=click.FloatRange(min=1.0), default=3600.0, show_default=True, help="Simulated [s]."
 )
-@click.option("--jobs", type=click.IntRange(min=1), default=1, show_default=True, help="Processes.")
+@command.jobs_option(1)
 @click.option("--fresh", is_flag=True, help="Run the missions anew that were run before.")
-@click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for results and table.")
+@command.out_option("results and table")
 def large(
     before: str | None,
     worlds: str,

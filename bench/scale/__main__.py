@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from bench import RESULTS, command, machine
+from bench import command, machine
 from bench.scale.report import run
 from bench.scale.series import DOMAINS
 from vedette.errors import check_word
@@ -15,8 +15,8 @@ from vedette.errors import check_word
 @click.command()
 @click.option("--quick", is_flag=True, help="Three teams up to 64 only.")
 @click.option("--domains", default=",".join(DOMAINS), show_default=True, help="By name, with commas.")
-@click.option("--date", help="Of the run, to be put into the JSON.  [default: the commit's]")
-@click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for table, JSON and picture.")
+@command.date_option
+@command.out_option("table, JSON and picture")
 def scale(quick: bool, domains: str, date: str | None, out: Path) -> None:
     """Measure what grows with the team, and say MET or MISSED. Exit status 0 either way."""
     names = domains.split(",")

@@ -11,7 +11,7 @@ from statistics import fmean, median
 import click
 import numpy as np
 
-from bench import RESULTS, command, machine
+from bench import command, machine
 from bench.criteria import BenchReport, Criterion, Measurement, verdicts
 from bench.stonesoup.managers import ANY, BRUTE, GREEDY, LOG_DET, MANAGERS, OURS, Decision, compare
 from bench.stonesoup.scenario import scene
@@ -55,7 +55,7 @@ class StoneSoupReport(BenchReport):
     "--quick", is_flag=True, help="A smoke run: one scene a size, small teams for the slow managers."
 )
 @click.option("--scenes", type=click.IntRange(min=1), default=3, show_default=True, help="Of each size.")
-@click.option("--out", type=Path, default=RESULTS, metavar="DIR", help="Folder for JSON and table.")
+@command.out_option("JSON and table")
 def bench(quick: bool, scenes: int, out: Path) -> None:
     """Measure Stone Soup's managers and ours, and say MET or MISSED. Exit status 0 either way."""
     folder = command.results_folder(out)
