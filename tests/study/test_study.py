@@ -7,6 +7,7 @@ import json
 import os
 import subprocess
 import sys
+import time
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from io import StringIO
@@ -341,6 +342,18 @@ def test_a_study_whose_time_is_over_begins_no_run_and_goes_on_later(tmp_path: Pa
     second = conduct(all_runs, store, Workers(1, work=work), quiet())
     assert (list(second.results), second.missing) == (all_runs, [])
     assert len(work.done) == len(all_runs)
+
+
+def test_no_run_waits_for_a_worker_to_be_begun_when_the_time_is_over(tmp_path: Path) -> None:
+    begun = tmp_path / "begun"
+    begun.mkdir()
+
+    def work(run: Run) -> RunResult:
+        (begun / f"{os.getpid()}-{time.monotonic_ns()}").touch()
+        return made_up(run)
+
+    early = Workers(2, work=work, over=lambda: any(begun.iterdir()))
+    assert len(dict(early.results(runs(tmp_path)))) == len(list(begun.iterdir())) <= 2
 
 
 def test_a_folder_with_something_else_in_it_is_not_touched(tmp_path: Path) -> None:

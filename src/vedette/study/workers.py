@@ -69,7 +69,10 @@ class Workers:
     def _parallel(self, jobs: int, runs: Iterable[Run]) -> Iterator[tuple[Run, RunResult]]:
         """Yield what comes back; a single job is done in this process, a cluster does as many as it can."""
         local = self.backend == "loky"
-        own = {"backend": "loky", "initializer": ignore_endings, "idle_worker_timeout": IDLE} if local else {}
+        own: dict[str, object] = {}
+        if local:  # none is handed out before its worker is free: it would be begun though the time is over
+            own = {"backend": "loky", "initializer": ignore_endings, "idle_worker_timeout": IDLE}
+            own["pre_dispatch"] = "n_jobs"
         parallel = Parallel(
             n_jobs=jobs if local else -1, return_as="generator_unordered", batch_size=1, **own
         )
