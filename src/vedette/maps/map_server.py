@@ -23,12 +23,15 @@ _PIXELS = {  # grey level of UNKNOWN, FREE and OCCUPIED, as map_saver writes the
 }
 
 
-def read_map(path: Path | str, resolution: float | None = None) -> tuple[GridFrame, NDArray[np.uint8]]:
+def read_map(
+    path: Path | str, resolution: float | None = None, *, takes_resolution: bool = True
+) -> tuple[GridFrame, NDArray[np.uint8]]:
     """Read a map_server pair (give its ``.yaml``) or a plain image, whose pixels >= 128 are free.
 
     Args:
         path: ``.yaml``, or an image (PGM, PNG, BMP, JPEG). Transparent pixels of a plain image are unknown.
         resolution: side of a pixel [m]; needed for a plain image, overrides that of a pair.
+        takes_resolution: whoever named the path could have given one by ``--resolution``.
 
     Returns:
         The frame and the cell classes ``uint8[rows, cols]``, row 0 the lowest y: the image's last row, unless
@@ -47,14 +50,15 @@ def read_map(path: Path | str, resolution: float | None = None) -> tuple[GridFra
     if path.is_dir():
         raise InputError(f"{path} is a folder; give a map's .yaml or an image")
     if not _is_pair(path):
-        return _read_plain(path, resolution)
+        return _read_plain(path, resolution, takes_resolution)
     meta = read_meta(path)
     if resolution is not None and meta.resolution not in (None, resolution):
         said = f"resolution {resolution:g} replaces that of {path}, {meta.resolution:g} m"
         warnings.warn(said, InputWarning, stacklevel=2)
     resolution = resolution if resolution is not None else meta.resolution
     if resolution is None:
-        raise InputError(f"{path}: no resolution; add 'resolution: 0.05' [m per pixel] or give --resolution")
+        option = " or give --resolution" if takes_resolution else ""
+        raise InputError(f"{path}: no resolution; add 'resolution: 0.05' [m per pixel]{option}")
     return upright(classes_of_pair(meta, read_levels(meta.image)), resolution, meta.origin)
 
 
@@ -104,12 +108,17 @@ def _is_pair(path: Path) -> bool:
     return path.suffix.lower() in (".yaml", ".yml")
 
 
-def _read_plain(path: Path, resolution: float | None) -> tuple[GridFrame, NDArray[np.uint8]]:
+def _read_plain(
+    path: Path, resolution: float | None, takes_resolution: bool
+) -> tuple[GridFrame, NDArray[np.uint8]]:
     levels = read_levels(path)
     if resolution is None:
         pair = path.with_suffix(".yaml")
-        remedy = f"give {pair.name} instead, or " if pair.is_file() else ""
-        raise InputError(f"{path}: an image alone has no resolution; {remedy}add --resolution [m per pixel]")
+        remedies = [f"give {pair.name} instead"] if pair.is_file() else []
+        if takes_resolution:
+            remedies.append("add --resolution [m per pixel]")
+        remedy = ", or ".join(remedies) or f"write {pair.name}, which says it, and give that"
+        raise InputError(f"{path}: an image alone has no resolution; {remedy}")
     rows, cols = levels.grey.shape
     return GridFrame(resolution, rows, cols), classes_of_plain(path, levels)
 

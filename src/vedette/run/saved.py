@@ -71,7 +71,7 @@ def read_saved_map(run: Path, resolution: float) -> OwnMap:
         InputError: there is none, nothing is known in it, or its cells are larger.
     """
     path = run / "map.yaml"
-    frame, classes = read_map(path)
+    frame, classes = read_map(path, takes_resolution=False)
     if not np.any(classes != UNKNOWN):
         raise InputError(f"{path}: nothing is known in it; start without --continue")
     if frame.resolution > resolution * (1.0 + 1e-6):

@@ -69,9 +69,27 @@ def test_an_old_map_of_finer_cells_keeps_its_walls_closed(tmp_path: Path) -> Non
     assert (prior.classes[:, 51:] == FREE).all()
 
 
+@pytest.mark.parametrize(
+    ("pair", "remedy"),
+    [
+        (None, r"an image alone has no resolution; write old\.yaml, which says it, and give that"),
+        ("resolution: 0.1\n", r"an image alone has no resolution; give old\.yaml instead"),
+    ],
+)
+def test_an_old_map_without_a_resolution_is_told_of_with_what_its_option_takes(
+    pair: str | None, remedy: str, tmp_path: Path
+) -> None:
+    write_map(tmp_path / "old", GridFrame(0.1, 20, 20), np.full((20, 20), FREE, np.uint8))
+    (tmp_path / "old.yaml").unlink()
+    if pair is not None:
+        (tmp_path / "old.yaml").write_text(pair)
+    with pytest.raises(InputError, match=f"^prior: .*old\\.pgm: {remedy}$"):
+        read_prior(tmp_path / "old.pgm", Lattice(small_maze().frame))
+
+
 @pytest.mark.parametrize("what", [UNKNOWN, FREE])
 def test_an_old_map_that_knows_nothing_of_the_ground_is_refused(what: int, tmp_path: Path) -> None:
     away = 0.0 if what == UNKNOWN else 500.0
     write_map(tmp_path / "old", GridFrame(0.1, 20, 20, away, away), np.full((20, 20), what, np.uint8))
-    with pytest.raises(InputError, match=r"old\.yaml: nothing of the team's ground is known in it"):
+    with pytest.raises(InputError, match=r"prior: .*old\.yaml: nothing of the team's ground is known in it"):
         run.Explore(small_maze(), prior=tmp_path / "old.yaml")

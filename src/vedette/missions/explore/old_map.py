@@ -19,11 +19,14 @@ def read_prior(path: Path, lattice: Lattice) -> PriorMap:
     Raises:
         InputError: it cannot be read, or knows nothing of that ground.
     """
-    frame, classes = read_map(path)
+    try:
+        frame, classes = read_map(path, takes_resolution=False)
+    except InputError as error:
+        raise InputError(f"prior: {error}") from None
     saved = OwnMap(classes, frame.resolution, frame.origin_x, frame.origin_y, 0.0)
     rows, cols = saved.bounds(lattice.frame).extent
     part = lattice.frame.window(rows, cols)
     said = saved.laid(part) if part.size else np.empty((0, 0), np.uint8)
     if not np.any(said != UNKNOWN):
-        raise InputError(f"{path}: nothing of the team's ground is known in it; leave prior out")
+        raise InputError(f"prior: {path}: nothing of the team's ground is known in it; leave it out")
     return PriorMap.of(said, part)
