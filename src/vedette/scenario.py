@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from reprlib import repr as repr_short
@@ -54,6 +54,11 @@ def as_scenario(content: Any, kind: type[T], where: str, known: Sequence[str] | 
         return msgspec.convert(content, kind)
     except msgspec.ValidationError as error:
         raise InputError(f"{where}: {in_words(str(error), content, kind)}") from None
+
+
+def names_of(kind: str, given: Iterable[str]) -> list[str]:
+    """Return what each is called: as given, ``kind-N`` where that is nothing."""
+    return [name or f"{kind}-{i}" for i, name in enumerate(given, 1)]
 
 
 def as_one_of(kinds: Mapping[str, type[T]], content: Any, where: str) -> T:

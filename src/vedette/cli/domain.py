@@ -2,35 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import click
 
-from vedette.cli.options import (
-    FILE,
-    OneOf,
-    Output,
-    Positive,
-    fault_options,
-    orders_option,
-    output_options,
-    seed_option,
-    with_options,
-)
+from vedette.cli.options import Output, fault_options, orders_option, output_options, with_options
 from vedette.cli.running import Kind, simulate, simulate_watched
+from vedette.cli.vehicles import Adding, vehicle_options
 from vedette.cli.windows import beside_of, watch_options, watched
 from vedette.missions.flights import FUSIONS
-from vedette.missions.pairs import SCHEME
-from vedette.negotiation import SCHEMES
 from vedette.run.domain import DomainMission
 from vedette.sim.domain import Domain
 from vedette.sim.domains import DomainEntry
 from vedette.window.explore import Shower
 from vedette.window.picture import Picture
 
-CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 STATUS = "Exit status: 0 complete, 1 incomplete, 2 bad input, 130 interrupted."
 
 
@@ -39,26 +26,9 @@ def kind_of(domain: Domain[Any, Any, Any, Any, Any]) -> Kind[Any, Any, Any]:
     return Kind(domain.display, domain.recorder, domain.write, domain.closing, tuple(domain.leaves))
 
 
-def domain_options(domain: DomainEntry) -> Callable[[CommandT], CommandT]:
+def domain_options(domain: DomainEntry) -> Adding:
     """``SCENARIO`` and what says how its vehicles work together."""
-    return lambda command: with_options(
-        command,
-        click.argument("scenario_path", metavar="[SCENARIO]", required=False, type=FILE),
-        seed_option(domain.seeds),
-        click.option(
-            "--coordination", type=OneOf(domain.coordinations), default="negotiated", show_default=True,
-            help="How the vehicles decide.",
-        ),
-        click.option("--scheme", type=OneOf(SCHEMES), help=f"How they negotiate.  [default: {SCHEME}]"),
-        click.option(
-            "--fusion", type=OneOf(FUSIONS), default="replicated", show_default=True,
-            help="How they share what they see.",
-        ),
-        click.option(
-            "--max-time", type=Positive("s"),
-            help="Simulated time limit [s].  [default: the scenario's duration]",
-        ),
-    )  # fmt: skip
+    return vehicle_options(domain.seeds, domain.coordinations, FUSIONS)
 
 
 def command_of(declared: DomainEntry) -> click.Command:

@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
 
-import click
-
-from vedette.cli.options import FILE, OneOf, Positive, seed_option, with_options
 from vedette.cli.running import Kind
-from vedette.missions.pairs import SCHEME
+from vedette.cli.vehicles import vehicle_options
 from vedette.missions.search.options import COORDINATIONS, FUSIONS
-from vedette.negotiation import SCHEMES
 from vedette.number import many
 from vedette.record.search.live import search_display
 from vedette.record.search.mcap import SearchMcapWriter
@@ -20,36 +14,12 @@ from vedette.record.search.outputs import write_outputs
 from vedette.record.search.summary import SearchSummary
 from vedette.run.mission import RECORD
 
-CommandT = TypeVar("CommandT", bound=Callable[..., Any])
-
-
-def searching_options(command: CommandT) -> CommandT:
-    """``SCENARIO`` and what says how its vehicles search."""
-    return with_options(
-        command,
-        click.argument("scenario_path", metavar="[SCENARIO]", required=False, type=FILE),
-        seed_option("the hidden target and all chance"),
-        click.option(
-            "--coordination",
-            type=OneOf(COORDINATIONS),
-            default="negotiated",
-            show_default=True,
-            help="What the vehicles tell each other: nothing, what they see, or also what they mean to do.",
-        ),
-        click.option("--scheme", type=OneOf(SCHEMES), help=f"How they negotiate.  [default: {SCHEME}]"),
-        click.option(
-            "--fusion",
-            type=OneOf(FUSIONS),
-            default="replicated",
-            show_default=True,
-            help="How they share what they see.",
-        ),
-        click.option(
-            "--max-time",
-            type=Positive("s"),
-            help="Search no longer than that [s].  [default: the scenario's duration]",
-        ),
-    )
+searching_options = vehicle_options(
+    "the hidden target and all chance",
+    COORDINATIONS,
+    FUSIONS,
+    decide="What the vehicles tell each other: nothing, what they see, or also what they mean to do.",
+)
 
 
 def closing(summary: SearchSummary, folder: Path) -> list[str]:

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
 
 import click
 
-from vedette.cli.options import FILE, Named, OneOf, Positive, seed_option, with_options
+from vedette.cli.options import Named
 from vedette.cli.running import Kind
+from vedette.cli.vehicles import vehicle_options
 from vedette.domains.tracking.objective import OBJECTIVE
 from vedette.fusion.gaussian import WAYS
-from vedette.missions.pairs import SCHEME
 from vedette.missions.track.options import COORDINATIONS
-from vedette.negotiation import SCHEMES
 from vedette.number import many
 from vedette.record.track.live import track_display
 from vedette.record.track.mcap import TrackMcapWriter
@@ -22,46 +19,19 @@ from vedette.record.track.outputs import write_outputs
 from vedette.record.track.summary import TrackSummary
 from vedette.run.mission import RECORD
 
-CommandT = TypeVar("CommandT", bound=Callable[..., Any])
-
-
-def tracking_options(command: CommandT) -> CommandT:
-    """``SCENARIO`` and what says how its vehicles track."""
-    return with_options(
-        command,
-        click.argument("scenario_path", metavar="[SCENARIO]", required=False, type=FILE),
-        seed_option("the targets' true ways and all chance"),
-        click.option(
-            "--coordination",
-            type=OneOf(COORDINATIONS),
-            default="negotiated",
-            show_default=True,
-            help="How the vehicles decide.",
-        ),
-        click.option("--scheme", type=OneOf(SCHEMES), help=f"How they negotiate.  [default: {SCHEME}]"),
-        click.option(
-            "--fusion",
-            type=OneOf(WAYS),
-            default="replicated",
-            show_default=True,
-            help="How they share what they see.",
-        ),
-        click.option(
-            "--objective",
-            type=Named(OBJECTIVE),
-            help="What they gain.  [default: the scenario's, else trajectory]",
-        ),
-        click.option(
-            "--continuous",
-            is_flag=True,
-            help="Improve the best course's turn rates by the objective's gradient.",
-        ),
-        click.option(
-            "--max-time",
-            type=Positive("s"),
-            help="Simulated time limit [s].  [default: the scenario's duration]",
-        ),
-    )
+tracking_options = vehicle_options(
+    "the targets' true ways and all chance",
+    COORDINATIONS,
+    WAYS,
+    click.option(
+        "--objective",
+        type=Named(OBJECTIVE),
+        help="What they gain.  [default: the scenario's, else trajectory]",
+    ),
+    click.option(
+        "--continuous", is_flag=True, help="Improve the best course's turn rates by the objective's gradient."
+    ),
+)
 
 
 def closing(summary: TrackSummary, folder: Path) -> list[str]:

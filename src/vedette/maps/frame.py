@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import ceil
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,13 @@ class GridFrame:
     cols: int
     origin_x: float = 0.0  # lower-left corner of cell (0, 0) [m], team frame
     origin_y: float = 0.0
+
+    @classmethod
+    def over(cls, area: tuple[float, float, float, float], resolution: float) -> GridFrame:
+        """Return the grid of whole cells over an area: lowest x, lowest y, highest x, highest y [m]."""
+        x0, y0, x1, y1 = area
+        rows, cols = (max(1, ceil((high - low) / resolution - 1e-9)) for low, high in ((y0, y1), (x0, x1)))
+        return cls(resolution, rows, cols, x0, y0)
 
     @property
     def shape(self) -> tuple[int, int]:

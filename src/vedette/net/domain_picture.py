@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import msgspec
 import numpy as np
 
 from vedette import wire
-from vedette.agent.orders import Order
 from vedette.missions.flights import FlightCase
 from vedette.net.domain import AnyDomain
-from vedette.net.gather import UNHEARD, now_of, sample_of, vehicle_name
+from vedette.net.gather import UNHEARD, now_of, sample_of
 from vedette.net.report import Report
+from vedette.net.shown import ShownVehicles
 from vedette.record.log import VehicleSample
 from vedette.record.mcap import McapFile, Medium, Place
 from vedette.window.picture import Beside, Picture
 
 
-class DomainOnlooker:
+class DomainOnlooker(ShownVehicles):
     """``vedette.net.feed.Onlooker``: what is known is what the first vehicle that is heard tells."""
 
     def __init__(self, domain: AnyDomain, case: FlightCase, only: int | None = None) -> None:
@@ -27,20 +27,12 @@ class DomainOnlooker:
         from vedette.window.declared import pictures  # who looks at none does not wait for SciPy
 
         scene = domain.scene(case)
-        self._domain, self._case, self._names = domain, case, scene.vehicles
+        super().__init__(scene.vehicles, only)
+        self._domain, self._case = domain, case
         self._scene = scene if only is None else scene.only(only)
-        self._shown = range(len(scene.vehicles)) if only is None else [only]
         self._decoder: msgspec.msgpack.Decoder[Any] = msgspec.msgpack.Decoder(domain.content)
         self._draw = pictures(self._scene)
         self._told: tuple[bytes, Any] | None = None  # what was told last, and what it comes to
-
-    def numbers(self, reports: Mapping[int, Report]) -> Sequence[int]:
-        """Return all of the scenario."""
-        return [i + 1 for i in self._shown]
-
-    def name(self, robot: int) -> str:
-        """Return the scenario's word for a vehicle."""
-        return vehicle_name(self._names, robot)
 
     def see(self, reports: Mapping[int, Report], states: Mapping[int, str]) -> tuple[Any, Any]:
         """Return where vehicles are, and what is known; that is worked out anew when it has changed."""
@@ -59,10 +51,6 @@ class DomainOnlooker:
                     VehicleSample(*self._case.scenario.vehicles[i].pose, UNHEARD, True, np.empty((0, 2)))
                 )
         return self._scene, self._domain.seen(now_of(reports), vehicles, self._told[1])
-
-    def as_drawn(self, order: Order, reports: Mapping[int, Report]) -> Order:
-        """Return an order as it is: all share a frame."""
-        return order
 
     def draw(self, scene: Any, snapshot: Any, beside: Beside) -> Picture:
         """Return it as the page shows it."""

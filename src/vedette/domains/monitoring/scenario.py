@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from math import ceil, inf
+from math import inf
 from typing import Annotated, TypeAlias
 
 from msgspec import Meta, Struct
 
 from vedette.maps import GridFrame
-from vedette.scenario import Metre, Name
+from vedette.scenario import Metre, Name, names_of
 
 Positive = Annotated[float, Meta(gt=0.0, le=1e9)]
 Speed = Annotated[float, Meta(ge=-300.0, le=300.0)]  # along an axis [m/s]
@@ -130,14 +130,12 @@ class MonitorScenario(Struct, forbid_unknown_fields=True, frozen=True, kw_only=T
     @property
     def vehicle_names(self) -> list[str]:
         """As given, ``vehicle-N`` where not."""
-        return [each.name or f"vehicle-{i}" for i, each in enumerate(self.vehicles, 1)]
+        return names_of("vehicle", (each.name for each in self.vehicles))
 
     @property
     def frame(self) -> GridFrame:
         """The grid over the area, whole cells."""
-        x0, y0, x1, y1 = self.area
-        rows, cols = (max(1, ceil((high - low) / self.cell - 1e-9)) for low, high in ((y0, y1), (x0, x1)))
-        return GridFrame(self.cell, rows, cols, x0, y0)
+        return GridFrame.over(self.area, self.cell)
 
     def sensor_of(self, i: int) -> SensorSettings:
         """Return vehicle i's."""

@@ -13,7 +13,7 @@ from vedette.errors import InputError
 from vedette.maps import GridFrame
 from vedette.missions.flights import TurningVehicle
 from vedette.parts import look_in
-from vedette.scenario import Metre, Name, as_scenario, load_scenario
+from vedette.scenario import Metre, Name, as_scenario, load_scenario, names_of
 
 MOST_VEHICLES = 64
 
@@ -40,7 +40,7 @@ class OwnScenario(Struct, forbid_unknown_fields=True, frozen=True, kw_only=True)
     @property
     def vehicle_names(self) -> list[str]:
         """As given, ``vehicle-N`` where not."""
-        return [each.name or f"vehicle-{i}" for i, each in enumerate(self.vehicles, 1)]
+        return names_of("vehicle", (each.name for each in self.vehicles))
 
 
 def read_scenario(scenario: Path | Mapping[str, Any], kind: type[OwnScenario]) -> tuple[str, OwnScenario]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from math import ceil
 from typing import Annotated, Any, Literal, TypeAlias
 
 from msgspec import Meta, Struct, field
@@ -10,7 +9,7 @@ from msgspec import Meta, Struct, field
 from vedette.domains.search.worth import Worth, worth_of
 from vedette.maps import GridFrame
 from vedette.missions.flights import TurningVehicle
-from vedette.scenario import Metre, Name
+from vedette.scenario import Metre, Name, names_of
 
 Length = Annotated[float, Meta(gt=0.0, le=1e6)]  # [m]
 Weight = Annotated[float, Meta(gt=0.0, le=1e9)]
@@ -128,14 +127,12 @@ class SearchScenario(Struct, forbid_unknown_fields=True, frozen=True, kw_only=Tr
     @property
     def vehicle_names(self) -> list[str]:
         """As given, ``vehicle-N`` where not."""
-        return [each.name or f"vehicle-{i}" for i, each in enumerate(self.vehicles, 1)]
+        return names_of("vehicle", (each.name for each in self.vehicles))
 
     @property
     def frame(self) -> GridFrame:
         """The grid over the area, whole cells."""
-        x0, y0, x1, y1 = self.area
-        rows, cols = (max(1, ceil((high - low) / self.cell - 1e-9)) for low, high in ((y0, y1), (x0, x1)))
-        return GridFrame(self.cell, rows, cols, x0, y0)
+        return GridFrame.over(self.area, self.cell)
 
     @property
     def weights(self) -> Worth:

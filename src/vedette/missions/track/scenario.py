@@ -25,7 +25,7 @@ from vedette.errors import InputError, InputWarning
 from vedette.missions.flights import TurningVehicle
 from vedette.number import many
 from vedette.parts import look_in
-from vedette.scenario import Metre, Name, as_scenario, load_scenario
+from vedette.scenario import Metre, Name, as_scenario, load_scenario, names_of
 
 Numbers: TypeAlias = tuple[Annotated[float, Meta(ge=-1e12, le=1e12)], ...]
 
@@ -100,12 +100,12 @@ class TrackScenario(Struct, forbid_unknown_fields=True, frozen=True, kw_only=Tru
     @property
     def vehicle_names(self) -> list[str]:
         """As given, ``vehicle-N`` where not."""
-        return [each.name or f"vehicle-{i}" for i, each in enumerate(self.vehicles, 1)]
+        return names_of("vehicle", (each.name for each in self.vehicles))
 
     @property
     def target_names(self) -> list[str]:
         """As given, ``target-N`` where not."""
-        return [each.name or f"target-{i}" for i, each in enumerate(self.targets, 1)]
+        return names_of("target", (each.name for each in self.targets))
 
     @property
     def sensors(self) -> list[Sensor]:

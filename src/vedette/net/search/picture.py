@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from math import nan
 
 import numpy as np
 
-from vedette.agent.orders import Order
 from vedette.missions.search.case import SearchCase
-from vedette.net.gather import UNHEARD, now_of, vehicle_name
+from vedette.net.gather import UNHEARD, now_of
 from vedette.net.report import Report
 from vedette.net.search.content import view_of
+from vedette.net.shown import ShownVehicles
 from vedette.record.mcap import Medium, Place
 from vedette.record.search.log import SearchSample, SearchScene, SearchSnapshot
 from vedette.record.search.mcap import SearchMcapWriter
@@ -21,23 +21,15 @@ from vedette.window.flights import search_picture
 from vedette.window.picture import Beside, Picture
 
 
-class SearchOnlooker:
+class SearchOnlooker(ShownVehicles):
     """``vedette.net.feed.Onlooker``: the pdf is that of the first vehicle that is heard."""
 
     def __init__(self, case: SearchCase, only: int | None = None) -> None:
         """Look at a team that searches; ``only``: at one vehicle, by its index."""
         scene = SearchScene.of(case, case.scenario.duration)
-        self._case, self._names = case, scene.vehicles
+        super().__init__(scene.vehicles, only)
+        self._case = case
         self._scene = scene if only is None else scene.only(only)
-        self._shown = range(len(scene.vehicles)) if only is None else [only]
-
-    def numbers(self, reports: Mapping[int, Report]) -> Sequence[int]:
-        """Return all of the scenario."""
-        return [i + 1 for i in self._shown]
-
-    def name(self, robot: int) -> str:
-        """Return the scenario's word for a vehicle."""
-        return vehicle_name(self._names, robot)
 
     def see(
         self, reports: Mapping[int, Report], states: Mapping[int, str]
@@ -71,10 +63,6 @@ class SearchOnlooker:
             declared=None if declared is None else (declared[1].x, declared[1].y),
         )
         return self._scene, snapshot
-
-    def as_drawn(self, order: Order, reports: Mapping[int, Report]) -> Order:
-        """Return an order as it is: all share a frame."""
-        return order
 
     def draw(self, scene: SearchScene, snapshot: SearchSnapshot, beside: Beside) -> Picture:
         """Return it as the page shows it."""

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from math import nan
 
 import numpy as np
 
 from vedette.agent.flight import step_of
-from vedette.agent.orders import Order
 from vedette.domains.tracking.filter import predict
 from vedette.missions.track.scenario import TrackScenario
-from vedette.net.gather import UNHEARD, now_of, vehicle_name
+from vedette.net.gather import UNHEARD, now_of
 from vedette.net.report import Report
+from vedette.net.shown import ShownVehicles
 from vedette.net.track.content import view_of
 from vedette.record.mcap import Medium, Place
 from vedette.record.track.log import TrackSample, TrackScene, TrackSnapshot
@@ -22,23 +22,15 @@ from vedette.window.flights import track_picture
 from vedette.window.picture import Beside, Picture
 
 
-class TrackOnlooker:
+class TrackOnlooker(ShownVehicles):
     """``vedette.net.feed.Onlooker``: the tracks are those of the first vehicle that is heard."""
 
     def __init__(self, scenario: TrackScenario, name: str, only: int | None = None) -> None:
         """Look at a team that follows the targets of a scenario; ``only``: at one vehicle, by its index."""
         self._scenario, self._prior = scenario, scenario.prior()
         scene = TrackScene.of(scenario, name)
-        self._scene, self._names = scene if only is None else scene.only(only), scene.vehicles
-        self._shown = range(len(scene.vehicles)) if only is None else [only]
-
-    def numbers(self, reports: Mapping[int, Report]) -> Sequence[int]:
-        """Return all of the scenario."""
-        return [i + 1 for i in self._shown]
-
-    def name(self, robot: int) -> str:
-        """Return the scenario's word for a vehicle."""
-        return vehicle_name(self._names, robot)
+        super().__init__(scene.vehicles, only)
+        self._scene = scene if only is None else scene.only(only)
 
     def see(
         self, reports: Mapping[int, Report], states: Mapping[int, str]
@@ -73,10 +65,6 @@ class TrackOnlooker:
             squared_error=nan,
         )
         return self._scene, snapshot
-
-    def as_drawn(self, order: Order, reports: Mapping[int, Report]) -> Order:
-        """Return an order as it is: all share a frame."""
-        return order
 
     def draw(self, scene: TrackScene, snapshot: TrackSnapshot, beside: Beside) -> Picture:
         """Return it as the page shows it."""
