@@ -70,6 +70,15 @@ def out_option(holds: str, default: Path = RESULTS) -> Callable[[CommandT], Comm
     return click.option("--out", type=Path, default=default, metavar="DIR", help=f"Folder for {holds}.")
 
 
+def planners_option(default: str) -> Callable[[CommandT], CommandT]:
+    """``--planners``."""
+    return click.option("--planners", default=default, show_default=True, help="By name, with commas.")
+
+
+worlds_option = click.option(
+    "--worlds", default="office,cave,maze", show_default=True, help="Kinds of worlds, with commas."
+)
+fresh_option = click.option("--fresh", is_flag=True, help="Run the missions anew that were run before.")
 date_option = click.option("--date", help="Of the run, to be put into the JSON.  [default: the commit's]")
 minutes_option = click.option(
     "--minutes", type=click.FloatRange(min=0.0), help="Begin no mission after so long."

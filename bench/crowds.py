@@ -126,7 +126,7 @@ def run_crowd(case: Crowd, commit: str) -> CrowdResult:
     "--seeds", type=command.WholeNumbers(0), help="Of each kind.  [default: 0-9 of offices, else 0-2]"
 )
 @command.jobs_option(2)
-@click.option("--fresh", is_flag=True, help="Run the missions anew that were run before.")
+@command.fresh_option
 @command.out_option("results and table")
 def crowds(
     worlds: str, robots: tuple[int, ...], seeds: tuple[int, ...] | None, jobs: int, fresh: bool, out: Path

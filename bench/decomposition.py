@@ -153,12 +153,12 @@ def run_case(case: Case, commit: str) -> Shares:
 
 
 @click.command()
-@click.option("--worlds", default="office,cave,maze", show_default=True, help="Kinds of worlds, with commas.")
-@click.option("--planners", default="tours,burgard", show_default=True, help="By name, with commas.")
+@command.worlds_option
+@command.planners_option("tours,burgard")
 @command.robots_option("3")
 @command.seeds_option("0-9", "Of each kind.")
 @command.jobs_option(2)
-@click.option("--fresh", is_flag=True, help="Run the missions anew that were run before.")
+@command.fresh_option
 @command.out_option("results and table")
 def decomposition(
     worlds: str,

@@ -229,7 +229,7 @@ def forecast_table(results: Sequence[ForeseenResult]) -> str:
 @click.option("--fit", type=command.WholeNumbers(0), default=FIT, help="Seeds to fit on, below 1000.")
 @click.option("--check", type=command.WholeNumbers(1000), default=CHECK, help="Seeds to check on.")
 @command.jobs_option(1)
-@click.option("--fresh", is_flag=True, help="Run the missions anew that were run before.")
+@command.fresh_option
 @command.out_option("results and table")
 def forecast(fit: tuple[int, ...], check: tuple[int, ...], jobs: int, fresh: bool, out: Path) -> None:
     """Fit and check what is expected of explorations; exit status 1 if a mission broke."""

@@ -35,13 +35,11 @@ class Todo(Protocol):
 @click.option("--maps", type=Path, metavar="DIR", help="Run the maps of this folder too.")
 @command.seeds_option("0-9", "Of the offices.")
 @command.robots_option("1,3,6", "In the offices.")
-@click.option(
-    "--planners", default=f"{JUDGED},nearest,burgard", show_default=True, help="By name, with commas."
-)
+@command.planners_option(f"{JUDGED},nearest,burgard")
 @click.option("--only-offices", is_flag=True, help="Leave the maps out.")
 @click.option("--only-maps", is_flag=True, help="Leave the offices out.")
 @command.jobs_option(2)
-@click.option("--fresh", is_flag=True, help="Run the missions anew that were run before.")
+@command.fresh_option
 @command.out_option("results and table")
 def missions(
     maps: Path | None,

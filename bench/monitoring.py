@@ -175,7 +175,7 @@ def _against(results: Sequence[FieldRun], own: Sequence[FieldRun], other: str, w
 @click.option("--sgptools", metavar="PYTHON", help=f"Compare SGP-Tools too: {ways.HOW}.")
 @command.seeds_option("0-4")
 @command.jobs_option(2)
-@click.option("--fresh", is_flag=True, help="Run the missions anew that were run before.")
+@command.fresh_option
 @command.out_option("results and table")
 def monitoring(
     fields: str,

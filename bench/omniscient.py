@@ -58,12 +58,12 @@ def run_case(case: Case, commit: str) -> Timed:
 
 
 @click.command()
-@click.option("--worlds", default="office,cave,maze", show_default=True, help="Kinds of worlds, with commas.")
-@click.option("--planners", default="tours,burgard", show_default=True, help="By name, with commas.")
+@command.worlds_option
+@command.planners_option("tours,burgard")
 @command.robots_option("3")
 @command.seeds_option("200-203", "Of each.")
 @command.jobs_option(2)
-@click.option("--fresh", is_flag=True, help="Plan and run anew what was there before.")
+@command.fresh_option
 @command.out_option("results and table")
 def omniscient(
     worlds: str,

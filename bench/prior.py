@@ -63,12 +63,12 @@ def run_case(case: Case, commit: str) -> Timed:
 
 
 @click.command()
-@click.option("--worlds", default="office,cave,maze", show_default=True, help="Kinds of worlds, with commas.")
+@command.worlds_option
 @command.robots_option("3")
 @command.seeds_option("400-405", "Of each.")
 @click.option("--ways", default=",".join(WAYS), show_default=True, help="Of them these, with commas.")
 @command.jobs_option(2)
-@click.option("--fresh", is_flag=True, help="Run the missions anew that were run before.")
+@command.fresh_option
 @command.out_option("results and table")
 def prior(
     worlds: str,

@@ -157,7 +157,7 @@ def _ratio(ordered: float | None, plain: float | None) -> float:
 @click.command()
 @command.seeds_option("1-20")
 @command.jobs_option(1)
-@click.option("--fresh", is_flag=True, help="Run the missions anew that were run before.")
+@command.fresh_option
 @command.out_option("results and table")
 def priority(seeds: tuple[int, ...], jobs: int, fresh: bool, out: Path) -> None:
     """Compare missions with and without a priority area; exit status 1 if one broke."""

@@ -127,7 +127,7 @@ def _ratio(unknown: float | None, known: float | None) -> float | None:
 @click.command()
 @command.seeds_option("1-20")
 @command.jobs_option(1)
-@click.option("--fresh", is_flag=True, help="Run the missions anew that were run before.")
+@command.fresh_option
 @command.out_option("results and table")
 def strangers(seeds: tuple[int, ...], jobs: int, fresh: bool, out: Path) -> None:
     """Compare teams that share no frame with teams that share one; exit status 1 if a mission broke."""

@@ -28,7 +28,7 @@ _WORLD = re.compile(r"(\d{1,3})x(\d{1,3})")
     "--max-time", type=click.FloatRange(min=1.0), default=3600.0, show_default=True, help="Simulated [s]."
 )
 @command.jobs_option(1)
-@click.option("--fresh", is_flag=True, help="Run the missions anew that were run before.")
+@command.fresh_option
 @command.out_option("results and table")
 def large(
     before: str | None,
