@@ -59,6 +59,10 @@ class RoundParticipant(Generic[BeliefT, StrategyT, ImpactT]):
         """Return what of an impact's value is a price, taken off."""
         return self._objective.price(impact)
 
+    def gross(self, team: ImpactT) -> float:
+        """``psi(team)``, with no price taken off."""
+        return self.value(team) + self.price(team)
+
     def slack(self, base: ImpactT) -> float:
         """Most that any strategy of this robot would add to ``base``."""
         return self._platform.slack(self._belief, base)

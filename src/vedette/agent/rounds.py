@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import partial, reduce
+from functools import partial
 from math import inf
 from typing import Any
 
@@ -19,15 +19,13 @@ from vedette.agent.effects import Effect, Job, Shun
 from vedette.agent.events import Pose, TreeChanged
 from vedette.agent.mates import Mate
 from vedette.agent.messages import Begin, Call, Flushed, Freeze, Negotiate
-from vedette.agent.mission import Framing, Mission
+from vedette.agent.mission import Mission
 from vedette.agent.opinion import Opinion
 from vedette.agent.pace import Pace
-from vedette.agent.participant import RoundParticipant
 from vedette.agent.patience import TeamPatience
 from vedette.agent.round import MAX_FORKS, Round, say, send_news
 from vedette.agent.scrutiny import Scrutiny
 from vedette.agent.silence import Slowness
-from vedette.negotiation import RoundOutcome
 from vedette.number import many
 
 CALL_AGAIN = 1.0  # a call not answered is repeated after so long [s]
@@ -80,11 +78,12 @@ class Rounds:
     _upwards: Upwards = field(default_factory=Upwards)
     _slowness: Slowness = field(default_factory=Slowness)
     _shunned: set[int] = field(default_factory=set)  # parents by which no round has ended since
-    _opinion: Opinion = field(default_factory=Opinion)
+    _opinion: Opinion = field(init=False)
     _solos: int = 0  # rounds that this robot began for itself alone
 
     def __post_init__(self) -> None:
         self.patience, self.scrutiny = TeamPatience(self.pace), Scrutiny(self.mission)
+        self._opinion = Opinion(self.mission, self.scrutiny)
 
     @property
     def busy(self) -> bool:
@@ -264,7 +263,7 @@ class Rounds:
             )
         self._end(now)
         self.team_impact = round_.team_seen
-        value, elsewhere = self._worth(outcome, round_, round_.participant)
+        value, elsewhere = self._opinion.of(round_, outcome, self.team_impact)
         approximate = round_.approximate or not took_part
         self.decided(Decision(now, value, elsewhere, approximate, round_.blocked, lonely))
         if lonely:
@@ -273,43 +272,6 @@ class Rounds:
         if not took_part:
             return [*effects, *self._fail()]
         return [*effects, *(self._shun() if self._upwards.ends(self.tree, round_.approximate) else [])]
-
-    def _worth(
-        self, outcome: RoundOutcome, round_: Round, own: RoundParticipant[Any, Any, Any]
-    ) -> tuple[float, bool]:
-        """Return what the team's choice is worth to who is joined, and whether it is to anybody else.
-
-        On a map that nothing joins with this robot's, who is there can claim what it likes, and nobody else
-        can do anything about it: that keeps nobody at work.
-        """
-        value = self._opinion.of(self._told(outcome, own), self._seen(round_, own))
-        ground = self.mission.ground() if isinstance(self.mission, Framing) else None
-        if ground is None:
-            return value, False
-        team = self.team_impact
-        if team is None:
-            team = reduce(own.combine, round_.claims.values(), own.impact)
-        here, rest = own.clip(team, ground), own.value(team) + own.price(team)
-        worth = own.value(here) + own.price(here)
-        return worth, rest > worth
-
-    def _told(self, outcome: RoundOutcome, own: RoundParticipant[Any, Any, Any]) -> float:
-        """Return what the team's choice is told to be worth, which is with prices taken off.
-
-        Where not all of the team is held here, no less than what this robot shows itself; and anything where
-        not all are content.
-        """
-        if self.team_impact is not None:
-            return outcome.value
-        if not outcome.converged:
-            return inf
-        return max(outcome.value, own.value(own.impact) + own.price(own.impact))
-
-    def _seen(self, round_: Round, own: RoundParticipant[Any, Any, Any]) -> float | None:
-        """Return what this robot sees the team's choice to be worth: nothing, where nobody goes."""
-        if self.team_impact is not None:
-            return own.value(self.team_impact) + own.price(self.team_impact)
-        return 0.0 if self.scrutiny.nobody_goes(round_.belief, own.impact) else None
 
     def _end(self, now: float) -> None:
         if self.round is not None:

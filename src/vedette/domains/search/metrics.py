@@ -1,22 +1,9 @@
-"""How well a search went: probability of detection over time, and the mean time to detection."""
+"""How well a search went: the mean time to detection."""
 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
-
-def cumulative_detection(missed: ArrayLike) -> NDArray[np.float64]:
-    """``C_k = 1 - prod_{j <= k} Q_j``: probability of detection by the end of each step; (V43).
-
-    Args:
-        missed: ``(K,)`` Q_j, the probability that nobody detects in step j given that nobody did before: the
-            sum of the predicted density times the team's misses.
-
-    Returns:
-        ``(K,)``.
-    """
-    return np.asarray(1.0 - np.cumprod(np.asarray(missed, np.float64)))
+from numpy.typing import ArrayLike
 
 
 def mean_time_to_detection(detection: ArrayLike, dt: float, tail: float = 0.0) -> float:
