@@ -35,6 +35,18 @@ autodoc_class_signature = "separated"
 autodoc_preserve_defaults = True
 autodoc_default_options = {"members": True, "undoc-members": True, "ignore-module-all": True}
 autodoc_member_order = "bysource"
+autodoc_mock_imports = [  # what a robot's own Python has, and what its simulated body needs
+    "builtin_interfaces",
+    "geometry_msgs",
+    "irsim",
+    "nav2_msgs",
+    "nav_msgs",
+    "rclpy",
+    "rosgraph_msgs",
+    "sensor_msgs",
+    "skimage",
+    "tf2_msgs",
+]
 
 html_theme = "furo"
 html_title = f"Vedette {version}"
