@@ -39,10 +39,10 @@ class Promises:
     halvings: int = 0  # by so many halves a claim counts less
     until: float = -np.inf  # it counts as nothing [s]
     lost: float = -np.inf  # when its weight last changed [s]
-    _cells: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))  # increasing
-    _first: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))  # when first promised [s]
-    _due: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))  # for when, at the earliest [s]
-    _before: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))  # held up before that [s]
+    _cells: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))  # (P,) increasing
+    _first: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))  # (P,) when first promised [s]
+    _due: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))  # (P,) for when, soonest [s]
+    _before: NDArray[np.float64] = field(default_factory=lambda: np.empty(0))  # (P,) held up before that [s]
     _fulfilled: float = 0.0  # cells
 
     @property

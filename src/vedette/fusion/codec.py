@@ -125,8 +125,8 @@ class _Outline(NamedTuple):
     key: Key
     base: int
     version: int
-    tiles: NDArray[np.int64]
-    counts: bool
+    tiles: NDArray[np.int64]  # (T,) their numbers, increasing
+    counts: bool  # whether there are any
     voucher: Voucher | None
 
 

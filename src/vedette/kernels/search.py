@@ -25,8 +25,8 @@ class Stencil:
     """
 
     first: tuple[int, int]  # smallest move in rows and in columns [cells]
-    row_taps: NDArray[np.float64]  # sum 1
-    col_taps: NDArray[np.float64]  # sum 1
+    row_taps: NDArray[np.float64]  # (T,) sum 1
+    col_taps: NDArray[np.float64]  # (U,) sum 1
     leaves: bool = False  # whether what moves beyond the grid is gone
 
     @property

@@ -30,8 +30,8 @@ class _Reading:
     """What a line says."""
 
     pose: tuple[float, float, float]  # of the lidar: x, y, heading [m, m, rad]
-    angles: NDArray[np.float64]  # about the heading [rad]
-    ranges: NDArray[np.float64]  # [m]
+    angles: NDArray[np.float64]  # (B,) about the heading [rad]
+    ranges: NDArray[np.float64]  # (B,) [m]
     range: float  # from which on nothing has come back, infinite if the line does not say so [m]
     stamp: float  # [s]
 

@@ -38,7 +38,7 @@ class _Turned:
 
     pieces: NDArray[np.uint8]  # (H, W) what a piece continues a map with
     as_wall: NDArray[np.int16]  # (H, W) what each cell says for a piece that has it where there is a wall
-    as_free: NDArray[np.int16]
+    as_free: NDArray[np.int16]  # (H, W) likewise where there is free ground
     begins: NDArray[np.bool_]  # (H, W) without its edge: pieces can begin here
 
     @classmethod

@@ -59,7 +59,7 @@ class SearchPlatform:
     choices: int = 3  # turn rates, odd
     looks: int | None = None  # a step; None: enough to move by half the range between two
     gusts: tuple[Gust, ...] = CALM  # winds that may carry it off its way
-    pose: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
+    pose: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))  # [m, m, rad], team frame
     present: Flight | None = None
     forbidden: Forbidden = NOWHERE  # ground that it must not be over
     options: FlightOptions | None = None

@@ -49,7 +49,7 @@ class TrackingPlatform:
     forbidden: Forbidden = NOWHERE  # ground that it must not be over
     courses: list[Course] = field(default_factory=list)  # that are compared; set by prepare
     candidates: Impacts | None = None  # what each would observe
-    _near: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
+    _near: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))  # (N,) targets in reach
     _known: dict[Course, Impact] = field(default_factory=dict)
 
     def __post_init__(self) -> None:

@@ -64,13 +64,13 @@ def block_discs(
 class MotionScene(NamedTuple):
     """What a robot steers by; see ``vedette.kernels.motion.steer``."""
 
-    solid: NDArray[np.bool_]
-    traversable: NDArray[np.bool_]
-    first: tuple[int, int]
-    resolution: float
-    path: NDArray[np.float64]
-    arc: NDArray[np.float64]
-    others: NDArray[np.float64]
+    solid: NDArray[np.bool_]  # (R, C)
+    traversable: NDArray[np.bool_]  # (r, c)
+    first: tuple[int, int]  # row and column of its first cell
+    resolution: float  # [m]
+    path: NDArray[np.float64]  # (L, 2) [m]
+    arc: NDArray[np.float64]  # (L,) [m]
+    others: NDArray[np.float64]  # (D, 6) x, y, vx, vy, radius, gap [m, m/s]
     limits: Limits
     turning: float  # how fast it has just turned on the spot [rad/s]; 0 if it moved
 

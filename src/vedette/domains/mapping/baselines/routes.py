@@ -120,8 +120,8 @@ def _changes(graph: Graph, routes: Routes) -> Iterator[Routes]:
 class _Edges:
     """The steps of all routes one after the other: where a stop can be inserted."""
 
-    start: NDArray[np.int64]  # (E,) nodes
-    end: NDArray[np.int64]
+    start: NDArray[np.int64]  # (E,) node that a step is from
+    end: NDArray[np.int64]  # (E,) node that it leads to
     owner: NDArray[np.int64]  # (E,) whose route
     place: NDArray[np.int64]  # (E,) a stop inserted here has this place in the route
 
