@@ -48,11 +48,20 @@ def test_merging_the_same_maps_again_gives_the_same_bytes(parts: list[Part]) -> 
     assert merge(maps).classes.tobytes() == merge(maps).classes.tobytes()
 
 
-def test_a_map_of_another_building_is_named_and_the_others_do_not_hide_it(parts: list[Part]) -> None:
-    stranger = part(building(2), 0.0, 14.0, HERE)
-    merged = merge([saved("a", parts[0]), saved("b", parts[1]), saved("stranger", stranger)])
+@pytest.mark.parametrize("at", [0, 1, 2])
+def test_a_map_of_another_building_is_named_wherever_it_stands_and_the_others_do_not_hide_it(
+    parts: list[Part], at: int
+) -> None:
+    maps = [saved("a", parts[0]), saved("b", parts[1])]
+    maps.insert(at, saved("stranger", part(building(2), 0.0, 14.0, HERE)))
+    merged = merge(maps)
     assert not merged.joined.whole
-    assert [doubt is None for doubt in merged.joined.doubts] == [True, True, False]
+    assert [doubt is None for doubt in merged.joined.doubts] == [number != at for number in range(3)]
+
+
+def test_of_maps_of_which_no_two_match_all_but_the_first_are_doubted() -> None:
+    maps = [saved(str(seed), part(building(seed), 0.0, 14.0, HERE)) for seed in (2, 3, 4)]
+    assert [doubt is None for doubt in merge(maps).joined.doubts] == [True, False, False]
 
 
 def test_of_cells_that_two_maps_call_differently_a_wall_counts() -> None:

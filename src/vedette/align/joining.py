@@ -7,6 +7,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
 from vedette.align.candidates import PossibleJoin
 from vedette.align.charted import Charted
 from vedette.align.pose import FramePose
@@ -30,7 +35,7 @@ class JoinedMaps:
 
     poses: tuple[FramePose | None, ...]  # of each map in the first one's frame; None: it could not be joined
     tree: tuple[Match | None, ...]  # by which each map is held; None: the first, and those not joined
-    doubts: tuple[str | None, ...]  # why a map could not be joined
+    doubts: tuple[str | None, ...]  # why a map fits none of the most that fit each other
 
     @property
     def whole(self) -> bool:
@@ -61,7 +66,8 @@ def joined(maps: Sequence[Charted], seed: int) -> JoinedMaps:
         assert pose is not None
         step = match.candidate.pose if known == match.a else match.candidate.pose.inverse()
         poses[new], tree[new] = pose.after(step), match
-    doubts = [_doubt(number, verdicts) if pose is None else None for number, pose in enumerate(poses)]
+    fit = _most(matches, len(maps))
+    doubts = [None if fit[number] else _doubt(number, verdicts) for number in range(len(maps))]
     for number in _torn(matches, poses, maps) - {0}:
         poses[number] = tree[number] = None
         doubts[number] = "the matches with the others contradict each other"
@@ -71,6 +77,13 @@ def joined(maps: Sequence[Charted], seed: int) -> JoinedMaps:
 def _next(matches: Sequence[Match], poses: Sequence[FramePose | None]) -> Match | None:
     """Return the best match between a map that is placed and one that is not."""
     return next((m for m in matches if (poses[m.a] is None) != (poses[m.b] is None)), None)
+
+
+def _most(matches: Sequence[Match], count: int) -> NDArray[np.bool_]:
+    """Tell which maps are of the most that matches hold together; of as many, those with the first map."""
+    edges = ([1] * len(matches), ([match.a for match in matches], [match.b for match in matches]))
+    labels = connected_components(coo_array(edges, shape=(count, count)), directed=False)[1]
+    return np.asarray(labels == np.bincount(labels).argmax())
 
 
 def _torn(matches: Sequence[Match], poses: Sequence[FramePose | None], maps: Sequence[Charted]) -> set[int]:

@@ -53,12 +53,12 @@ def merge(maps: tuple[Path, ...], out: Path, resolution: float | None, force: bo
 
 
 def _refusal(names: list[str], merged: Merged) -> str:
-    """Return which map could not be joined, and why."""
-    name, doubt = next(
-        (name, doubt) for name, doubt in zip(names, merged.joined.doubts, strict=True) if doubt is not None
-    )
-    others = names[0] if len(names) == 2 else "the others"
-    return f"no safe match of {name} with {others}: {doubt}; nothing is written"
+    """Return which maps could not be joined with most others, and why the first of them."""
+    doubts = merged.joined.doubts
+    odd = ", ".join(name for name, doubt in zip(names, doubts, strict=True) if doubt is not None)
+    others = ", ".join(name for name, doubt in zip(names, doubts, strict=True) if doubt is None)
+    why = next(doubt for doubt in doubts if doubt is not None)
+    return f"no safe match of {odd} with {others}: {why}; nothing is written"
 
 
 def _line(placed: PlacedMap) -> str:

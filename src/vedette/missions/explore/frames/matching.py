@@ -140,7 +140,7 @@ class Matcher:
 
     def _look(self, pair: Pair, a: Charted, b: Charted) -> None:
         alignment = align(a, b)
-        doubt = RULE.doubt(alignment) or bare(a, b, alignment.candidates[0])
+        doubt = RULE.doubt(alignment) or bare(a, b, alignment.candidates[0], RULE)
         self._done.append(lambda: self._weigh(pair, alignment, doubt, b))
 
     def _weigh(self, pair: Pair, alignment: Alignment, doubt: str | None, b: Charted) -> None:
