@@ -73,7 +73,7 @@ SAVED = JoinRule(
     beside_of_little=10.0,
     clash=0.1,
 )
-OF_THINNED = JoinRule(rivalry=0.75, lead=5.0, contradicted=0.15, same=6.0, common=8.0, deviation=0.2)
+OF_THINNED = JoinRule(rivalry=0.75, lead=3.0, contradicted=0.15, same=4.0, common=4.0, deviation=0.2)
 
 
 @dataclass(frozen=True, eq=False)
