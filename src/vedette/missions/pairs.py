@@ -49,7 +49,11 @@ def tell_unheeded(planner_name: str, robots: int, scheme: str | None, **links: o
     if robots == 1:
         _tell("one robot alone tells nobody anything", scheme=scheme, **links)
     elif not planner(planner_name).negotiates:
-        _tell(f"planner {planner_name} chooses without negotiating", scheme=scheme)
+        why = f"planner {planner_name} chooses without negotiating"
+        if scheme == "jacobi":
+            warnings.warn(f"{why}; scheme jacobi asks it more than once", InputWarning, stacklevel=3)
+        else:
+            _tell(why, scheme=scheme)
 
 
 def tell_unsaid(coordination: str, vehicles: int, scheme: str | None, **links: object) -> None:
