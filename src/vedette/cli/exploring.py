@@ -203,6 +203,10 @@ def closing(summary: ExploreSummary, folder: Path) -> list[str]:
         f"{many(summary.collisions, 'collision')}{_told_of_those_who_stayed(stayed)}",
         f"pictures: {folder / 'progress.png'}, {folder / 'curves.png'}; all else beside them",
     ]
+    if summary.frames is not None and summary.frames.said:
+        errors = max((summary.pose_error_m or {"": 0.0}).values())
+        own = f", places of their own {errors:.2f} m" if errors else ""
+        lines.insert(1, f"{summary.frames.said}{own}")
     if summary.outcome is Outcome.MAPS_DIFFER:
         holders = (", ".join(names) for names in summary.maps)
         lines.insert(1, f"maps held: one by {'; another by '.join(holders)}")

@@ -202,9 +202,4 @@ def _closing(summary: ReplaySummary, folder: Path, measured: bool) -> str:
 
 def _joined(found: FramesFound | None) -> str:
     """Return who is joined, and how well."""
-    if found is None:
-        return ""
-    if all(len(names) == 1 for names in found.components):
-        return "" if len(found.components) == 1 else ", nobody joined"
-    off = "" if found.error_m is None else f", {found.error_m:.2f} m off at most"
-    return f", joined: {found.told}{off}"
+    return "" if found is None or not found.said else f", {found.said}"

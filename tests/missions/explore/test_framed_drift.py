@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 from typing import cast
 
 import numpy as np
 
 from tests.support.small_missions import robots, small_office
 from vedette.agent.events import Sensed
+from vedette.cli.exploring import closing
 from vedette.missions.explore.frames.exploring import FramedExploring
 from vedette.missions.explore.own_map import OwnMap
 from vedette.sim.explore.run import ExploreRun, explore, prepare
@@ -26,6 +28,17 @@ def test_robots_that_drift_find_each_others_frames_and_map_an_office_together() 
     assert summary.map_error_share < 0.01
     assert summary.frames is not None
     assert summary.frames.components == (("robot-1", "robot-2"),)
+    assert summary.frames.walls_m is not None
+    assert summary.frames.walls_m < 0.05
+    assert summary.pose_error_m is not None
+    assert summary.frames.error_m is not None
+    assert summary.frames.error_m <= sum(summary.pose_error_m.values()) + summary.frames.walls_m + 0.05
+    said = closing(summary, Path("out"))
+    off, walls, own = summary.frames.error_m, summary.frames.walls_m, max(summary.pose_error_m.values())
+    assert (
+        f"joined: 1+2, {off:.2f} m off at most, walls {walls:.2f} m apart, places of their own {own:.2f} m"
+        in said
+    )
 
 
 def test_robots_with_a_slam_meet_and_what_it_puts_right_since_bends_no_join() -> None:

@@ -181,6 +181,18 @@ def test_a_map_that_says_to_reach_across_the_world_joins_nobody_and_is_not_drawn
     assert one.charts.of(KEYS[0]) is not None
 
 
+def test_of_large_maps_few_charts_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(charts, "MOST", (64, 1000))
+    monkeypatch.setattr(Charts, "_kept", type(Charts._kept)())
+    one, _ = team(moved(seen(slice(0, 100))), [])
+    kept = []
+    for rows in range(60, 80, 2):
+        one.evidence.publish(TiledGrid.of(seen(slice(0, rows))), None, None)
+        kept.append(one.charts.of(KEYS[0]))
+    assert len(Charts._kept) == charts.FEW
+    assert [one.charts.of(KEYS[0])] == kept[-1:]
+
+
 def test_who_solves_otherwise_than_the_root_knows_that_the_round_is_approximate() -> None:
     one, two = team(moved(seen(slice(0, 100))), [edge(THERE)])
     told = one.lay_out()

@@ -28,6 +28,16 @@ class FramesFound:
     components: tuple[tuple[str, ...], ...]  # living robots that are joined, by name
     error_m: float | None  # the largest of those who are joined now; None: nobody is
     error_deg: float | None
+    walls_m: float | None = None  # between walls that two joined maps have in common, at most; None: none has
+
+    @property
+    def said(self) -> str:
+        """Who is joined in the end, and how well, for people; nothing where there is one robot."""
+        if all(len(names) == 1 for names in self.components):
+            return "" if len(self.components) == 1 else "nobody joined"
+        off = "" if self.error_m is None else f", {self.error_m:.2f} m off at most"
+        walls = "" if self.walls_m is None else f", walls {self.walls_m:.2f} m apart"
+        return f"joined: {self.told}{off}{walls}"
 
     @property
     def joined_after(self) -> str:

@@ -49,6 +49,7 @@ class JoinWatch:
         true: Sequence[TrueFrame],
         living: Sequence[int],
         refused: Mapping[str, int],
+        walls: float | None = None,
     ) -> FramesFound:
         """Return what has come of it by now [s].
 
@@ -58,6 +59,7 @@ class JoinWatch:
             true: by index.
             living: robots, increasing.
             refused: pairs of maps that were looked at and not believed, by why.
+            walls: how far walls that two joined maps have in common lie apart, at most [m]; None: not known.
         """
         latest = [(robot, placed.boot) for robot, placed in sorted(graph.items())]
         joined = {
@@ -86,6 +88,7 @@ class JoinWatch:
             tuple(map(tuple, parts.values())),
             max((shift for shift, _ in errors.values()), default=None),
             max((turn for _, turn in errors.values()), default=None),
+            walls,
         )
 
 

@@ -21,14 +21,19 @@ class FrameWatch:
         self.simulation, self._frames = simulation, frames
         self._joins = JoinWatch(names)
 
-    def look(self) -> FramesFound | None:
-        """Return what has come of it by now, as the first living robot sees it; None: nobody lives."""
+    def look(self, *, last: bool = False) -> FramesFound | None:
+        """Return what has come of it by now, as the first living robot sees it; None: nobody lives.
+
+        ``last``: of walls, too, which takes a while.
+        """
         simulation, living = self.simulation, self.simulation.living
         if not living:
             return None
         missions = [cast(FramedExploring, agent.mission) for agent in simulation.agents]
-        graph = missions[living[0]].frames.graph
+        first = missions[living[0]].frames
+        graph = first.graph
         latest = {key[0]: Whereabouts(key[1], *placed) for key, placed in sorted(graph.items())}
         true = [TrueFrame(frame, simulation.pose(i)[:2]) for i, frame in enumerate(self._frames)]
         refused = sum((mission.refused for mission in missions), Counter[str]())
-        return self._joins.look(simulation.now, latest, true, living, refused)
+        walls = first.walls_apart() if last else None
+        return self._joins.look(simulation.now, latest, true, living, refused, walls)

@@ -73,12 +73,12 @@ class ExploreRun(Watched[ExploreReport]):
             self._observer.look(now, seen, self.simulation.network.links())
             self._next_look += self._observer.period
 
-    def _frames_found(self) -> FramesFound | None:
-        return None if self._frames is None else self._frames.look()
+    def _frames_found(self, *, last: bool = False) -> FramesFound | None:
+        return None if self._frames is None else self._frames.look(last=last)
 
     def _report(self, outcome: Outcome) -> ExploreReport:
         now = self.simulation.now
-        self._observer.frames = self._frames_found() or self._observer.frames
+        self._observer.frames = self._frames_found(last=True) or self._observer.frames
         self._observer.finish(now, views(self.simulation), self.simulation.network.links())
         return self._observer.report(outcome, self.simulation.clock.timing(now))
 

@@ -175,7 +175,7 @@ class Replay:
             names=tuple(spec.name for spec in self.specs),
             whose=self.specs[most].name,
             ways=tuple(way_of(share) for share in self.robots.shares),
-            frames=None if self._watch is None else self._watch.look(),
+            frames=None if self._watch is None else self._watch.look(last=True),
         )
 
     def _map(self, robot: int) -> tuple[GridFrame, NDArray[np.uint8]]:

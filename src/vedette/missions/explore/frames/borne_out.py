@@ -91,6 +91,11 @@ class BorneOut:
         """Tell whether the evidence of two does not speak against it that b lies in a's frame so."""
         return self._verdict((a, b, there)).allows
 
+    def walls_apart(self, a: Key, b: Key, there: Transform) -> float | None:
+        """Return how far walls have b lie from there [m]; None: the evidence of both does not bear it out."""
+        bears_out = self._verdict((a, b, there)).bears_out
+        return self.charts.pulled(a, b, there)[1] if bears_out else None
+
     def find_false(self, told: Told, seen: Collection[Key], own: Key) -> None:
         """Note who goes on telling of matches that the evidence of both refutes.
 

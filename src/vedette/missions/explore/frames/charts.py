@@ -21,7 +21,8 @@ from vedette.kernels.tiles import SIDE, TiledGrid, Tiling
 from vedette.maps import FREE, GridFrame
 from vedette.maps.transform import Transform
 
-MOST = 64  # charts that are kept
+MOST = 64, 1 << 25  # charts that are kept, and their cells ...
+FEW = 4  # ... but so many, however large
 LARGEST = 1 << 24  # that a chart is made of: 410 m square at 0.1 m [cells]
 
 
@@ -69,10 +70,15 @@ class Charts:
         if name not in self._kept:
             tiles = copy.known_tiles
             self._kept[name] = self._made(tiles, CLASSES[copy.values.read(tiles)])
-            if len(self._kept) > MOST:
+            while len(self._kept) > FEW and (len(self._kept) > MOST[0] or self._cells > MOST[1]):
                 self._kept.popitem(last=False)
         self._kept.move_to_end(name)
         return self._kept[name]
+
+    @property
+    def _cells(self) -> int:
+        """How many cells the charts have that are kept."""
+        return sum(chart.classes.size for chart in self._kept.values() if chart is not None)
 
     def _latest(self, key: Key) -> _Told:
         """Return what a contributor's latest version is, without drawing it up."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
+from itertools import combinations
 from typing import Any
 
 from vedette.agent.messages import FrameTold
@@ -133,6 +134,15 @@ class SharedFrames:
         ground = {key: grounds[part] for key, part in self.parts.items() if part in grounds}
         edges = [edge for edge in self.evidence.edges if edge.kind is EdgeKind.GUESS]
         return guessed(edges, self.plane, ground)
+
+    def walls_apart(self) -> float | None:
+        """Return how far walls that two joined maps have in common lie apart, at most [m]; None: none has."""
+        frames = self.evidence.frames
+        apart = (
+            self._borne_out.walls_apart(a, b, frames[a].inverse().after(frames[b]))
+            for a, b in combinations(sorted(frames), 2)
+        )
+        return max((shift for shift in apart if shift is not None), default=None)
 
     def _agrees(self, parts: dict[Key, int]) -> bool:
         """Tell whether the root's components are this robot's, and lie within a tolerance as it has them."""
