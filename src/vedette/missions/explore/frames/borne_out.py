@@ -22,7 +22,7 @@ from vedette.missions.explore.frames.graph import CLOSED
 BORNE_OUT = 8.0, 0.15  # walls in common at least [m], and contradicted at most, that an edge may count
 ALLOWED = 5.0, 0.25  # where more contradicts, and a larger share, two are not joined [m, 1]
 PULLED = 0.02, math.radians(0.1)  # where walls pull it farther, a match lies where they do [m, rad]
-AGAIN = 8  # versions of either, after which all look anew at what evidence says
+AGAIN = 8  # versions of either, for each million cells, after which all look anew at what evidence says
 STARTS = 8  # the latest of a robot, whose matches count
 
 REFUTED = 2.0, 0.5  # walls in common at most [m], or contradicted at least: two do not lie so
@@ -30,7 +30,7 @@ PATIENCE = 24  # versions of whoever tells of such an edge, in which it could ha
 
 Told = Mapping[Key, Sequence[FrameEdge]]
 _Place = tuple[Key, Key, Transform]  # the second's frame in the first's
-_Versions = tuple[int, int]  # of both
+_Versions = tuple[tuple[int, int], tuple[int, int]]  # of both, by their pace
 
 
 class _Verdict(NamedTuple):
@@ -151,9 +151,12 @@ class BorneOut:
         return known
 
     def _versions(self, place: _Place) -> _Versions:
-        """Return by which versions all judge: as long as they are these, nobody looks again."""
-        one, other = (self.evidence.copies[key].version // AGAIN for key in place[:2])
-        return one, other
+        """Return what stands for versions: as long as it does not change, nobody looks again."""
+        return self._paced(place[0]), self._paced(place[1])
+
+    def _paced(self, key: Key) -> tuple[int, int]:
+        pace = AGAIN * self.charts.size(key)
+        return pace, self.evidence.copies[key].version // pace
 
 
 def _matches(told: Told, seen: Collection[Key]) -> Iterable[tuple[Key, FrameEdge]]:

@@ -19,6 +19,7 @@ from vedette.fusion.link import Key
 from vedette.fusion.tiles import CLASSES
 from vedette.kernels.tiles import SIDE, TiledGrid, Tiling
 from vedette.maps import FREE, GridFrame
+from vedette.maps.bounds import Extent
 from vedette.maps.transform import Transform
 
 MOST = 64, 1 << 25  # charts that are kept, and their cells ...
@@ -32,9 +33,10 @@ class _Told(NamedTuple):
     version: int
     name: bytes
     free: int  # cells
+    cells: int  # of what holds it all
 
 
-_NOTHING = _Told(0, b"", 0)
+_NOTHING = _Told(0, b"", 0, 0)
 
 
 class Charts:
@@ -54,6 +56,10 @@ class Charts:
         """Return how much free ground a contributor's map has [m^2]."""
         return self._latest(key).free * self._frame.resolution**2
 
+    def size(self, key: Key) -> int:
+        """Return how many millions of cells a contributor's chart has, at least 1."""
+        return max(1, self._latest(key).cells >> 20)
+
     def name(self, key: Key) -> bytes:
         """Return what is the same for two maps iff they are."""
         return self._latest(key).name
@@ -64,7 +70,7 @@ class Charts:
         None: it has no wall beside free ground, or says to reach so far that nobody would draw it up.
         """
         copy = self._evidence.copies.get(key)
-        if copy is None or not len(copy.known_tiles):
+        if copy is None or not len(copy.known_tiles) or self._latest(key).cells > LARGEST:
             return None
         name = self.name(key), self._frame
         if name not in self._kept:
@@ -88,7 +94,9 @@ class Charts:
             codes = copy.values.read(tiles)
             name = blake2b(tiles.tobytes() + codes.tobytes(), digest_size=16).digest()
             free = int(np.count_nonzero(CLASSES[codes] == FREE))
-            known = self._told[key] = _Told(copy.version, name, free)
+            rows, cols = self._extent(tiles)
+            cells = (rows.stop - rows.start) * (cols.stop - cols.start)
+            known = self._told[key] = _Told(copy.version, name, free, cells)
         return known
 
     def agreement(self, a: Key, b: Key, there: Transform) -> MapAgreement | None:
@@ -115,12 +123,17 @@ class Charts:
         tiling = Tiling(*self._frame.shape)
         grid: TiledGrid[np.uint8] = TiledGrid(tiling, np.uint8)
         grid.write(tiles, classes)
+        rows, cols = self._extent(tiles)
+        return charted(self._frame.window(rows, cols), grid.window(rows, cols))
+
+    def _extent(self, tiles: NDArray[np.int64]) -> Extent:
+        """Return the rows and columns that hold some tiles."""
+        if not len(tiles):
+            return slice(0, 0), slice(0, 0)
+        tiling = Tiling(*self._frame.shape)
         top, left = tiling.corners(tiles)
         rows = slice(int(top.min()), min(int(top.max()) + SIDE, tiling.rows))
-        cols = slice(int(left.min()), min(int(left.max()) + SIDE, tiling.cols))
-        if (rows.stop - rows.start) * (cols.stop - cols.start) > LARGEST:
-            return None
-        return charted(self._frame.window(rows, cols), grid.window(rows, cols))
+        return rows, slice(int(left.min()), min(int(left.max()) + SIDE, tiling.cols))
 
 
 def pose_of(there: Transform) -> FramePose:
