@@ -10,10 +10,12 @@ import pytest
 from vedette.domains.mapping.belief import MapBelief, freeze
 from vedette.domains.mapping.layers import plain
 from vedette.domains.mapping.sightings import empty_counts
+from vedette.errors import InputError
 from vedette.fusion.frame_edges import EdgeKind, FrameEdge
 from vedette.maps import FREE, UNKNOWN, GridFrame
 from vedette.maps.transform import IDENTITY, Transform
 from vedette.missions.explore.frames.rendezvous import MORE, Guess, chances, guessed, worth_more
+from vedette.missions.explore.options import ExploreOptions
 
 FRAME = GridFrame(0.1, 80, 160, -8.0, -4.0)
 
@@ -98,3 +100,9 @@ def test_a_guess_between_components_counts_both_ways_and_one_within_a_component_
     assert (one.ground, one.there.place(30.0, 1.0)) == (far, (2.0, 1.0))
     assert (other.ground, other.there.place(2.0, 1.0)) == (near, (30.0, 1.0))
     assert one.chance == other.chance == 0.4
+
+
+def test_a_rendezvous_in_a_frame_that_all_share_is_refused_not_ignored() -> None:
+    ExploreOptions(frames="unknown", rendezvous=True).check()
+    with pytest.raises(InputError, match="rendezvous looks for robots of unknown frames; add frames unknown"):
+        ExploreOptions(rendezvous=True).check()

@@ -12,6 +12,7 @@ import pytest
 from rich.console import Console
 
 from tests.support.record_mission import frames, mission, rooms, scene
+from vedette.record.explore.frames import FramesFound
 from vedette.record.explore.live import explore_display
 from vedette.record.explore.log import ExploreSnapshot
 from vedette.record.explore.screen import HalfBlocks, screen
@@ -99,6 +100,18 @@ def test_the_view_says_whether_the_team_is_together_where_links_are_simulated(
             view.update(snapshot)
         said = re.findall(r"together|apart: \{1\} \{2\}|apart", _text(console))
         assert set(said) == ({team.replace("apart", "apart: {1} {2}")} if team else set())
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_the_view_says_whose_maps_are_joined_where_frames_are_unknown(
+    snapshots: list[ExploreSnapshot], terminal: bool
+) -> None:
+    found = FramesFound((), 0, {}, (("robot-1", "robot-3"), ("robot-2",)), 0.1, 1.0)
+    for snapshot, told in ((snapshots[0], False), (replace(snapshots[0], frames=found), True)):
+        console = _terminal() if terminal else Console(file=io.StringIO(), width=200)
+        with explore_display(SCENE, console=console) as view:
+            view.update(snapshot)
+        assert ("maps 1+3 | 2" in _text(console)) == told
 
 
 @pytest.mark.parametrize("terminal", [True, False])

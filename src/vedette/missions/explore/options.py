@@ -32,6 +32,10 @@ class ExploreOptions(Struct, forbid_unknown_fields=True, frozen=True):
         """Raise InputError for what cannot go together."""
         check_word("frames", self.frames, FRAMES)
         if self.frames == "known":
+            if self.rendezvous:
+                raise InputError(
+                    "rendezvous looks for robots of unknown frames; add frames unknown, or leave it out"
+                )
             return
         if self.fusion != "replicated":
             raise InputError(

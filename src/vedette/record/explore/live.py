@@ -30,7 +30,8 @@ def line(scene: ExploreScene, snapshot: ExploreSnapshot) -> str:
     """Return a snapshot in one line."""
     robots = states(scene.vehicles, snapshot.robots)
     team = "" if snapshot.links is None else f"  {together(snapshot.parts)}"
-    return f"{snapshot.t:7.1f} s  {_known(snapshot)}  {robots}{team}"
+    joined = "" if snapshot.frames is None else f"  maps {snapshot.frames.told}"
+    return f"{snapshot.t:7.1f} s  {_known(snapshot)}  {robots}{team}{joined}"
 
 
 def _known(snapshot: ExploreSnapshot) -> str:

@@ -42,6 +42,8 @@ def screen(
     if snapshot.links is not None:
         style = "bold" if len(snapshot.parts) < 2 else "bold yellow"
         figures += [Text.assemble(("team ", "dim"), (together(snapshot.parts), style))]
+    if snapshot.frames is not None:
+        figures.append(figure("maps", snapshot.frames.told))
     robots = snapshot.robots
     goals = ["" if robot.goal is None else f"{robot.goal[0]:.1f}, {robot.goal[1]:.1f}" for robot in robots]
     columns = [*beside, ("driven (m)", [f"{robot.driven:.1f}" for robot in robots]), ("goal (m)", goals)]
