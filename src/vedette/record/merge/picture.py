@@ -6,18 +6,16 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from vedette.maps import FREE, GridFrame
 from vedette.record import palette
-from vedette.record.canvas import DPI, picture, save
+from vedette.record.canvas import picture, save
 from vedette.record.explore.raster import fit, known_window, pool
-from vedette.record.signs import scale_bar
+from vedette.record.sheet import Sheet
 
 _PIXELS = 1500, 1500  # of the map at most: rows, columns
-_WIDTH, _TITLE, _FOOT = 8.0, 0.35, 0.3  # [inch]
 _TINT = 0.35  # of a map's colour on ground that it alone knows
 
 
@@ -45,21 +43,12 @@ def merge_png(
     for number in range(len(names)):
         alone = (whose[window.rows, window.cols] == number + 1) & (part == FREE)
         colours[(pool(alone.astype(np.uint8), *shape) > 0) & (colours == 255).all(axis=2)] = _tint(number)
-    x0, x1, y0, y1 = window.frame.extent
-    inches = min(max(_WIDTH * (y1 - y0) / (x1 - x0), 2.0), 12.0)  # of the map's height
-    whole = inches + _TITLE + _FOOT
+    patches = [Patch(fc=tint, ec="0.6") for tint in (*tints, "white")]
+    labels = [*(f"{name} alone" for name in names), "several"]
     with picture():
-        figure = Figure(figsize=(_WIDTH, whole), dpi=DPI)
-        axes = figure.add_axes((0.01, _FOOT / whole, 0.98, inches / whole))
-        axes.imshow(colours, origin="lower", extent=(x0, x1, y0, y1), interpolation="antialiased")
-        axes.set(xticks=(), yticks=())
-        patches = [Patch(fc=t, ec="0.6", label=f"{name} alone") for t, name in zip(tints, names, strict=True)]
-        patches.append(Patch(fc="white", ec="0.6", label="several"))
-        axes.legend(handles=patches, loc="best", fontsize=8, framealpha=0.9)
-        axes.set_title(f"{len(names)} maps merged", loc="left", fontsize=11, fontweight="bold")
-        shown = 0.98 * min(_WIDTH, inches * (x1 - x0) / (y1 - y0))
-        scale_bar(figure, 0.01 * _WIDTH, _FOOT / 2, x1 - x0, shown)
-        save(figure, path)
+        sheet = Sheet.make(colours, window.frame.extent, f"{len(names)} maps merged", labels)
+        sheet.explain(patches)
+        save(sheet.figure, path)
 
 
 def _tint(number: int) -> palette.Rgb:

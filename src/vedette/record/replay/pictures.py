@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import EngFormatter, LogLocator, NullFormatter
 from numpy.typing import NDArray
 
 from vedette.domains.mapping.sightings import BIN, P_OCCUPIED
@@ -17,10 +19,10 @@ from vedette.record import palette
 from vedette.record.canvas import DPI, picture, save, tidy
 from vedette.record.explore.raster import fit, known_window, pool
 from vedette.record.replay.summary import Replayed
-from vedette.record.signs import scale_bar
+from vedette.record.sheet import Sheet
 
 _PIXELS = 1500, 1500  # of a map at most: rows, columns
-_WIDTH, _TITLE, _FOOT = 8.0, 0.35, 0.3  # [inch]
+_WIDTH = 8.0  # [inch]
 _LEAST_TRIED = 100  # cells, for a bin to have a share
 
 
@@ -29,29 +31,23 @@ def map_png(replayed: Replayed, path: Path | str) -> None:
     window = known_window(replayed.frame, _known_or_driven(replayed))
     part = replayed.classes[window.rows, window.cols]
     colours = palette.CLASSES[pool(part, *fit(part.shape, _PIXELS))]
-    x0, x1, y0, y1 = window.frame.extent
-    inches = min(max(_WIDTH * (y1 - y0) / (x1 - x0), 2.0), 12.0)  # of the map's height
+    seen = many(replayed.sights, "map" if replayed.maps else "scan")
+    joins = "" if replayed.frames is None else replayed.frames.joined_after
+    title = f"{replayed.name}: {seen}, {replayed.known_m2[-1]:.0f} m² known{joins}"
+    apart = [name in replayed.unjoined for name in replayed.names]
+    told = [name + ", not joined" * alone for name, alone in zip(replayed.names, apart, strict=True)]
     with picture():
-        figure = Figure(figsize=(_WIDTH, inches + _TITLE + _FOOT), dpi=DPI)
-        whole = inches + _TITLE + _FOOT
-        axes = figure.add_axes((0.01, _FOOT / whole, 0.98, inches / whole))
-        axes.imshow(colours, origin="lower", extent=(x0, x1, y0, y1), interpolation="antialiased")
-        axes.set(xticks=(), yticks=())
-        for i, (name, way) in enumerate(zip(replayed.names, replayed.ways, strict=True)):
-            colour = palette.unit(palette.robot_colour(i))
-            apart = name in replayed.unjoined
-            told = f"{name}, not joined" if apart else name
-            axes.plot(*way.T, color=colour, lw=1.0, ls=":" if apart else "-", alpha=0.8, label=told)
-            axes.plot(*way[:1].T, "o", color=colour, ms=5)
-        seen = many(replayed.sights, "map" if replayed.maps else "scan")
-        joins = "" if replayed.frames is None else replayed.frames.joined_after
-        title = f"{replayed.name}: {seen}, {replayed.known_m2[-1]:.0f} m² known{joins}"
-        axes.set_title(title, loc="left", fontsize=11, fontweight="bold")
-        if len(replayed.names) > 1:
-            axes.legend(loc="best", fontsize=8, framealpha=0.9)
-        shown = 0.98 * min(_WIDTH, inches * (x1 - x0) / (y1 - y0))
-        scale_bar(figure, 0.01 * _WIDTH, _FOOT / 2, x1 - x0, shown)
-        save(figure, path)
+        sheet = Sheet.make(colours, window.frame.extent, title, told if len(told) > 1 else ())
+        ways = [_way(sheet.axes, i, *each) for i, each in enumerate(zip(replayed.ways, apart, strict=True))]
+        sheet.explain(ways if len(told) > 1 else ())
+        save(sheet.figure, path)
+
+
+def _way(axes: Axes, robot: int, way: NDArray[np.float64], apart: bool) -> Line2D:
+    """Draw a robot's way, dotted where its map is apart, and return its line."""
+    colour = palette.unit(palette.robot_colour(robot))
+    axes.plot(*way[:1].T, "o", color=colour, ms=5)
+    return axes.plot(*way.T, color=colour, lw=1.0, ls=":" if apart else "-", alpha=0.8)[0]
 
 
 def _known_or_driven(replayed: Replayed) -> NDArray[np.uint8]:
@@ -89,6 +85,9 @@ def observation_png(
         )
         upper.set(ylabel="share of unknown cells seen", ylim=(0.0, 1.02), xlim=(0.0, reach))
         lower.set(ylabel="cells tried", xlabel="distance from the lidar [m]", yscale="log")
+        lower.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        lower.yaxis.set_major_formatter(EngFormatter(sep=""))
+        lower.yaxis.set_minor_formatter(NullFormatter())
         upper.set_title("What a scan sees of the unknown, by distance", loc="left", fontweight="bold")
         upper.legend(frameon=False, fontsize=8.5)
         for axes in (upper, lower):
