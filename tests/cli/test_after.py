@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -127,6 +129,37 @@ def test_runs_are_compared_by_what_differs(vedette: Command, run: Path, tmp_path
     assert "coverage" in vedette("compare", run, other, "--all").out
     assert vedette("compare", run, run).out == "the runs have the same figures\n"
     assert vedette("compare", run).status == 2
+
+
+@pytest.mark.parametrize("terminal", [True, False])
+def test_no_name_and_no_value_of_a_table_is_cut(
+    vedette: Command, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, terminal: bool
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: terminal)
+    refused = {"they look alike in more than one way": 1}
+    for name, more in (("one", 1), ("two", 2)):
+        (tmp_path / name).mkdir()
+        figures = {"schema_version": 3, "frames": {"refused": refused}, "min_clearance_m": 0.013 * more}
+        (tmp_path / name / "summary.json").write_text(json.dumps(figures))
+    runs = [tmp_path / name for name in ("one", "two", "two", "two", "two")]
+    shown = vedette("compare", *runs, "--all").out
+    assert "…" not in shown
+    assert "min_clearance_m" in shown
+    lines = [re.split("[│┃]", line)[1:-1] for line in shown.splitlines()]
+    columns = ["".join(line[k].strip() for line in lines if line) for k in (0, 5)]  # unfolded
+    assert "frames.refused.theylookalikeinmorethanoneway" in columns[0].replace(" ", "")
+    assert "0.026(x2.00)" in columns[1].replace(" ", "")
+    assert (len(shown.splitlines()[0]) <= 80) == terminal  # of the border, which has no colours
+
+
+def test_of_errors_by_robot_the_largest_is_compared_and_no_sum_of_them() -> None:
+    off = {"path_m": {"a": 1.0, "b": 2.0}, "pose_error_m": {"a": 0.25, "b": 0.5}}
+    figures = {
+        each.name: each.values
+        for each in figures_side_by_side([off, off | {"pose_error_m": {"a": None, "b": None}}])
+    }
+    assert figures == {"path_m": (3.0, 3.0), "pose_error_m": (0.5, None)}
 
 
 def test_of_what_is_not_by_robot_nothing_is_added_up() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,10 @@ from vedette.record.plain import json_text
 from vedette.run.saved import read_figures
 
 COUNTED = ("travelled", "rounds", "sweeps", "collisions", "min_clearance", "messages", "bytes", "complaints")
+LARGEST = ("pose_error_m",)  # by robot: of these the largest counts, not the sum
 SHOWN = 5  # runs in a table; more are asked for as JSON
+NAMED = 24  # of a figure's name, on a line of a terminal [characters]
+WIDE = 1000  # a table that nobody folds: a file's, or a program's [characters]
 
 
 @dataclass(frozen=True)
@@ -40,7 +43,8 @@ class Compared:
 def compare(runs: tuple[Path, ...], everything: bool, as_json: bool) -> None:
     """Lay the figures of runs side by side: what differs, and by what factor from the first.
 
-    What summary.json has by robot is added up. Exit status: 0, or 2 for bad input.
+    What summary.json has by robot is added up; of errors of poses the largest counts. Exit status: 0, or 2
+    for bad input.
     """
     if len(runs) < 2:
         raise InputError("there is one run only; name two or more")
@@ -50,18 +54,26 @@ def compare(runs: tuple[Path, ...], everything: bool, as_json: bool) -> None:
         click.echo(json_text({"runs": tuple(map(str, runs)), **figures}), nl=False)
         return
     if len(runs) > SHOWN:
-        raise InputError(f"{len(runs)} are more than a table holds, {SHOWN}: ask for --json, or give fewer")
+        raise InputError(f"a table holds {SHOWN} runs; got {len(runs)}: give fewer, or ask for --json")
     shown = [each for each in compared if everything or each.differs]
     if not shown:
         click.echo("the runs have the same figures")
         return
+    _print(runs, shown)
+
+
+def _print(runs: Sequence[Path], shown: Sequence[Compared]) -> None:
+    """Print a table: folded into a terminal's width, and elsewhere as wide as it gets; nothing is cut."""
+    console = Console()
+    folded = console.is_terminal
+    named = min(max(len(each.name) for each in shown), NAMED)
     table = Table()
-    table.add_column("")
+    table.add_column("", overflow="fold", width=named if folded else None)
     for run in runs:
         table.add_column(str(run), justify="right", overflow="fold")
     for each in shown:
         table.add_row(each.name, *(_told(value, each.values[0]) for value in each.values))
-    Console().print(table)
+    (console if folded else Console(width=WIDE)).print(table)
 
 
 def figures_side_by_side(summaries: Sequence[Mapping[str, Any]]) -> list[Compared]:
@@ -72,7 +84,7 @@ def figures_side_by_side(summaries: Sequence[Mapping[str, Any]]) -> list[Compare
 
 
 def _added_up(summary: Mapping[str, Any]) -> dict[str, Any]:
-    """Return numbers and words as they are, numbers by robot as their sum, and of lists the length.
+    """Return numbers and words as they are, those by robot as their sum or the largest, of lists the length.
 
     Other objects' fields are named with the object's name before them; of a robot's condition, which says who
     and where it is as well, what it has counted.
@@ -85,13 +97,14 @@ def _added_up(summary: Mapping[str, Any]) -> dict[str, Any]:
         elif isinstance(value, dict) and value.keys() != team:
             told |= {f"{name}.{inner}": each for inner, each in _added_up(value).items()}
         elif name != "schema_version":
-            told[name] = _plain(value)
+            told[name] = _plain(value, max if name in LARGEST else sum)
     return told
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: Any, of: Callable[[list[float]], float] = sum) -> Any:
     if isinstance(value, dict):
-        return sum(_numbers(value))
+        numbers = _numbers(value)
+        return of(numbers) if numbers else None
     return len(value) if isinstance(value, list) else value
 
 
