@@ -96,6 +96,27 @@ def test_two_files_of_one_robot_are_not_asked_as_one(vedette: Command) -> None:
     refused(vedette("status", "a.yaml", "b.yaml"), "some of the files have secured links and some have not")
 
 
+@pytest.mark.parametrize(
+    ("said", "refusal"),
+    [
+        ("explore --seed x", "--seed must be a whole number, 0 or more; got 'x'"),
+        ("explore --seed -1", "--seed must be a whole number, 0 or more; got '-1'"),
+        ("world maze --out w --seed 1.5", "--seed must be a whole number, 0 or more; got '1.5'"),
+        ("replay a.log --robots 65", "--robots must be a whole number, 1 to 64; got '65'"),
+        ("replay a.log --robots 1_0", "--robots must be a whole number, 1 to 64; got '1_0'"),
+        (f"replay a.log --robots {'9' * 5000}", "--robots must be a whole number, 1 to 64; got '99999"),
+        ("watch run --port -2", "--port must be a whole number, 0 to 65535; got '-2'"),
+        ("watch run --foxglove 65536", "--foxglove must be a whole number, 0 to 65535; got '65536'"),
+        ("study s.yaml --jobs 0", "--jobs must be a whole number, 1 to 1024; got '0'"),
+        ("search --trials some", "--trials must be a whole number, 0 to 1000000; got 'some'"),
+    ],
+)
+def test_a_number_that_must_be_whole_is_asked_for_with_its_limits(
+    vedette: Command, said: str, refusal: str
+) -> None:
+    refused(vedette(*said.split()), refusal)
+
+
 def test_force_without_a_folder_is_told_to_be_in_vain(vedette: Command) -> None:
     ran = vedette("explore", "--robots", 1, "--max-time", 0.5, "--json", "--force")
     assert ran.err == "vedette: --force changes nothing without --out: the results go into a new folder\n"

@@ -40,6 +40,16 @@ def west(vedette: Command) -> Part:
     return made
 
 
+def test_maps_that_have_the_same_name_are_told_apart(vedette: Command, west: Part) -> None:
+    for folder, other in (("one", building(2)), ("two", building(3))):
+        Path(folder).mkdir()
+        made = part(other, 0.0, 16.0, HERE)
+        write_map(f"{folder}/floor", made.frame, made.classes)
+    ran = vedette("one/floor.yaml", "two/floor.yaml", "--out", "both")
+    assert (ran.status, ran.out) == (1, "")
+    assert ran.err.startswith("vedette: no safe match of two/floor.yaml with one/floor.yaml: ")
+
+
 def saver_writes(name: str, of: Part, mode: str, **more: object) -> None:
     """Write a pair as ROS's map_saver does in a mode: an image, and a ``.yaml`` with its words."""
     grey = np.array(GREYS[mode], np.uint8)[of.classes[::-1]]

@@ -274,6 +274,7 @@ def test_a_bad_pair_is_one_clear_line(tmp_path: Path, fields: dict[str, Any], me
         read_map(path)
     assert message in str(caught.value)
     assert "\n" not in str(caught.value)
+    assert str(path) in str(caught.value)
 
 
 @pytest.mark.parametrize(
@@ -333,9 +334,11 @@ def test_what_reading_would_wait_for_is_refused_at_once(tmp_path: Path, name: st
 
 
 def test_a_folder_is_refused_and_a_plain_image_points_to_its_pair(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="is a folder"):
+    with pytest.raises(InputError, match="is a folder; give a map's"):
         read_map(tmp_path)
     pair(tmp_path, np.full((2, 2), 255, np.uint8))
+    with pytest.raises(InputError, match=rf"is a folder; give {tmp_path}/map\.yaml"):
+        read_map(tmp_path)
     with pytest.raises(InputError, match=r"give map\.yaml instead"):
         read_map(tmp_path / "map.png")
     for resolution in (0.0, -1.0, float("nan"), 1e9):

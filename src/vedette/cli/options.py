@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 import click
 from click.shell_completion import CompletionItem
 
-from vedette.errors import InputError, check_word
+from vedette.errors import InputError, brief, check_word
 from vedette.parts import PartKind, is_reference, look_in
 from vedette.sim.radio import Radio, parse_radio
 
@@ -21,6 +21,7 @@ CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 
 FILE = click.Path(path_type=Path, readable=False)  # what it is, its reader says; a shell completes it
 
+_WHOLE = re.compile(r"\s*[+-]?\d{1,18}\s*")
 _KILL = re.compile(r"(\d+)@(\d+(?:\.\d*)?)")
 
 
@@ -105,9 +106,27 @@ class Share(click.ParamType[float]):
         return number
 
 
+class Whole(click.ParamType[int]):
+    """A whole number from a least on, and up to a most if there is one."""
+
+    name = "n"
+
+    def __init__(self, least: int, most: int | None = None) -> None:
+        self.least, self.most = least, most
+
+    def convert(self, value: str | int, param: click.Parameter | None, ctx: click.Context | None) -> int:
+        """Return the number, or refuse it."""
+        option = param.opts[0] if param is not None else "value"
+        number = int(value) if _WHOLE.fullmatch(str(value)) else None
+        if number is None or number < self.least or (self.most is not None and number > self.most):
+            span = f"{self.least} or more" if self.most is None else f"{self.least} to {self.most}"
+            raise InputError(f"{option} must be a whole number, {span}; got {brief(value)}")
+        return number
+
+
 def seed_option(of: str) -> Callable[[CommandT], CommandT]:
     """``--seed``; ``of``: what it decides, for the help."""
-    return click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help=f"Of {of}.")
+    return click.option("--seed", type=Whole(0), default=0, show_default=True, help=f"Of {of}.")
 
 
 class RadioModel(click.ParamType[Radio]):

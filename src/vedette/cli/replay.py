@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn
 
 from vedette.cli.ends import telling_what_is_missing
-from vedette.cli.options import FILE, OneOf, Share
+from vedette.cli.options import FILE, OneOf, Share, Whole
 from vedette.cli.recordings import check_in_vain, recording, recording_options
 from vedette.domains.mapping.sightings import empty_counts
 from vedette.errors import InputError
@@ -44,7 +44,7 @@ _MISSION = 120.0  # of the simulated robots whose scans are set beside the recor
 @click.argument("files", metavar="LOG...", nargs=-1, required=True, type=FILE)
 @click.option(
     "--robots",
-    type=click.IntRange(1, MOST_ROBOTS),
+    type=Whole(1, MOST_ROBOTS),
     default=1,
     show_default=True,
     help="Cut each log into so many shares, one robot each.",
@@ -66,9 +66,7 @@ _MISSION = 120.0  # of the simulated robots whose scans are set beside the recor
     help="How the robots share what they see.",
 )
 @click.option("--link-loss", type=Share(0.9), default=0.0, show_default=True, help="Share of messages lost.")
-@click.option(
-    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of lost messages and of frames."
-)
+@click.option("--seed", type=Whole(0), default=0, show_default=True, help="Of lost messages and of frames.")
 @click.option(
     "--out", type=FILE, metavar="DIR", help="Folder for the results.  [default: a new one under runs/]"
 )

@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from vedette.cli.options import Output, fault_options, orders_option, output_options
+from vedette.cli.options import Output, Whole, fault_options, orders_option, output_options
 from vedette.cli.running import Say, simulate, simulate_watched
 from vedette.cli.searching import SEARCHING, searching_options
 from vedette.cli.seeking import OF_UNKNOWN_MAPS, OF_VEHICLES, check_together, seek, seeking_options
@@ -29,7 +29,7 @@ MOST_TRIALS = 1_000_000
 @fault_options
 @click.option(
     "--trials",
-    type=click.IntRange(0, MOST_TRIALS),
+    type=Whole(0, MOST_TRIALS),
     metavar="N",
     help="Targets drawn for the counted curve; 0: none.  [default: 1000, or 20 whole searches: see the docs]",
 )

@@ -15,7 +15,7 @@ import click
 from rich.console import Console
 
 from vedette.cli.ends import aborted
-from vedette.cli.options import FILE, OneOf, Positive
+from vedette.cli.options import FILE, OneOf, Positive, Whole
 from vedette.errors import InputError
 from vedette.maps import map_files
 from vedette.number import many
@@ -35,9 +35,7 @@ BROKE = 1
 @click.command()
 @click.argument("spec_name", metavar="SPEC")
 @click.option("--out", type=FILE, metavar="DIR", help="Folder of the study.  [default: runs/study-SPEC]")
-@click.option(
-    "--jobs", type=click.IntRange(1, 1024), metavar="N", help="Processes.  [default: one for each core]"
-)
+@click.option("--jobs", type=Whole(1, 1024), metavar="N", help="Processes.  [default: one for each core]")
 @click.option(
     "--backend", type=OneOf(BACKENDS), default="loky", show_default=True,
     help="Where the runs are carried out: on this machine, or on a Dask cluster.",

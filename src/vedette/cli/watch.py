@@ -8,7 +8,7 @@ from pathlib import Path
 
 import click
 
-from vedette.cli.options import FILE
+from vedette.cli.options import FILE, Whole
 from vedette.cli.reaching import reached
 from vedette.cli.windows import address_options, linger, opened
 from vedette.errors import InputError
@@ -28,7 +28,7 @@ from vedette.window.hub import Hub
 @address_options
 @click.option(
     "--foxglove",
-    type=click.IntRange(0, 65535),
+    type=Whole(0, 65535),
     metavar="PORT",
     help="Serve a team to Foxglove as well, on this computer alone.",
 )

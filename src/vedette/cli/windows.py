@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from vedette.agent.orders import Order
-from vedette.cli.options import Positive, with_options
+from vedette.cli.options import Positive, Whole, with_options
 from vedette.interrupt import ending_on_ctrl_c
 from vedette.record.space import space_alerts
 from vedette.run.mission import StepwiseMission
@@ -34,7 +34,7 @@ def address_options(command: CommandT) -> CommandT:
             help="Where the page is served; others than this computer see it by another address.",
         ),
         click.option(
-            "--port", type=click.IntRange(0, 65535), default=0, metavar="N",
+            "--port", type=Whole(0, 65535), default=0, metavar="N",
             help="Of the page.  [default: any that is free]",
         ),
     )  # fmt: skip

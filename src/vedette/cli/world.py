@@ -8,7 +8,7 @@ import click
 import numpy as np
 from click.core import ParameterSource
 
-from vedette.cli.options import FILE, Named
+from vedette.cli.options import FILE, Named, Whole
 from vedette.cli.recordings import OF_RECORDINGS, check_in_vain, recording, recording_options
 from vedette.errors import InputError
 from vedette.maps.world import World
@@ -22,7 +22,7 @@ _OF_GENERATED = ("seed", "width", "height")
 @click.command()
 @click.argument("kind", type=Named(WORLD, beside=(LOG,)))
 @click.argument("file", metavar="[FILE]", required=False, type=FILE)
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Which one to make.")
+@click.option("--seed", type=Whole(0), default=0, show_default=True, help="Which one to make.")
 @click.option("--out", type=FILE, required=True, metavar="DIR", help="New folder for the map.")
 @click.option("--width", type=float, default=30.0, show_default=True, help="Size in x [m].")
 @click.option("--height", type=float, default=20.0, show_default=True, help="Size in y [m].")

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from vedette.errors import InputError
 from vedette.maps.frame import OCCUPIED, GridFrame
+from vedette.number import many
 
 MOST_CORNERS = 1000
 MOST_METRES = 2.1e7  # from the team frame's origin, as far as UTM's coordinates reach
@@ -30,7 +31,7 @@ class Area:
             InputError: they make no area.
         """
         if not 3 <= len(corners) <= MOST_CORNERS:
-            raise InputError(f"area: {len(corners)} corners; a polygon has 3 to {MOST_CORNERS}")
+            raise InputError(f"area: {many(len(corners), 'corner')}; a polygon has 3 to {MOST_CORNERS}")
         points = tuple((float(x), float(y)) for x, y in corners)
         for x, y in points:
             if not (abs(x) <= MOST_METRES and abs(y) <= MOST_METRES):

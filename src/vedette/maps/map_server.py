@@ -17,6 +17,7 @@ from vedette.maps.image import read_levels
 from vedette.maps.meta import checked_resolution, read_meta
 from vedette.maps.turned import upright
 
+_OF_A_RUN, _A_MAP = "map.yaml", "a map's .yaml or an image"
 _PIXELS = {  # grey level of UNKNOWN, FREE and OCCUPIED, as map_saver writes them
     "trinary": np.array([205, 254, 0], np.uint8),
     "raw": np.array([255, 0, 100], np.uint8),
@@ -48,7 +49,8 @@ def read_map(
     if resolution is not None:
         resolution = checked_resolution(resolution, "--resolution")
     if path.is_dir():
-        raise InputError(f"{path} is a folder; give a map's .yaml or an image")
+        inside = path / _OF_A_RUN
+        raise InputError(f"{path} is a folder; give {inside if inside.is_file() else _A_MAP}")
     if not _is_pair(path):
         return _read_plain(path, resolution, takes_resolution)
     meta = read_meta(path)
@@ -59,7 +61,11 @@ def read_map(
     if resolution is None:
         option = " or give --resolution" if takes_resolution else ""
         raise InputError(f"{path}: no resolution; add 'resolution: 0.05' [m per pixel]{option}")
-    return upright(classes_of_pair(meta, read_levels(meta.image)), resolution, meta.origin)
+    try:
+        levels = read_levels(meta.image)
+    except InputError as error:
+        raise InputError(f"{path}: image: {error}") from error
+    return upright(classes_of_pair(meta, levels), resolution, meta.origin)
 
 
 def map_files(path: Path) -> tuple[Path, ...]:

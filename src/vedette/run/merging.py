@@ -58,12 +58,12 @@ def read(paths: Sequence[Path], resolution: float | None = None) -> tuple[SavedM
     if not 2 <= len(paths) <= MOST_MAPS:
         raise InputError(f"vedette merge takes 2 to {MOST_MAPS} maps; got {len(paths)}")
     maps = []
-    for path in paths:
+    for path, name in zip(paths, _names(paths), strict=True):
         frame, classes = read_map(map_path(path), resolution)
         if charted(frame, classes) is None:
             lacks = "walls beside free ground" if (classes == FREE).any() else "free ground"
             raise InputError(f"{path} has no {lacks}, so there is nothing to find its place by; leave it out")
-        maps.append(SavedMap(_name(path), frame, classes))
+        maps.append(SavedMap(name, frame, classes))
     return tuple(maps)
 
 
@@ -85,6 +85,12 @@ def merge(maps: Sequence[SavedMap], seed: int = 0) -> Merged:
         rows = slice(top, min(top + _BAND, frame.rows))
         classes[rows], whose[rows] = _fused(placed, frame.window(rows, slice(0, frame.cols)))
     return Merged(tuple(maps), found, frame, classes, whose)
+
+
+def _names(paths: Sequence[Path]) -> list[str]:
+    """Return what maps are called: each by its name, or as it was given where others have the same."""
+    names = [_name(path) for path in paths]
+    return [str(path) if names.count(name) > 1 else name for path, name in zip(paths, names, strict=True)]
 
 
 def _name(path: Path) -> str:
