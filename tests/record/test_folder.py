@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import resource
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -66,6 +67,20 @@ def test_a_run_that_comes_to_nothing_leaves_no_folder_that_was_not_there(
     with pytest.raises(InputError, match=r"^nothing$"), OutputFolder.make(None, False, "x"):
         raise InputError("nothing")
     assert [path.name for path in tmp_path.iterdir()] == ["runs"] * there
+
+
+def test_where_not_even_a_lock_finds_room_no_folder_is_left(out: Path) -> None:
+    out.parent.mkdir()
+    least, most = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (0, most))  # no file may hold a byte
+    try:
+        with pytest.raises(
+            InputError, match=r"cannot write .*/\.lock: File too large; choose another folder"
+        ):
+            OutputFolder.make(out, False, "x").__enter__()
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (least, most))
+    assert list(out.parent.iterdir()) == []
 
 
 @pytest.mark.parametrize("vanish", WAYS)

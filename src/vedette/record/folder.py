@@ -10,7 +10,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from vedette.errors import InputWarning
+from vedette.errors import InputError, InputWarning
 from vedette.record.files import new_directory, output_directory
 from vedette.record.lock import locked
 
@@ -54,9 +54,13 @@ class OutputFolder:
         """Keep the folder to this run.
 
         Raises:
-            InputError: another run has it.
+            InputError: another run has it, or it cannot be written to.
         """
-        self._entered.enter_context(locked(self._path))
+        try:
+            self._entered.enter_context(locked(self._path))
+        except InputError:
+            self._undo()
+            raise
         return self
 
     def __exit__(
@@ -64,8 +68,13 @@ class OutputFolder:
     ) -> None:
         """Leave it to others; what was made for a run that came to nothing is gone again."""
         self._entered.close()
-        if self._made and error is not None:
-            with suppress(OSError):  # something is in it
+        if error is not None:
+            self._undo()
+
+    def _undo(self) -> None:
+        """Remove what was made, unless something is in it."""
+        if self._made:
+            with suppress(OSError):
                 self._path.rmdir()
                 if self._around is not None:
                     self._around.rmdir()

@@ -22,18 +22,23 @@ def locked(folder: Path) -> Iterator[None]:
         InputError: another run has it, or it cannot be written to.
     """
     path = folder / LOCK
-    try:
-        file = _locked_file(path)
-        file.truncate(0)
-        file.write(f"{os.getpid()}\n")
-        file.flush()
-    except OSError as error:
-        raise InputError(f"cannot write {path}: {error.strerror or error}; choose another folder") from error
-    try:
+    with contextlib.ExitStack() as leaving:
+        try:
+            file = _locked_file(path)
+            leaving.callback(_left, file, path)
+            file.truncate(0)
+            file.write(f"{os.getpid()}\n")
+            file.flush()
+        except OSError as error:
+            reason = error.strerror or error
+            raise InputError(f"cannot write {path}: {reason}; choose another folder") from error
         yield
-    finally:
-        if _is_at(file, path):
-            path.unlink()
+
+
+def _left(file: IO[str], path: Path) -> None:
+    if _is_at(file, path):
+        path.unlink()
+    with contextlib.suppress(OSError):  # a full disk has no room for what is still to be written
         file.close()
 
 
