@@ -26,7 +26,7 @@ def frozen(
         frame: where it lies.
         spec: the robots that look at it.
         layers: of time.
-        counts: (4, BINS) what their scans have seen.
+        counts: (ROWS, BINS) what their scans have seen.
     """
     extent = longest_frontier(spec.range)
     return freeze(classes, frame, reach=spec.range, extent=extent, hidden=0.0, layers=layers, counts=counts)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.domains.mapping.sightings import BIN, BINS, empty_counts
+from vedette.domains.mapping.sightings import BERTHS, BIN, BINS, berth_step, empty_counts
 from vedette.kernels.lidar import cast_rays, count_sightings, integrate_scan
 from vedette.kernels.tiles import TiledGrid, Tiling
 from vedette.maps import FREE, OCCUPIED, UNKNOWN
@@ -23,7 +23,7 @@ class Scanned:
     """What a number of scans left."""
 
     log_odds: NDArray[np.int8]  # (R, C) [0.2 nat]
-    counts: NDArray[np.int64]  # (4, BINS) unknown cells tried and seen, as ``count_sightings`` adds them up
+    counts: NDArray[np.int64]  # (ROWS, BINS) cells tried and seen, as ``count_sightings`` adds them up
 
     @property
     def classes(self) -> NDArray[np.uint8]:
@@ -60,9 +60,8 @@ def scan(
         ranges = np.clip(np.where(hits, true + noise, spec.range), 0.0, spec.range)
         if forget:
             log_odds = TiledGrid(tiling, np.int8)
-        seen = count_sightings(
-            log_odds, resolution, x, y, angles, ranges, hits, spec.range, BIN, EVERY_BEAM, nudge
-        )
+        bins = spec.range, BIN, BERTHS, berth_step(resolution)
+        seen = count_sightings(log_odds, resolution, x, y, angles, ranges, hits, *bins, EVERY_BEAM, nudge)
         counts[:, : seen.shape[1]] += seen[:, :BINS]
         integrate_scan(log_odds, resolution, x, y, angles, ranges, hits, GAIN_HIT, GAIN_MISS, CLAMP, nudge)
     return Scanned(log_odds.window(), counts)

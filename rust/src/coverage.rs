@@ -3,16 +3,18 @@
 //! A sparse impact is two parallel slices: `keys`, strictly increasing, `cell * LAYERS + layer`, and
 //! `misses`, the log-miss added from that layer on, in steps of 1/16 nat, saturating at 255 (certain).
 
+pub mod berth;
 pub mod footprint;
 pub mod impact;
 pub mod tours;
 pub mod viewpoints;
 pub mod worth;
 
-use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use berth::berths;
 use footprint::{footprints, Sensor};
 use impact::{combine, marginal, miss_table};
 use tours::{best_tour, most_any_tour_adds, number_cells, EndPrice, Stops, TourProblem};
@@ -60,27 +62,42 @@ fn py_viewpoints<'py>(
     ))
 }
 
+#[pyfunction(name = "berths")]
+fn py_berths<'py>(
+    py: Python<'py>,
+    classes: PyReadonlyArray2<'py, u8>,
+    step: usize,
+    most: u8,
+) -> PyResult<Bound<'py, PyArray2<u8>>> {
+    let [rows, cols] = [classes.as_array().nrows(), classes.as_array().ncols()];
+    let classes = classes.as_slice()?;
+    py.detach(|| berths(classes, rows, cols, step.max(1), most)).into_pyarray(py).reshape([rows, cols])
+}
+
 type PyFootprints<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<u32>>, Bound<'py, PyArray1<f32>>);
 
 #[pyfunction(name = "footprints")]
 fn py_footprints<'py>(
     py: Python<'py>,
     classes: PyReadonlyArray2<'py, u8>,
+    berths: PyReadonlyArray2<'py, u8>,
     views: PyReadonlyArray1<'py, i64>,
     facing: PyReadonlyArray1<'py, f64>,
     range_cells: f64,
     view: f64,
-    table: PyReadonlyArray1<'py, f32>,
+    table: PyReadonlyArray2<'py, f32>,
     by_distance: bool,
     rays: usize,
     factor: usize,
     floor: f32,
 ) -> PyResult<PyFootprints<'py>> {
     let [rows, cols] = [classes.as_array().nrows(), classes.as_array().ncols()];
-    let sensor = Sensor { range_cells, view, table: table.as_slice()?, by_distance, rays, floor };
-    let (classes, views, facing) = (classes.as_slice()?, views.as_slice()?, facing.as_slice()?);
+    let depths = table.as_array().ncols();
+    let sensor = Sensor { range_cells, view, table: table.as_slice()?, depths, by_distance, rays, floor };
+    let (classes, berths) = (classes.as_slice()?, berths.as_slice()?);
+    let (views, facing) = (views.as_slice()?, facing.as_slice()?);
     let (starts, cells, shares) =
-        py.detach(|| footprints(classes, rows, cols, views, facing, &sensor, factor));
+        py.detach(|| footprints(classes, berths, rows, cols, views, facing, &sensor, factor));
     Ok((starts.into_pyarray(py), cells.into_pyarray(py), shares.into_pyarray(py)))
 }
 
@@ -213,6 +230,7 @@ fn py_most_any_tour_adds(py: Python<'_>, problem: PyTourProblem<'_>, max_stops: 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add("LAYERS", LAYERS)?;
     m.add_function(wrap_pyfunction!(py_viewpoints, m)?)?;
+    m.add_function(wrap_pyfunction!(py_berths, m)?)?;
     m.add_function(wrap_pyfunction!(py_footprints, m)?)?;
     m.add_function(wrap_pyfunction!(py_combine, m)?)?;
     m.add_function(wrap_pyfunction!(py_marginals, m)?)?;

@@ -97,6 +97,8 @@ impl Scan<'_> {
 pub struct Bins {
     pub max_range: f64,
     pub width: f64,
+    pub berths: usize, // of where a beam enters the unknown, to tell apart ...
+    pub step: usize,   // ... by so many cells
 }
 
 impl Bins {
@@ -111,7 +113,7 @@ impl Bins {
 
 /// Count, by distance and by unknown length before it, the unknown cells one scan tried and saw (paper, Fig. 3).
 ///
-/// Returns the rows tried by distance, seen by distance, tried by unknown length, seen by unknown length.
+/// Returns the rows tried and seen by distance, then of each berth tried and seen by unknown length.
 pub fn count_sightings(
     log_odds: &Tiled<&[i8]>,
     lattice: Lattice,
@@ -121,11 +123,12 @@ pub fn count_sightings(
     nudge: f64,
 ) -> Vec<i64> {
     let size = bins.count();
-    let mut counts = vec![0; 4 * size];
+    let mut counts = vec![0; (2 + 2 * bins.berths) * size];
     for b in (0..scan.angles.len()).step_by(stride) {
         let reach = scan.reach(b, nudge);
         let mut walk = Walk::new(lattice.resolution, scan.x, scan.y, scan.angles[b]);
         let mut unknown = 0.0; // metres of unknown cells crossed so far
+        let (mut berth, mut outside) = (bins.berths - 1, true);
         while walk.entry < bins.max_range {
             if lattice.flat(walk.row, walk.col).is_none() {
                 break;
@@ -135,20 +138,43 @@ pub fn count_sightings(
                 break;
             }
             if known == 0 {
+                if outside {
+                    berth = berth.min(berth_of(log_odds, lattice, walk.row, walk.col, bins));
+                }
                 let exit = walk.exit().min(bins.max_range);
                 let by_distance = bins.index(0.5 * (walk.entry + exit));
                 let by_unknown = bins.index(unknown);
                 let seen = i64::from(walk.entry < reach || (scan.hits[b] && walk.entry == reach));
                 counts[by_distance] += 1;
                 counts[size + by_distance] += seen;
-                counts[2 * size + by_unknown] += 1;
-                counts[3 * size + by_unknown] += seen;
+                counts[(2 + 2 * berth) * size + by_unknown] += 1;
+                counts[(3 + 2 * berth) * size + by_unknown] += seen;
                 unknown += exit - walk.entry;
             }
+            outside = known != 0;
             walk.advance();
         }
     }
     counts
+}
+
+/// How wide a berth a cell gives what is occupied, as `coverage::berths` has it.
+fn berth_of(log_odds: &Tiled<&[i8]>, lattice: Lattice, row: i64, col: i64, bins: Bins) -> usize {
+    let most = (bins.berths - 1) * bins.step;
+    let occupied =
+        |row: i64, col: i64| lattice.flat(row, col).is_some() && log_odds.get(row as usize, col as usize) > 0;
+    for away in 1..=most as i64 {
+        let on_ring = (-away..=away).any(|k| {
+            occupied(row - away, col + k)
+                || occupied(row + away, col + k)
+                || occupied(row + k, col - away)
+                || occupied(row + k, col + away)
+        });
+        if on_ring {
+            return (away as usize - 1) / bins.step;
+        }
+    }
+    bins.berths - 1
 }
 
 fn lattice_of<T: numpy::Element>(grid: &Bound<'_, PyArray2<T>>, resolution: f64) -> PyResult<Lattice> {
@@ -309,6 +335,8 @@ fn py_count_sightings<'py>(
     hits: PyReadonlyArray1<'py, bool>,
     max_range: f64,
     bin_m: f64,
+    berths: usize,
+    step: usize,
     stride: usize,
     nudge: f64,
 ) -> PyResult<Bound<'py, PyArray2<i64>>> {
@@ -316,14 +344,14 @@ fn py_count_sightings<'py>(
     let lattice = checked_lattice(shape, resolution)?;
     let log_odds = tiled_of(slots.as_slice()?, blocks.as_slice()?, lattice)?;
     let scan = scan_of(x, y, angles.as_slice()?, ranges.as_slice()?, hits.as_slice()?)?;
-    if !(max_range > 0.0 && max_range.is_finite() && bin_m > 0.0 && stride > 0) {
+    if !(max_range > 0.0 && max_range.is_finite() && bin_m > 0.0 && berths > 0 && step > 0 && stride > 0) {
         return Err(PyValueError::new_err(format!(
-            "max_range, bin_m and stride must be > 0; got {max_range}, {bin_m}, {stride}"
+            "max_range, bin_m, berths, step and stride must be > 0; got {max_range}, {bin_m}, {berths}, {step}, {stride}"
         )));
     }
-    let bins = Bins { max_range, width: bin_m };
+    let bins = Bins { max_range, width: bin_m, berths, step };
     let counts = count_sightings(&log_odds, lattice, scan, bins, stride, nudge);
-    counts.into_pyarray(py).reshape([4, bins.count()])
+    counts.into_pyarray(py).reshape([2 + 2 * berths, bins.count()])
 }
 
 pub fn register(m: &Bound<'_, PyModule>) -> PyResult<()> {

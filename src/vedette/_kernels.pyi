@@ -66,6 +66,8 @@ def count_sightings(
     hits: NDArray[np.bool_],
     max_range: float,
     bin_m: float,
+    berths: int,
+    step: int,
     stride: int,
     nudge: float,
 ) -> NDArray[np.int64]: ...
@@ -129,8 +131,10 @@ def viewpoints(
     most: int,
     work: int,
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], float, bool]: ...
+def berths(classes: NDArray[np.uint8], step: int, most: int) -> NDArray[np.uint8]: ...
 def footprints(
     classes: NDArray[np.uint8],
+    berths: NDArray[np.uint8],
     views: NDArray[np.int64],
     facing: NDArray[np.float64],
     range_cells: float,

@@ -49,10 +49,10 @@ def test_who_goes_somewhere_is_not_idle() -> None:
 
 
 def test_who_stands_when_all_is_known_is_not_idle() -> None:
-    simulation = begun(60.0)  # 99 % are known after 56 s
+    simulation = begun(70.0)  # 99 % are known after 61 s
     for mission in simulation.missions:
         mission.strategy = STAY
-    assert stand(Idleness(simulation), simulation, (60.0, 61.0, 90.0)) == 0.0
+    assert stand(Idleness(simulation), simulation, (70.0, 71.0, 100.0)) == 0.0
 
 
 def test_work_that_somebody_is_on_its_way_to_makes_nobody_idle() -> None:

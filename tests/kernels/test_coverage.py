@@ -183,13 +183,22 @@ def test_work_that_is_done_leaves_the_farthest_frontiers_out() -> None:
 
 
 @settings(deadline=None, max_examples=60)
+@given(seeds, st.integers(1, 3), st.integers(0, 6))
+def test_berths_equal_their_twin(seed: int, step: int, most: int) -> None:
+    classes = random_map(np.random.default_rng(seed))
+    berths = coverage.berths(classes, step, most)
+    np.testing.assert_array_equal(berths, reference.berths(classes, step, most))
+
+
+@settings(deadline=None, max_examples=60)
 @given(seeds, st.booleans())
 def test_footprints_equal_their_twin(seed: int, by_distance: bool) -> None:
     rng = np.random.default_rng(seed)
     classes = random_map(rng)
     views = rng.choice(np.flatnonzero(classes.ravel() != 2), 3)
-    table = -np.sort(-rng.random(rng.integers(1, 12))).astype(np.float32)
-    table[rng.integers(1, 12) :] = 0.0
+    table = -np.sort(-rng.random((rng.integers(1, 5), rng.integers(1, 12)))).astype(np.float32)
+    table[:, rng.integers(1, 12) :] = 0.0
+    berths = coverage.berths(classes, int(rng.integers(1, 3)), int(rng.integers(1, 6)))
     scan = (
         views,
         rng.uniform(-4, 4, 3),
@@ -201,8 +210,8 @@ def test_footprints_equal_their_twin(seed: int, by_distance: bool) -> None:
         int(rng.integers(1, 5)),
         np.float32(rng.uniform(0, 0.2)),
     )
-    starts, cells, shares = coverage.footprints(classes, *scan)
-    twin_starts, twin_cells, twin_shares = reference.footprints(classes, *scan)
+    starts, cells, shares = coverage.footprints(classes, berths, *scan)
+    twin_starts, twin_cells, twin_shares = reference.footprints(classes, berths, *scan)
     np.testing.assert_array_equal(starts, twin_starts)
     np.testing.assert_array_equal(cells, twin_cells)
     np.testing.assert_allclose(shares, twin_shares, rtol=1e-5)

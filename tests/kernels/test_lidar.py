@@ -62,11 +62,12 @@ def test_integrate_scan_equals_its_twin(seed: int) -> None:
 
 
 @settings(deadline=None, max_examples=80)
-@given(seeds, st.sampled_from([0.0, 0.05]))
-def test_count_sightings_equals_its_twin(seed: int, nudge: float) -> None:
+@given(seeds, st.sampled_from([0.0, 0.05]), st.integers(1, 6), st.integers(1, 3))
+def test_count_sightings_equals_its_twin(seed: int, nudge: float, berths: int, step: int) -> None:
     place = random_place(seed)
     log_odds = place["rng"].choice([-3, 0, 0, 0, 3], place["shape"]).astype(np.int8)
-    scan = (RESOLUTION, *(place[key] for key in ("x", "y", "angles", "ranges", "hits")), 2.5, 0.3, 2, nudge)
+    beams = (RESOLUTION, *(place[key] for key in ("x", "y", "angles", "ranges", "hits")))
+    scan = (*beams, 2.5, 0.3, berths, step, 2, nudge)
     counts = on_dense(lidar.count_sightings, log_odds, *scan)
     np.testing.assert_array_equal(counts, reference_lidar.count_sightings(log_odds, *scan))
 
@@ -127,7 +128,7 @@ def test_log_odds_saturate_and_only_class_changes_are_returned() -> None:
 def test_sightings_stop_at_known_walls_and_count_the_unknown_length_before_a_cell() -> None:
     log_odds = np.array([[-1, -1, 0, 0, 0, 9, 0]], np.int8)
     scan = (np.zeros(1), np.array([3.5]), np.array([True]))
-    counts = on_dense(lidar.count_sightings, log_odds, 1.0, 0.5, 0.5, *scan, 7.0, 1.0, 1)
+    counts = on_dense(lidar.count_sightings, log_odds, 1.0, 0.5, 0.5, *scan, 7.0, 1.0, 1, 1, 1)
     assert counts[0].tolist() == [
         0,
         0,
@@ -139,6 +140,18 @@ def test_sightings_stop_at_known_walls_and_count_the_unknown_length_before_a_cel
     ]  # entered at 1.5, 2.5 and 3.5 m: middles at 2, 3 and 4 m
     assert counts[1].tolist() == [0, 0, 1, 1, 1, 0, 0]  # the hit at 3.5 m is on the face of the third
     assert counts[2].tolist() == counts[3].tolist() == [1, 1, 1, 0, 0, 0, 0]
+
+
+def test_a_beam_counts_by_the_narrowest_berth_that_it_has_passed() -> None:
+    log_odds = np.full((7, 9), -1, np.int8)
+    log_odds[3, [2, 3, 5, 7]] = 0  # in three stretches, entered at columns 2, 5 and 7
+    log_odds[1, 5] = 9  # two cells from the second entry alone
+    scan = (np.zeros(1), np.array([8.5]), np.array([False]))
+    counts = on_dense(lidar.count_sightings, log_odds, 1.0, 0.5, 3.5, *scan, 9.0, 1.0, 4, 1, 1)
+    by_berth = counts[2::2].tolist()
+    assert by_berth[2][:4] == [1, 1, 0, 0]  # three cells from the wall, along the farther axis
+    assert by_berth[1][:4] == [0, 0, 1, 1]  # and so it stays
+    assert np.count_nonzero(by_berth) == 4
 
 
 @pytest.mark.parametrize(

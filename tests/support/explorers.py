@@ -8,7 +8,7 @@ from tests.support.mapping_scenes import BEAMS, FRAME, RESOLUTION, SPEC, buildin
 from vedette.agent.events import Pose, Scan
 from vedette.agent.mates import Mate
 from vedette.domains.mapping.planners import planner
-from vedette.domains.mapping.sightings import BINS
+from vedette.domains.mapping.sightings import BINS, ROWS
 from vedette.fusion import ReplicatedEvidence
 from vedette.kernels.lidar import cast_rays
 from vedette.maps.lattice import Lattice
@@ -19,7 +19,7 @@ HERE = Pose(-0.53, 7.12, 0.0)
 
 def explorer(robot: int = 0) -> Exploring:
     """A robot's mission of which nothing is seen yet."""
-    fusion = ReplicatedEvidence(robot, 1 + robot, FRAME.shape, 4 * BINS)
+    fusion = ReplicatedEvidence(robot, 1 + robot, FRAME.shape, ROWS * BINS)
     return Exploring(Lattice(FRAME), SPEC, planner("tours"), fusion)
 
 

@@ -20,7 +20,7 @@ from vedette.agent.networked import Output
 from vedette.domains.mapping.impact import Impact
 from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.price import LATEST
-from vedette.domains.mapping.sightings import BINS
+from vedette.domains.mapping.sightings import BINS, ROWS
 from vedette.domains.mapping.views import MOST_STOPS
 from vedette.fusion.seals import BEACON
 from vedette.fusion.signed import SignedEvidence
@@ -112,7 +112,7 @@ class Counts(Exploring):
 
     def _own_counts(self) -> NDArray[np.int64]:
         counts = super()._own_counts()
-        sightings = counts[: 4 * BINS].reshape(4, BINS)
+        sightings = counts[: ROWS * BINS].reshape(ROWS, BINS)
         sightings[0::2], sightings[1::2] = self.tried, 0
         return counts
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
 
-from vedette.domains.mapping.sightings import BIN, P_OCCUPIED, beam_model, measured_model
+from vedette.domains.mapping.sightings import BIN, P_OCCUPIED, beam_model, berths_in, measured_model
 from vedette.kernels.coverage import footprints
 from vedette.maps import FREE, UNKNOWN
 from vedette.maps.world import standable
@@ -130,9 +130,8 @@ def _beam_model(bins: int) -> Float:
     classes = np.full((side, side), UNKNOWN, np.uint8)
     classes[cells, cells] = FREE
     table = beam_model(2 * cells).table
-    _, seen, shares = footprints(
-        classes, np.array([middle]), np.zeros(1), float(cells), 2.0 * np.pi, table, False, 3600, 1, 1e-30
-    )
+    look = np.array([middle]), np.zeros(1), float(cells), 2.0 * np.pi
+    _, seen, shares = footprints(classes, berths_in(classes, CELL), *look, table, False, 3600, 1, 1e-30)
     grid = np.zeros(side * side)
     grid[seen] = shares
     row, col = np.divmod(np.arange(side * side), side)
@@ -168,7 +167,7 @@ def _underway(run: ReproductionRun) -> tuple[Measured, Float]:
     order = np.concatenate([np.linspace(0.0, 1.0, len(some)) for some in kept])
     way = np.concatenate(kept)[np.argsort(order, kind="stable")]
     counts = scan(mission.world, way, specs()[0], run.rng(3, 99)).counts
-    learned = measured_model(counts, BIN, USED - 1, by_distance=True).table.astype(np.float64)
+    learned = measured_model(counts, BIN, USED - 1, by_distance=True).table[0].astype(np.float64)
     return Measured(counts[:1, :USED], counts[1:2, :USED]), learned
 
 

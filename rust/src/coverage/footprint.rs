@@ -5,7 +5,8 @@ use super::{FREE, OCCUPIED, UNKNOWN};
 pub struct Sensor<'a> {
     pub range_cells: f64,
     pub view: f64,         // field of view [rad]
-    pub table: &'a [f32],  // probability of seeing an unknown cell, by cells of depth
+    pub table: &'a [f32],  // probability of seeing an unknown cell: a row a berth, by cells of depth
+    pub depths: usize,     // of a row
     pub by_distance: bool, // depth is the distance; otherwise the unknown length crossed before
     pub rays: usize,       // in a full turn
     pub floor: f32,        // a ray ends where a cell is seen less likely, and lower shares are left out
@@ -15,6 +16,7 @@ pub struct Sensor<'a> {
 /// of a planning cell's unknown cells that a scan from the viewpoint reveals.
 pub fn footprints(
     classes: &[u8],
+    berths: &[u8],
     rows: usize,
     cols: usize,
     views: &[i64],
@@ -35,7 +37,7 @@ pub fn footprints(
         for ray in 0..sensor.rays {
             let turn = std::f64::consts::TAU * ((ray as f64 + 0.5) / sensor.rays as f64 - 0.5);
             if turn.abs() <= 0.5 * sensor.view {
-                ground.trace(view as usize, heading + turn, sensor, |at, p| {
+                ground.trace(view as usize, heading + turn, sensor, berths, |at, p| {
                     let best = &mut seen[at];
                     if *best == 0.0 {
                         touched.push(at as u32);
@@ -122,7 +124,14 @@ impl Ground {
     }
 
     /// Walk one ray from a cell's centre, reporting each unknown cell (padded) with its probability of being seen.
-    fn trace(&self, from: usize, angle: f64, sensor: &Sensor, mut report: impl FnMut(usize, f32)) {
+    fn trace(
+        &self,
+        from: usize,
+        angle: f64,
+        sensor: &Sensor,
+        berths: &[u8],
+        mut report: impl FnMut(usize, f32),
+    ) {
         let (dx, dy) = (angle.cos(), angle.sin());
         let mut at = (from / self.cols + 1) * self.wide + from % self.cols + 1;
         let wide = self.wide as isize;
@@ -130,6 +139,7 @@ impl Ground {
         let (per_row, per_col) = (1.0 / dy.abs(), 1.0 / dx.abs());
         let (mut next_row, mut next_col) = (0.5 * per_row, 0.5 * per_col);
         let (mut travelled, mut unknown) = (0.0_f64, 0.0_f64);
+        let (mut berth, mut outside) = (sensor.table.len() / sensor.depths - 1, true);
         loop {
             let code = self.codes[at];
             if code > ROOMY {
@@ -145,6 +155,7 @@ impl Ground {
                 next_row += crossed_rows as f64 * per_row;
                 next_col += crossed_cols as f64 * per_col;
                 travelled = end;
+                outside = true;
                 continue;
             }
             if code == WALL {
@@ -153,13 +164,18 @@ impl Ground {
             let leave = smaller(smaller(next_row, next_col), sensor.range_cells);
             if code == DARK {
                 let depth = if sensor.by_distance { 0.5 * (travelled + leave) } else { unknown };
-                let p = sensor.table[(depth as usize).min(sensor.table.len() - 1)];
+                if outside {
+                    let cell = (at / self.wide - 1) * self.cols + at % self.wide - 1;
+                    berth = berth.min(berths[cell] as usize);
+                }
+                let p = sensor.table[berth * sensor.depths + (depth as usize).min(sensor.depths - 1)];
                 if p <= 0.0 || p < sensor.floor {
-                    return; // deeper cells are seen less still
+                    return; // what lies deeper is hardly seen either
                 }
                 report(at, p);
                 unknown += leave - travelled;
             }
+            outside = code != DARK;
             if leave >= sensor.range_cells {
                 return;
             }

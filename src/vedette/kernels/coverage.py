@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vedette import _kernels
+from vedette.kernels._arrays import classes_of
 from vedette.kernels.misses import Keys, Misses
 
 LAYERS: int = _kernels.LAYERS
@@ -140,8 +141,23 @@ def viewpoints(
     )
 
 
+def berths(classes: NDArray[np.uint8], step: int, most: int) -> NDArray[np.uint8]:
+    """Chebyshev distance of each cell from the nearest occupied one, in steps, from 0 for those beside it.
+
+    Args:
+        classes: (R, C) cell classes.
+        step: so many cells are a step.
+        most: what holds from so many steps on.
+
+    Returns:
+        (R, C); 0 for occupied cells too.
+    """
+    return _kernels.berths(classes_of(classes), step, most)
+
+
 def footprints(
     classes: NDArray[np.uint8],
+    berths: NDArray[np.uint8],
     views: NDArray[np.int64],
     facing: NDArray[np.float64],
     range_cells: float,
@@ -154,12 +170,16 @@ def footprints(
 ) -> tuple[NDArray[np.int64], NDArray[np.uint32], NDArray[np.float32]]:
     """Expected share of each planning cell's unknown cells that a scan from each viewpoint reveals.
 
+    A ray's berth is the least of the cells by which it came from the known into the unknown so far.
+
     Args:
         classes: (R, C) cell classes; rays stop at occupied cells.
+        berths: (R, C) of the cells.
         views: (K,) flat cells of the viewpoints.
         facing: (K,) headings [rad]; ``view`` is the field of view about them [rad].
         range_cells: sensor range [cells].
-        table: (T,) probability of seeing an unknown cell at each depth [cells]; the last entry holds beyond.
+        table: (W, T) probability of seeing an unknown cell by the ray's berth and at each depth [cells]; the
+            last of a row or column holds beyond.
         by_distance: depth is the distance from the sensor; otherwise the unknown length crossed before.
         rays: how many to cast in a full turn.
         factor: side of a planning cell [cells].
@@ -169,7 +189,7 @@ def footprints(
         starts (K + 1,), planning cells (M,) and shares (M,).
     """
     return _kernels.footprints(
-        classes, views, facing, range_cells, view, table, by_distance, rays, factor, floor
+        classes, berths, views, facing, range_cells, view, table, by_distance, rays, factor, floor
     )
 
 

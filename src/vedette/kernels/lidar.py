@@ -160,6 +160,8 @@ def count_sightings(
     hits: NDArray[np.bool_],
     max_range: float,
     bin_m: float,
+    berths: int,
+    step: int,
     stride: int,
     nudge: float = 0.0,
 ) -> NDArray[np.int64]:
@@ -167,18 +169,20 @@ def count_sightings(
 
     Every ``stride``-th beam is followed to ``max_range``, or to a cell known occupied or the grid's border.
     Each unknown cell on the way was tried; it was seen if the beam entered it before its endpoint, or hit in
-    it.
+    it. A beam's berth is the least of the cells by which it came from the known into the unknown so far.
 
     Args:
         log_odds: before the scan is fused; 0 is unknown.
         resolution, x, y, angles, ranges, hits, nudge: as for ``integrate_scan``.
         max_range: [m].
         bin_m: bin width [m].
+        berths: how many to tell apart, as ``coverage.berths`` does.
+        step: of them [cells].
         stride: beams from one that counts to the next.
 
     Returns:
-        ``(4, ceil(max_range / bin_m))``: tried and seen by distance of the crossing's middle, then tried and
-        seen by the length of unknown cells crossed before on the beam.
+        ``(2 + 2 berths, ceil(max_range / bin_m))``: tried and seen by distance of the crossing's middle, then
+        of each berth tried and seen by the length of unknown cells crossed before on the beam.
     """
     return _kernels.count_sightings(
         _tiles(log_odds),
@@ -190,6 +194,8 @@ def count_sightings(
         flags(hits),
         max_range,
         bin_m,
+        berths,
+        step,
         stride,
         nudge,
     )

@@ -10,7 +10,7 @@ from msgspec import Meta
 from vedette import wire
 from vedette.overlay.stamp import BOOT_BITS, EPOCH_BITS, ROBOT_BITS, Stamp
 
-VERSION = 6
+VERSION = 7
 TICKS = 10_000  # a second
 MOST_DISTANCE = 1 << 16
 MOST_BYTES = 128

@@ -7,7 +7,7 @@ import numpy as np
 from vedette.domains.mapping.belief import MapBelief, freeze
 from vedette.domains.mapping.frozen import Frozen
 from vedette.domains.mapping.layers import rate
-from vedette.domains.mapping.sightings import BINS
+from vedette.domains.mapping.sightings import empty_counts
 from vedette.maps import FREE, GridFrame
 
 FRAME = GridFrame(0.1, 20, 30)
@@ -15,7 +15,7 @@ LAYERS = rate()
 
 
 def frozen(free: int, *, reach: float = 1.0) -> MapBelief:
-    classes, counts = np.zeros(FRAME.shape, np.uint8), np.zeros((4, BINS), np.int64)
+    classes, counts = np.zeros(FRAME.shape, np.uint8), empty_counts()
     classes[5:10, :free] = FREE
     return Frozen.once(
         (classes, counts),

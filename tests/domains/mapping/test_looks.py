@@ -10,7 +10,7 @@ from vedette.domains.mapping.belief import MapBelief, freeze
 from vedette.domains.mapping.layers import rate
 from vedette.domains.mapping.looks import Aim, LooksTaken
 from vedette.domains.mapping.prior import Shares
-from vedette.domains.mapping.sightings import BINS, SightingModel, beam_model
+from vedette.domains.mapping.sightings import SightingModel, beam_model, empty_counts
 from vedette.kernels import coverage
 from vedette.maps import FREE, GridFrame
 from vedette.team import PlatformSpec
@@ -22,7 +22,7 @@ LOOKS: list[Aim] = [(1610, 1.5), (1625, 1.5), (1610, -2.0)]
 def belief() -> MapBelief:
     classes = np.zeros(FRAME.shape, np.uint8)
     classes[10:30, 5:40] = FREE
-    counts = np.zeros((4, BINS), np.int64)
+    counts = empty_counts()
     return freeze(classes, FRAME, reach=1.0, extent=2.5, hidden=1.0, layers=rate(), counts=counts)
 
 
@@ -33,10 +33,10 @@ def counted(
     cast = 0
     real = coverage.footprints
 
-    def footprints(classes: object, views: np.ndarray, *rest: object) -> Shares:
+    def footprints(classes: object, berths: object, views: np.ndarray, *rest: object) -> Shares:
         nonlocal cast
         cast += len(views)
-        return real(classes, views, *rest)  # type: ignore[arg-type]
+        return real(classes, berths, views, *rest)  # type: ignore[arg-type]
 
     views, toward = np.array([view for view, _ in looks]), np.array([way for _, way in looks])
     with monkeypatch.context() as patched:
@@ -53,7 +53,7 @@ def alone(frozen: MapBelief, look: Aim, spec: PlatformSpec) -> Shares:
     view, toward = look
     rays, width = stops._rays(spec, frozen.frame.resolution), float(np.radians(spec.view))
     return coverage.footprints(
-        frozen.classes, np.array([view]), np.array([toward]), spec.range / 0.1, width,
+        frozen.classes, frozen.berths, np.array([view]), np.array([toward]), spec.range / 0.1, width,
         model().table, model().by_distance, rays, frozen.factor, stops.MIN_SHARE,
     )  # fmt: skip
 

@@ -72,7 +72,7 @@ def of_each(belief: MapBelief) -> NDArray[np.float64]:
     """Return what each frontier of a belief promises [m^2]."""
     frontiers = belief.frontier_cells, belief.frontier_starts
     about = belief.counts, belief.unknown, belief.factor
-    return promises(belief.classes, belief.frame.resolution, frontiers, *about)
+    return promises(belief.classes, belief.berths, belief.frame.resolution, frontiers, *about)
 
 
 def test_the_mean_promise_is_that_of_looks_from_all_frontier_cells_by_the_twin() -> None:
@@ -87,7 +87,7 @@ def test_the_mean_promise_is_that_of_looks_from_all_frontier_cells_by_the_twin()
         away = ((len(members) * points - points.sum(axis=0)) ** 2).sum(axis=1)
         middle = members[np.lexsort((members, away))[:1]]
         look = middle, np.zeros(1), reach, 2.0 * np.pi, table, True, RAYS, belief.factor, MIN_SHARE
-        _, cells, shares = reference_coverage.footprints(belief.classes, *look)
+        _, cells, shares = reference_coverage.footprints(belief.classes, belief.berths, *look)
         total += len(members) * float((shares * belief.unknown.ravel()[cells]).sum()) * resolution**2
     assert total > 0.0
     assert promised(belief) == pytest.approx(total / len(belief.frontier_cells), rel=1e-4)

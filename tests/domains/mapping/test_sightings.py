@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from vedette.domains.mapping.sightings import (
+    BERTHS,
     BIN,
     BINS,
     PRIOR_DEPTH,
@@ -25,13 +26,14 @@ DEPTHS = (np.arange(BINS) + 0.5) * BIN
 
 def counts_of(curve: NDArray[np.float64], trials: int, rng: np.random.Generator) -> NDArray[np.int64]:
     tried = np.full(BINS, trials)
-    return np.array([tried, rng.binomial(tried, curve), tried, rng.binomial(tried, curve**2)], np.int64)
+    by_berth = [np.array([tried, rng.binomial(tried, curve**power)]) for power in range(2, 2 + BERTHS)]
+    return np.concatenate(([tried, rng.binomial(tried, curve)], *by_berth)).astype(np.int64)
 
 
 def test_the_beam_model_halves_with_every_unknown_cell_as_in_the_papers_figure_3() -> None:
     model = beam_model(80)
-    np.testing.assert_allclose(model.table, 0.5 ** np.arange(81), rtol=1e-6)
-    assert model.table[10] < 1e-3  # 1 m of 10 cm cells
+    np.testing.assert_allclose(model.table, [0.5 ** np.arange(81)], rtol=1e-6)
+    assert model.table[0, 10] < 1e-3  # 1 m of 10 cm cells
     assert not model.by_distance
 
 
@@ -39,11 +41,11 @@ def test_the_beam_model_halves_with_every_unknown_cell_as_in_the_papers_figure_3
 @given(seeds, st.booleans())
 def test_a_measured_curve_is_a_probability_and_never_rises(seed: int, by_distance: bool) -> None:
     rng = np.random.default_rng(seed)
-    tried = rng.integers(0, rng.choice([2, 100, 10**6]), (2, BINS))
-    seen = rng.integers(0, tried + 1)
-    counts = np.array([tried[0], seen[0], tried[1], seen[1]])
+    counts = empty_counts()
+    counts[0::2] = rng.integers(0, rng.choice([2, 100, 10**6]), counts[0::2].shape)
+    counts[1::2] = rng.integers(0, counts[0::2] + 1)
     model = measured_model(counts, float(rng.choice([0.03, 0.1, 0.4])), 200, by_distance=by_distance)
-    assert model.table.shape == (201,)
+    assert model.table.shape == (1 if by_distance else BERTHS, 201)
     assert np.all(np.diff(model.table) <= 1e-6)
     assert model.table.min() >= 0.0
     assert model.table.max() <= 1.0
@@ -51,7 +53,7 @@ def test_a_measured_curve_is_a_probability_and_never_rises(seed: int, by_distanc
 
 def test_without_data_the_measured_curve_is_the_prior() -> None:
     model = measured_model(empty_counts(), BIN, BINS - 1, by_distance=True)
-    np.testing.assert_allclose(model.table, np.exp(-DEPTHS / PRIOR_DEPTH), rtol=1e-6)
+    np.testing.assert_allclose(model.table, [np.exp(-DEPTHS / PRIOR_DEPTH)], rtol=1e-6)
 
 
 @pytest.mark.parametrize("by_distance", [True, False])
@@ -59,7 +61,8 @@ def test_the_measured_curve_recovers_the_one_that_made_the_counts(by_distance: b
     curve = 0.95 * np.exp(-DEPTHS / 6.0)
     counts = counts_of(curve, 20_000, np.random.default_rng(1))
     model = measured_model(counts, BIN, BINS - 1, by_distance=by_distance)
-    np.testing.assert_allclose(model.table, curve if by_distance else curve**2, atol=0.01)
+    curves = [curve] if by_distance else [curve**power for power in range(2, 2 + BERTHS)]
+    np.testing.assert_allclose(model.table, curves, atol=0.01)
 
 
 def test_pooled_counts_of_a_team_teach_as_much_as_one_robot_that_saw_it_all() -> None:
@@ -110,7 +113,7 @@ def test_whatever_one_robot_has_counted_the_curve_is_at_least_half_of_what_all_o
 ) -> None:
     rng = np.random.default_rng(seed)
     honest = np.array([counts_of(rng.uniform(0.2, 1.0, BINS), 1000, rng) for _ in range(robots)])
-    told = np.append(honest, [np.repeat([[tried], [seen], [tried], [seen]], BINS, axis=1)], axis=0)
+    told = np.append(honest, [np.tile([[tried], [seen]], (1 + BERTHS, BINS))], axis=0)
     ours, all_of = pooled(told), honest.sum(axis=0)
     assert (ours[0::2] <= 2 * all_of[0::2]).all()
     assert (2 * ours[1::2] * all_of[0::2] >= 0.99 * all_of[1::2] * ours[0::2]).all()

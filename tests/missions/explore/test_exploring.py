@@ -16,7 +16,7 @@ from vedette.agent.events import Pose
 from vedette.agent.mates import Mate
 from vedette.domains.mapping import views
 from vedette.domains.mapping.planners import planner
-from vedette.domains.mapping.sightings import BINS
+from vedette.domains.mapping.sightings import BINS, ROWS
 from vedette.domains.mapping.stops import CLEARANCES
 from vedette.domains.mapping.tour import STAY
 from vedette.fusion import ReplicatedEvidence
@@ -177,7 +177,7 @@ def before_a_passage(width: int) -> NDArray[np.uint8]:
 
 def broad_explorer(classes: NDArray[np.uint8]) -> Exploring:
     """Return the mission of a robot 0.48 m across that knows this map."""
-    fusion = ReplicatedEvidence(0, 1, FRAME.shape, 4 * BINS)
+    fusion = ReplicatedEvidence(0, 1, FRAME.shape, ROWS * BINS)
     fusion.publish(TiledGrid.of(np.array([0, -20, 20], np.int8)[classes]), None, None)
     spec = PlatformSpec(range=4.0, radius=0.24)
     return Exploring(Lattice(FRAME), spec, planner("tours"), fusion)

@@ -16,7 +16,7 @@ from tests.support.small_missions import covered, robots, small_office
 from vedette.agent.events import Pose, Scan, Sensed
 from vedette.domains.mapping.impact import NOTHING, moved
 from vedette.domains.mapping.planners import planner
-from vedette.domains.mapping.sightings import BINS
+from vedette.domains.mapping.sightings import BINS, ROWS
 from vedette.errors import InputError
 from vedette.fusion import ReplicatedEvidence
 from vedette.maps import FREE, UNKNOWN, GridFrame
@@ -48,7 +48,7 @@ OPEN = Lattice.open(RESOLUTION, (FRAME.origin_x, FRAME.origin_y))
 def explorer(lattice: Lattice, robot: int = 0, spec: PlatformSpec = SPEC) -> Exploring:
     """A robot's mission of which nothing is seen yet."""
     shape = lattice.frame.shape
-    fusion = ReplicatedEvidence(robot, 1 + robot, shape, 4 * BINS, mark=lattice.mark)
+    fusion = ReplicatedEvidence(robot, 1 + robot, shape, ROWS * BINS, mark=lattice.mark)
     return Exploring(lattice, spec, planner("tours"), fusion, most=Most.of([spec]))
 
 

@@ -12,7 +12,7 @@ from tests.support.mapping_scenes import SPEC
 from vedette.agent.events import Pose, Sensed
 from vedette.agent.mates import Mate
 from vedette.domains.mapping.planners import planner
-from vedette.domains.mapping.sightings import BINS
+from vedette.domains.mapping.sightings import BINS, ROWS
 from vedette.fusion import ReplicatedEvidence
 from vedette.maps import FREE, OCCUPIED, UNKNOWN, GridFrame
 from vedette.maps.lattice import Lattice
@@ -62,7 +62,7 @@ def test_a_map_is_laid_where_it_lies_and_its_walls_stay_closed(resolution: float
 
 def explorer() -> Exploring:
     lattice = Lattice(FRAME)
-    fusion = ReplicatedEvidence(0, 1, FRAME.shape, 4 * BINS, mark=lattice.mark)
+    fusion = ReplicatedEvidence(0, 1, FRAME.shape, ROWS * BINS, mark=lattice.mark)
     return Exploring(lattice, SPEC, planner("tours"), fusion)
 
 

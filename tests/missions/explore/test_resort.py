@@ -11,7 +11,7 @@ from tests.support.explorers import exchange
 from tests.support.small_missions import room_with_a_wall
 from vedette.agent.events import Pose, Scan
 from vedette.domains.mapping.planners import planner
-from vedette.domains.mapping.sightings import BINS
+from vedette.domains.mapping.sightings import BINS, ROWS
 from vedette.domains.mapping.stops import Ground
 from vedette.fusion import ReplicatedEvidence
 from vedette.kernels.distance import distance_field
@@ -33,7 +33,7 @@ NARROW = PlatformSpec(range=4.0, view=45.0, radius=0.21)  # what it lies on is n
 
 def explorer(robot: int, spec: PlatformSpec) -> Exploring:
     """A robot's mission of which nothing is seen yet."""
-    fusion = ReplicatedEvidence(robot, 1 + robot, FRAME.shape, 4 * BINS)
+    fusion = ReplicatedEvidence(robot, 1 + robot, FRAME.shape, ROWS * BINS)
     return Exploring(Lattice(FRAME), spec, planner("tours"), fusion)
 
 

@@ -14,7 +14,7 @@ from vedette import InputError, run
 from vedette.domains.mapping.belief import MapBelief
 from vedette.domains.mapping.planners import DEFAULT, PLANNERS
 from vedette.domains.mapping.price import EndPrice
-from vedette.domains.mapping.sightings import BINS
+from vedette.domains.mapping.sightings import BINS, ROWS
 from vedette.domains.mapping.tour import STAY
 from vedette.domains.search.evidence import LEVELS_PER_NAT
 from vedette.kernels import coverage
@@ -127,7 +127,7 @@ def too_much(belief: MapBelief) -> tuple[NDArray[np.uint32], NDArray[np.uint8]]:
 
 def test_where_somebody_may_be_follows_bayes_rule(round_: tuple[Seeking, SeekingPlatform, Belief]) -> None:
     mission, _, (known, sought) = round_
-    looked = mission.fusion.counts[4 * BINS :].reshape(known.planning.shape)
+    looked = mission.fusion.counts[ROWS * BINS :].reshape(known.planning.shape)
     assert set(np.unique(looked % levels(0.8))) == {0}
     times = looked // levels(0.8)
     assert times.max() > 5
@@ -243,7 +243,7 @@ def test_a_look_in_vain_is_everybodys(monkeypatch: pytest.MonkeyPatch) -> None:
         simulation.step()
     own = sum(mission._looked for mission in simulation.missions)
     for mission in simulation.missions:
-        shared = mission.fusion.counts[4 * BINS :]
+        shared = mission.fusion.counts[ROWS * BINS :]
         assert (shared <= own).all()
         assert shared.sum() > 0.5 * own.sum()  # told every ten seconds
     assert LEVELS_PER_NAT == 1024.0

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.domains.mapping.frontier_worth import frontier_areas, spread_behind
+from vedette.domains.mapping.frontier_worth import frontier_areas, leads_on, spread_behind
 from vedette.domains.mapping.layers import TimeLayers, rate
 from vedette.domains.mapping.outlook import known_share, mean_promise, promises
 from vedette.domains.mapping.price import FREE, EndPrice
 from vedette.domains.mapping.prior import Foresight, PriorMap, block_sum, foresee
 from vedette.domains.mapping.priorities import Priorities, priority_factors, pull
+from vedette.domains.mapping.sightings import berths_in
 from vedette.domains.mapping.worlds import Worlds, imagine, in_each, to_see, trust_in
 from vedette.kernels.coverage import CellWeights
 from vedette.kernels.frontier import find_frontiers
@@ -33,6 +34,7 @@ class MapBelief:
 
     frame: GridFrame  # of the window
     classes: NDArray[np.uint8]  # (R, C) of the window
+    berths: NDArray[np.uint8]  # (R, C) of the window
     planning: GridFrame  # of the planning cells, over the whole map
     factor: int  # side of a planning cell [cells]
     first: tuple[int, int]  # planning cell (row, col) at the window's corner
@@ -41,7 +43,7 @@ class MapBelief:
     frontier_cells: NDArray[np.int64]  # (M,) flat cells of the window, by cluster
     frontier_starts: NDArray[np.int64]  # (K + 1,)
     layers: TimeLayers
-    counts: NDArray[np.int64]  # (4, BINS) the team's sightings
+    counts: NDArray[np.int64]  # (ROWS, BINS) the team's sightings
     gathering: bool  # so little is left that robots gather up what was left behind, by tours
     worlds: Worlds = (None,)  # what is foreseen in each
     end_price: EndPrice = FREE  # of tours
@@ -125,7 +127,7 @@ def freeze(
         end_price: of tours [m^2/s], [m^2/s^2], once what was left behind is gathered up; to the share of the
             work left that is known.  docs/theory.md (V230)
         layers: the time layers of the objective.
-        counts: (4, BINS) the team's sightings.
+        counts: (ROWS, BINS) the team's sightings.
         known: rows and columns outside of which nothing is known.
         leave: where there is nothing to see and no way for want of it; None: everywhere is the team's.
         priorities: areas in which all is worth so many times as much.
@@ -139,6 +141,7 @@ def freeze(
     crop = np.zeros((rows.stop - rows.start, cols.stop - cols.start), np.uint8)
     _paste(classes, crop, (corner[0] - rows.start, corner[1] - cols.start))
     window = frame.window(rows, cols)
+    berths = berths_in(crop, frame.resolution)
     if leave is not None:
         crop = leave.close(crop, window)
     cells, starts = find_frontiers(crop, *frontier_limits(extent, frame.resolution, shortest))
@@ -152,11 +155,13 @@ def freeze(
     local = to_see(unknown, each).astype(np.float32) * LN2
     gathering, priced = turn == math.inf, end_price != FREE
     if priced or 0.0 < turn < math.inf:
-        promised = promises(crop, frame.resolution, frontiers, counts, unknown, factor)
+        promised = promises(crop, berths, frame.resolution, frontiers, counts, unknown, factor)
         gathering |= mean_promise(promised, starts) < turn
         if priced:
             end_price = end_price.times(LN2 / frame.resolution**2 * known_share(window, frontiers, promised))
     areas = frontier_areas(window, cells, starts, hidden, return_price)
+    if areas.any():
+        areas *= leads_on(crop, berths, frontiers, counts, frame.resolution)
     areas += pull(window, crop, (cells, starts), priorities, factor)
     if gathering and areas.any():
         behind = LN2 / frame.resolution**2 * spread_behind(crop, cells, starts, areas, factor)
@@ -168,6 +173,7 @@ def freeze(
     return MapBelief(
         window,
         crop,
+        berths,
         planning,
         factor,
         first,

@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from vedette.domains.mapping.sightings import measured_model
 from vedette.maps import FREE, UNKNOWN, GridFrame
 
 NEIGHBOURS = 5  # a frontier with so many others near by will be passed again
 FARTHEST = 15.0  # being farther from others than this makes no more difference [m]
+BEHIND = 1.0  # what is seen so far into the unknown tells whether a frontier leads on [m]
 
 
 def frontier_areas(
@@ -67,10 +69,48 @@ def spread_behind(
     return np.bincount(touched, share, minlength=shape[0] * shape[1]).reshape(shape).astype(np.float32)
 
 
+def leads_on(
+    classes: NDArray[np.uint8],
+    berths: NDArray[np.uint8],
+    frontiers: tuple[NDArray[np.int64], NDArray[np.int64]],
+    counts: NDArray[np.int64],
+    resolution: float,
+) -> NDArray[np.float64]:
+    """``q_f``: how likely cells 1 m behind a frontier are seen, against where most are.
+
+    The mean over the unknown cells that touch it, by the team's sightings of their berth: gaps in walls that
+    were seen aslant lead nowhere.  docs/mapping.md (V241)
+
+    Args:
+        classes: (R, C) of the window.
+        berths: (R, C) of its cells.
+        frontiers: cells and starts as ``find_frontiers`` returns them.
+        counts: (ROWS, BINS) the team's sightings.
+        resolution: cell side [m].
+
+    Returns:
+        (K,) 0..1.
+    """
+    at = round(BEHIND / resolution)
+    seen = measured_model(counts, resolution, at, by_distance=False).table[:, at].astype(np.float64)
+    row, col, owner = _beside(classes, *frontiers)
+    shares = (seen / seen.max())[berths[row, col]]
+    count = len(frontiers[1]) - 1
+    return np.bincount(owner, shares, count) / np.bincount(owner, minlength=count)
+
+
 def touching(
     classes: NDArray[np.uint8], cells: NDArray[np.int64], starts: NDArray[np.int64], factor: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Return the flat planning cell of each unknown cell beside a frontier, and which frontier it is."""
+    row, col, owner = _beside(classes, cells, starts)
+    return row // factor * -(-classes.shape[1] // factor) + col // factor, owner
+
+
+def _beside(
+    classes: NDArray[np.uint8], cells: NDArray[np.int64], starts: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+    """Return row and column of each unknown cell beside a frontier's cell, and which frontier it is."""
     padded = np.pad(classes, 1, constant_values=FREE)
     row, col = np.divmod(cells, classes.shape[1])
     r = row[:, None] + np.array([-1, 1, 0, 0])
@@ -78,4 +118,4 @@ def touching(
     touches = padded[r + 1, c + 1] == UNKNOWN
     cluster = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
     owner = np.broadcast_to(cluster[:, None], touches.shape)[touches]
-    return r[touches] // factor * -(-classes.shape[1] // factor) + c[touches] // factor, owner
+    return r[touches], c[touches], owner

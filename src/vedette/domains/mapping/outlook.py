@@ -18,6 +18,7 @@ RAYS = 64  # in a look
 
 def promises(
     classes: NDArray[np.uint8],
+    berths: NDArray[np.uint8],
     resolution: float,
     frontiers: tuple[NDArray[np.int64], NDArray[np.int64]],
     counts: NDArray[np.int64],
@@ -30,9 +31,10 @@ def promises(
 
     Args:
         classes: (R, C) team map.
+        berths: (R, C) of its cells.
         resolution: cell side [m].
         frontiers: cells and starts as ``find_frontiers`` returns them.
-        counts: (4, BINS) the team's sightings.
+        counts: (ROWS, BINS) the team's sightings.
         unknown: (r, c) unknown cells of each planning cell.
         factor: side of a planning cell [cells].
 
@@ -46,7 +48,7 @@ def promises(
     middles = members_in_the_middle(*frontiers, classes.shape[1])
     table = measured_model(counts, resolution, int(np.ceil(reach)), by_distance=True).table
     starts, cells, shares = coverage.footprints(
-        classes, middles, np.zeros(count), reach, 2.0 * np.pi, table, True, RAYS, factor, MIN_SHARE
+        classes, berths, middles, np.zeros(count), reach, 2.0 * np.pi, table, True, RAYS, factor, MIN_SHARE
     )
     looks = np.repeat(np.arange(count), np.diff(starts))
     revealed = np.bincount(looks, shares * unknown.ravel()[cells], minlength=count)

@@ -241,7 +241,7 @@ def _if_right(
     toward: NDArray[np.float64],
 ) -> Shares:
     """Return what looks reveal if an old map is right: all that no wall of it hides, within range."""
-    sure = SightingModel(np.ones(1, np.float32), by_distance=True)
+    sure = SightingModel(np.ones((1, 1), np.float32), by_distance=True)
     sharp = _footprints(belief, foresight.classes, spec, sure, views, toward)
     return blurred(sharp, foresight.seeable, spec.pose_std / belief.planning.resolution)
 
@@ -259,7 +259,7 @@ def _footprints(
 
     def work_out(new: list[int]) -> Shares:
         return coverage.footprints(
-            classes, views[new], toward[new], reach, view,
+            classes, belief.berths, views[new], toward[new], reach, view,
             model.table, model.by_distance, rays, belief.factor, MIN_SHARE,
         )  # fmt: skip
 

@@ -73,8 +73,20 @@ def _nearest_view(
     return min(found)[2] if found else -1
 
 
+def berths(classes: NDArray[np.uint8], step: int, most: int) -> NDArray[np.uint8]:
+    """Twin of ``coverage.berths``: every cell against every occupied one."""
+    row, col = np.indices(classes.shape)
+    occupied = np.argwhere(classes == OCCUPIED)
+    found = np.full(classes.shape, most, np.int64)
+    for r, c in occupied:
+        away = np.maximum(abs(row - r), abs(col - c))
+        found = np.minimum(found, np.maximum(away - 1, 0) // step)
+    return found.astype(np.uint8)
+
+
 def footprints(
     classes: NDArray[np.uint8],
+    berths: NDArray[np.uint8],
     views: NDArray[np.int64],
     facing: Floats,
     range_cells: float,
@@ -91,7 +103,8 @@ def footprints(
     for viewpoint, heading in zip(views, facing, strict=True):
         seen = np.zeros(classes.shape)
         for turn in _turns(rays, view):
-            ray = _ray(classes, int(viewpoint), heading + turn, range_cells, table, by_distance, floor)
+            where = int(viewpoint), heading + turn, range_cells
+            ray = _ray(classes, berths, *where, table, by_distance, floor)
             for cell, probability in ray:
                 seen.flat[cell] = max(seen.flat[cell], probability)
         share = _blocks(seen, factor) / np.maximum(unknown, 1)
@@ -114,6 +127,7 @@ def _turns(rays: int, view: float) -> list[float]:
 
 def _ray(
     classes: NDArray[np.uint8],
+    berths: NDArray[np.uint8],
     viewpoint: int,
     angle: float,
     range_cells: float,
@@ -124,18 +138,21 @@ def _ray(
     row, col = divmod(viewpoint, classes.shape[1])
     entry, leave = crossings((classes.shape[0], classes.shape[1]), 1.0, col + 0.5, row + 0.5, angle)
     crossed = np.flatnonzero((entry < leave) & (entry < range_cells))
-    length = 0.0
+    length, berth, outside = 0.0, len(table) - 1, True
     for cell in crossed[np.argsort(entry.flat[crossed])]:
         start, end = entry.flat[cell], min(leave.flat[cell], range_cells)
         if classes.flat[cell] == OCCUPIED:
             return
         if classes.flat[cell] != FREE:
+            if outside:
+                berth = min(berth, int(berths.flat[cell]))
             depth = 0.5 * (start + end) if by_distance else length
-            probability = float(table[min(int(depth), len(table) - 1)])
+            probability = float(table[berth, min(int(depth), table.shape[1] - 1)])
             if probability <= 0.0 or probability < floor:
                 return
             yield int(cell), probability
             length += end - start
+        outside = bool(classes.flat[cell] == FREE)
 
 
 def _blocks(values: NDArray[np.float64] | NDArray[np.bool_], factor: int) -> Floats:

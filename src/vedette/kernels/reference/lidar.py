@@ -151,26 +151,39 @@ def count_sightings(
     hits: NDArray[np.bool_],
     max_range: float,
     bin_m: float,
+    berths: int,
+    step: int,
     stride: int,
     nudge: float = 0.0,
 ) -> NDArray[np.int64]:
     """Twin of ``lidar.count_sightings``."""
-    counts = np.zeros((4, math.ceil(max_range / bin_m)), np.int64)
+    counts = np.zeros((2 + 2 * berths, math.ceil(max_range / bin_m)), np.int64)
     last = counts.shape[1] - 1
     for b in range(0, len(angles), stride):
         reach = ranges[b] + nudge if hits[b] else ranges[b]
         entry, leave = crossings((log_odds.shape[0], log_odds.shape[1]), resolution, x, y, angles[b])
         cells = np.flatnonzero((entry < leave) & (entry < max_range))
-        unknown = 0.0
+        unknown, berth, outside = 0.0, berths - 1, True
         for cell in cells[np.argsort(entry.flat[cells])]:
             if log_odds.flat[cell] > 0:
                 break
+            if outside and log_odds.flat[cell] == 0:
+                berth = min(berth, _berth(log_odds, int(cell), step))
             if log_odds.flat[cell] == 0:
                 start, end = entry.flat[cell], min(leave.flat[cell], max_range)
                 by_distance = min(int(0.5 * (start + end) / bin_m), last)
                 by_unknown = min(int(unknown / bin_m), last)
                 seen = start < reach or (hits[b] and start == reach)
-                counts[:, [by_distance]] += np.array([[1], [seen], [0], [0]])
-                counts[:, [by_unknown]] += np.array([[0], [0], [1], [seen]])
+                counts[:2, by_distance] += (1, seen)
+                counts[2 + 2 * berth : 4 + 2 * berth, by_unknown] += (1, seen)
                 unknown += end - start
+            outside = log_odds.flat[cell] != 0
     return counts
+
+
+def _berth(log_odds: NDArray[np.int8], cell: int, step: int) -> int:
+    """How many steps a cell is from the nearest occupied one."""
+    row, col = divmod(cell, log_odds.shape[1])
+    rows, cols = np.nonzero(log_odds > 0)
+    away = np.maximum(abs(rows - row), abs(cols - col)).min(initial=sum(log_odds.shape) * step)
+    return int((away - 1) // step)

@@ -12,7 +12,7 @@ from vedette.agent.terms import Terms, flat
 from vedette.domains.mapping.belief import planning_factor
 from vedette.domains.mapping.planners import Planner, planner
 from vedette.domains.mapping.prior import PriorMap
-from vedette.domains.mapping.sightings import BINS
+from vedette.domains.mapping.sightings import BINS, ROWS
 from vedette.errors import InputError, check_word
 from vedette.fusion import ChannelFilter, Fusion, ReplicatedEvidence
 from vedette.fusion.framed import FramedEvidence
@@ -134,16 +134,16 @@ def _fusion(
     """Return how the robot shares what it sees: signed, where there are keys and sums do not forbid it."""
     shape, mark = lattice.frame.shape, lattice.mark
     if notary is None or options.fusion != "replicated":
-        return FUSIONS[options.fusion](robot, boot, shape, 4 * BINS, mark=mark)
+        return FUSIONS[options.fusion](robot, boot, shape, ROWS * BINS, mark=mark)
     limits = _limits(lattice, most)
-    return SignedEvidence(robot, boot, shape, 4 * BINS, notary=notary, limits=limits, mark=mark)
+    return SignedEvidence(robot, boot, shape, ROWS * BINS, notary=notary, limits=limits, mark=mark)
 
 
 def _framed_fusion(
     lattice: Lattice, robot: int, boot: int, robots: int, most: Most, notary: Notary | None
 ) -> Fusion:
     """Return how a robot shares what it sees in a frame of its own: signed, where there are keys."""
-    about = robot, boot, lattice.frame, 4 * BINS, robots
+    about = robot, boot, lattice.frame, ROWS * BINS, robots
     if notary is None:
         return FramedEvidence(*about, mark=lattice.mark)
     return SignedFramedEvidence(*about, notary=notary, limits=_limits(lattice, most), mark=lattice.mark)

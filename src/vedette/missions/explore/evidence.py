@@ -62,7 +62,7 @@ class OwnEvidence:
 
     @property
     def counts(self) -> NDArray[np.int64]:
-        """``(4, BINS)`` own sightings."""
+        """``(ROWS, BINS)`` own sightings."""
         return self.learning.counts
 
     def news(self) -> NDArray[np.int64]:

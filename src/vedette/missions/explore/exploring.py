@@ -29,7 +29,7 @@ from vedette.domains.mapping.objective import MappingObjective
 from vedette.domains.mapping.planners import Planner
 from vedette.domains.mapping.platform import MappingPlatform
 from vedette.domains.mapping.prior import PriorMap
-from vedette.domains.mapping.sightings import BINS, pooled
+from vedette.domains.mapping.sightings import BINS, ROWS, pooled
 from vedette.domains.mapping.stops import NEARBY, Disc, around
 from vedette.domains.mapping.tour import STAY, Tour
 from vedette.domains.mapping.views import MOST_STOPS
@@ -233,10 +233,10 @@ class Exploring:
         return classes
 
     def _sightings(self, shown: ShownMap) -> NDArray[np.int64]:
-        """``(4, BINS)`` the team's sightings; where they are signed nobody's outweigh all others'."""
+        """``(ROWS, BINS)`` the team's sightings; where they are signed nobody's outweigh all others'."""
         if self.signed is None:
-            return shown.counts[: 4 * BINS].reshape(4, BINS).copy()
-        return pooled(self.signed.counts_of_each()[:, : 4 * BINS].reshape(-1, 4, BINS))
+            return shown.counts[: ROWS * BINS].reshape(ROWS, BINS).copy()
+        return pooled(self.signed.counts_of_each()[:, : ROWS * BINS].reshape(-1, ROWS, BINS))
 
     def prepare(
         self, belief: MapBelief, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from vedette.domains.mapping.sightings import BIN, BINS, empty_counts
+from vedette.domains.mapping.sightings import BERTHS, BIN, BINS, berth_step, empty_counts
 from vedette.kernels import lidar
 from vedette.kernels.tiles import TiledGrid, Tiling
 
@@ -28,7 +28,7 @@ class Learning:
     resolution: float  # [m]
     range: float  # of the lidar [m]
     nudge: float  # so much farther a return counts [m]
-    counts: NDArray[np.int64] = field(default_factory=empty_counts)  # (4, BINS) own sightings
+    counts: NDArray[np.int64] = field(default_factory=empty_counts)  # (ROWS, BINS) own sightings
     _at: tuple[float, float] | None = None  # where it last learned
     _then: TiledGrid[np.int8] = field(init=False)  # its evidence then, to the class
     _since: list[NDArray[np.int64]] = field(default_factory=list)  # cells whose own class changed since
@@ -55,7 +55,8 @@ class Learning:
         if self._at is not None and np.hypot(x - self._at[0], y - self._at[1]) < LEARNING_STEP:
             return
         beams = self._then, self.resolution, x, y, angles, ranges, hits
-        seen = lidar.count_sightings(*beams, self.range, BIN, SIGHTING_STRIDE, self.nudge)
+        bins = self.range, BIN, BERTHS, berth_step(self.resolution)
+        seen = lidar.count_sightings(*beams, *bins, SIGHTING_STRIDE, self.nudge)
         self.counts[:, : seen.shape[1]] += seen[:, :BINS]
         self._at = x, y
         for cells in self._since:

@@ -10,7 +10,7 @@ from vedette.agent.relay import Relay, nearby
 from vedette.domains.mapping.belief import planning_factor
 from vedette.domains.mapping.planners import DEFAULT, planner
 from vedette.domains.mapping.price import FREE
-from vedette.domains.mapping.sightings import BINS
+from vedette.domains.mapping.sightings import BINS, ROWS
 from vedette.fusion import ReplicatedEvidence
 from vedette.maps.lattice import Lattice
 from vedette.missions.explore.options import ExploreOptions
@@ -38,7 +38,7 @@ def assemble(
         platform=lambda spec: SeekingPlatform(spec, max_stops=6),
         end_price=FREE,  # it may end at any stop, with somebody found
     )
-    counts = 4 * BINS + frame.coarse(planning_factor(frame.resolution)).size
+    counts = ROWS * BINS + frame.coarse(planning_factor(frame.resolution)).size
     fusion = ReplicatedEvidence(robot, boot, frame.shape, counts, mark=lattice.mark)
     mission = Seeking(lattice, spec, how, fusion, most=most, seek=seek)
     behaviour = GroundBehaviour(mission, Driver(robot, spec), False, 1)

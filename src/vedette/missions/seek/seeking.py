@@ -15,7 +15,7 @@ from vedette.domains.mapping import impact as mapping
 from vedette.domains.mapping.belief import planning_factor
 from vedette.domains.mapping.impact import MapImpactCodec
 from vedette.domains.mapping.objective import MappingObjective
-from vedette.domains.mapping.sightings import BINS
+from vedette.domains.mapping.sightings import BINS, ROWS
 from vedette.domains.mapping.views import MOST_STOPS
 from vedette.domains.search.detectors import Report
 from vedette.domains.search.evidence import LEVELS_PER_NAT
@@ -103,7 +103,7 @@ class Seeking(Exploring):
     def freeze(self, t0: float) -> Belief:  # type: ignore[override]
         """Snapshot the team's map, and where somebody may be in it."""
         known = super().freeze(t0)
-        return known, search_belief(known, self.fusion.counts[4 * BINS :])
+        return known, search_belief(known, self.fusion.counts[ROWS * BINS :])
 
     def prepare(  # type: ignore[override]
         self, belief: Belief, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float
@@ -121,7 +121,7 @@ class Seeking(Exploring):
         free = room_for_somebody(
             np.where(known.classes == FREE, known.classes, 2).astype(np.uint8), known.factor
         )
-        looked = self.fusion.counts[4 * BINS :].reshape(known.planning.shape)
+        looked = self.fusion.counts[ROWS * BINS :].reshape(known.planning.shape)
         part = looked[row : row + free.shape[0], col : col + free.shape[1]]
         return np.asarray(free * np.exp(-part / LEVELS_PER_NAT))
 

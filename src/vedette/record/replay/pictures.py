@@ -67,7 +67,7 @@ def observation_png(
 
     Args:
         buildings: replayed logs, at least one.
-        simulated: (4, BINS) counts of simulated worlds by what to call them.
+        simulated: (ROWS, BINS) counts of simulated worlds by what to call them.
         path: of the picture.
     """
     reach = max(each.reach_m for each in buildings)

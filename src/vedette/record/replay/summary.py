@@ -20,7 +20,7 @@ class Replayed:
     name: str  # of the log
     frame: GridFrame
     classes: NDArray[np.uint8]  # (R, C) map of who knows most, frame of the log
-    counts: NDArray[np.int64]  # (4, BINS) unknown cells tried and seen, as `count_sightings` counts them
+    counts: NDArray[np.int64]  # (ROWS, BINS) unknown cells tried and seen, as `count_sightings` counts them
     times: tuple[float, ...]  # [s]
     known_m2: tuple[float, ...]  # area that the robot knew then that knew most
     sights: int  # scans, or maps, that were told

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from vedette.agent import Agent
 from vedette.domains.mapping.planners import DEFAULT
-from vedette.domains.mapping.sightings import BINS
+from vedette.domains.mapping.sightings import empty_counts
 from vedette.errors import InputError
 from vedette.logs import RecordedLog, Sight
 from vedette.logs.recorded import way_of
@@ -158,7 +158,7 @@ class Replay:
             range(len(missions)), key=lambda i: int(np.count_nonzero(missions[i].fusion.classes.blocks))
         )
         frame, classes = self._map(most)
-        counts = sum((mission.own.counts for mission in missions), np.zeros((4, BINS), np.int64))
+        counts = sum((mission.own.counts for mission in missions), empty_counts())
         return Replayed(
             name=self.log.name,
             frame=frame,
