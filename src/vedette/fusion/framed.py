@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,11 +14,19 @@ from vedette.fusion.link import Key
 from vedette.fusion.rendering import Frames, Rendering
 from vedette.fusion.replicated import ReplicatedEvidence
 from vedette.fusion.replicated_map import ReplicatedMap, SnapshotT
+from vedette.fusion.shared import SharedTiles
 from vedette.fusion.snapshots import NONE, Change, Snapshot
 from vedette.fusion.tiles import TeamMap, classes_of
 from vedette.kernels.tiles import Tiling
 from vedette.maps import GridFrame
-from vedette.maps.transform import IDENTITY
+from vedette.maps.transform import IDENTITY, Transform
+
+
+class Maker(NamedTuple):
+    """One of those of whose evidence a map is made."""
+
+    there: Transform  # where its frame lies in the map's
+    codes: SharedTiles[np.uint8]  # of its cells, in its own frame
 
 
 class DrawnMap(TeamMap):
@@ -103,6 +112,14 @@ class FramedMap(ReplicatedMap[SnapshotT]):
     def frames(self) -> Frames:
         """Where contributors lie in this robot's own frame."""
         return self._own.frames
+
+    def makers(self, frames: Frames) -> list[Maker]:
+        """Return of whose evidence a map is made in which contributors lie as these frames say."""
+        return [
+            Maker(there, self.copies[key].values)
+            for key, there in frames.items()
+            if key in self.copies and key[0] not in self.out
+        ]
 
     def place_own(self, frames: Frames) -> None:
         """Let contributors lie in this robot's own frame as these say; others are not in its map."""

@@ -10,18 +10,17 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 
 from tests.support.small_missions import robots, small_office
 from vedette.errors import InputError
 from vedette.fusion.frame_edges import EdgeKind, FrameEdge
 from vedette.fusion.link import Key
-from vedette.kernels.coverage import Footprints
-from vedette.maps import GridFrame
+from vedette.maps import FREE, UNKNOWN
 from vedette.maps.disc import cells_under
 from vedette.maps.transform import IDENTITY, TURN, Transform
-from vedette.missions.explore.frames.exploring import FramedExploring
-from vedette.missions.explore.frames.footprints import on_plane
+from vedette.missions.explore.frames.exploring import NUMBERED, FramedExploring
 from vedette.missions.explore.frames.graph import Placed, solved
 from vedette.missions.explore.frames.layout import Box, laid_out
 from vedette.record.explore.observer import ExploreReport
@@ -170,36 +169,6 @@ def test_whoever_tells_of_a_boundless_map_leaves_the_others_their_room() -> None
     assert laid[0].there == IDENTITY
 
 
-def test_footprints_on_the_plane_cover_what_they_cover_in_the_robots_own_frame() -> None:
-    planning = GridFrame(0.2, 200, 200, -20.0, -20.0)
-    rng, there = np.random.default_rng(4), Transform(1230, -770, 7000)
-    disc = np.flatnonzero(np.hypot(*(planning.centres(np.arange(planning.size)) - (3.0, 2.0)).T) < 4.0)
-    one = rng.choice(planning.size, 50, replace=False)
-    cells = np.concatenate((disc, np.sort(one))).astype(np.uint32)
-    footprints = Footprints(np.array([0, len(disc), len(cells)]), cells, np.full(len(cells), 20, np.uint8))
-    moved = on_plane(footprints, planning, there)
-    shown = moved.cells[: moved.starts[1]]
-    assert (np.diff(shown.astype(np.int64)) > 0).all()
-    back = there.inverse().places(planning.centres(shown.astype(np.int64)))
-    away = np.hypot(*(back - (3.0, 2.0)).T)
-    assert away.max() < 4.0 + 0.2
-    every = there.inverse().places(planning.centres(np.arange(planning.size)))
-    inside = np.flatnonzero(np.hypot(*(every - (3.0, 2.0)).T) < 4.0 - 0.15)
-    assert np.isin(inside, shown).all()  # no holes
-    assert on_plane(footprints, planning, IDENTITY) is footprints
-
-
-def test_a_cell_of_the_plane_is_as_surely_seen_as_the_surest_that_lies_on_it() -> None:
-    planning = GridFrame(0.2, 100, 100, -10.0, -10.0)
-    footprints = Footprints(np.array([0, 2]), np.array([5050, 5051], np.uint32), np.array([9, 30], np.uint8))
-    moved = on_plane(footprints, planning, Transform(100, 0, 0))  # half a planning cell
-    assert dict(zip(moved.cells.tolist(), moved.misses.tolist(), strict=True)) == {
-        5050: 9,
-        5051: 30,
-        5052: 30,
-    }
-
-
 # -- missions -------------------------------------------------------------------------------------------
 
 
@@ -220,6 +189,31 @@ def test_two_robots_that_share_no_frame_map_an_office_together() -> None:
     assert join.error_m < 0.1
     assert join.error_deg < 1.0
     assert summary.maps == (("robot-1", "robot-2"),)
+
+
+def test_what_a_mate_left_alone_counts_as_this_robots_own_map_had_it_when_it_was_told_first() -> None:
+    simulation = prepare(small_office(seed=1), robots(2), ExploreSetup(seed=7, frames="unknown"))
+    mission = cast(FramedExploring, simulation.missions[0])
+    while (there := mission.frames.own(1)) is None:
+        assert simulation.now < 40.0
+        simulation.step()
+    x, y = 30.05, 30.05  # where nobody is
+    classes, (row, col) = mission.fusion.classes, mission.frame.cell(x, y)
+
+    def square(reach: int) -> NDArray[np.int64]:
+        beside = np.arange(-reach, reach + 1)
+        return ((row + beside)[:, None] * mission.frame.cols + col + beside).ravel()
+
+    for reach, of in ((20, FREE), (2, UNKNOWN)):
+        classes.put(square(reach), np.full((2 * reach + 1) ** 2, of, np.uint8))
+    at = there.inverse().place(x, y)
+    note = round(100 * at[0]), round(100 * at[1]), 999 * NUMBERED + 1  # in the mate's map it was 999
+    for _ in range(2):
+        mission.hear_notes([note])
+        (told,) = mission.platform.left_alone.told
+        assert math.dist(told.at, (x, y)) < 0.02
+        assert told.unknown == 25
+        classes.put(square(2), np.full(25, FREE, np.uint8))  # it is seen after all
 
 
 def test_a_mate_whose_frame_is_unknown_is_not_mapped_as_a_wall() -> None:

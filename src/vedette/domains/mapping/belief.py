@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,11 +22,19 @@ from vedette.kernels.frontier import find_frontiers
 from vedette.maps import UNKNOWN, GridFrame
 from vedette.maps.bounds import EVERYWHERE, Extent
 from vedette.maps.leave import Leave
+from vedette.maps.transform import Transform
 
 PLANNING_CELL = 0.2  # [m]; coarser costs quality, finer only bytes (docs/mapping.md, section 3)
 SHORTEST = 0.25  # frontier worth a name [m] ...
 OF_RADIUS = 1.25  # ... or shorter for a small robot, so many times its radius
 LN2 = float(np.log(2.0))  # entropy of a cell with P = 0.5 [nats]
+
+
+class Drawing(NamedTuple):
+    """The map of a belief as it is drawn in another frame, which all who decide have alike."""
+
+    belief: MapBelief
+    there: Transform  # where the belief's own frame lies in the drawing's
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +56,7 @@ class MapBelief:
     gathering: bool  # so little is left that robots gather up what was left behind, by tours
     worlds: Worlds = (None,)  # what is foreseen in each
     end_price: EndPrice = FREE  # of tours
+    valued: Drawing | None = None  # on which what a look shows is valued; None: on this belief itself
 
     @property
     def foresight(self) -> Foresight | None:

@@ -147,8 +147,9 @@ def find_stops(
     Legs between stops are worked out for ``tours`` only; else they are infinite.
     """
     frame, targets, views = belief.frame, found.targets, found.views
-    starts, cells, shares = to_be_seen(belief, spec, model, targets, views)
-    seen = shares * belief.to_see.ravel()[cells]
+    valued, *looks = _where_valued(belief, targets, views)
+    starts, cells, shares = to_be_seen(valued, spec, model, *looks)
+    seen = shares * valued.to_see.ravel()[cells]
     area = _by_look(seen, starts)
     lengths = np.diff(belief.frontier_starts)[found.clusters] * frame.resolution
     least = _least(belief, lengths <= 2.0 * spec.radius + 1e-9, least_area)
@@ -167,10 +168,25 @@ def find_stops(
         target_points,
         view_points,
         np.array([unknown_near(belief.classes, frame, x, y) for x, y in target_points], np.int64),
-        Footprints(starts, belief.planning_cells(cells), quantise(expected)),
+        Footprints(starts, valued.planning_cells(cells), quantise(expected)),
         way / np.float32(spec.speed),
         legs_between(belief, ground, views) / np.float32(spec.speed) if tours else _no_legs(len(views)),
     )
+
+
+def _where_valued(
+    belief: MapBelief, targets: NDArray[np.int64], views: NDArray[np.int64]
+) -> tuple[MapBelief, NDArray[np.int64], NDArray[np.int64]]:
+    """Return the belief on which looks are valued, and the cells of targets and views as they lie there."""
+    if belief.valued is None:
+        return belief, targets, views
+    drawn, there = belief.valued
+    frame, ends = drawn.frame, np.concatenate((targets, views))
+    x, y = there.places(belief.frame.centres(ends)).T
+    col = np.floor((x - frame.origin_x) / frame.resolution).astype(np.int64)
+    row = np.floor((y - frame.origin_y) / frame.resolution).astype(np.int64)
+    cells = np.clip(row, 0, frame.rows - 1) * frame.cols + np.clip(col, 0, frame.cols - 1)
+    return drawn, cells[: len(targets)], cells[len(targets) :]
 
 
 def seen_from(spec: PlatformSpec, resolution: float, close: bool) -> float:

@@ -198,7 +198,7 @@ class Exploring:
     def _frozen(self, shown: ShownMap, leave: Leave, priorities: Sequence[tuple[Area, float]]) -> MapBelief:
         """Snapshot a map of the team."""
         known = shown.known
-        classes = self._to_plan_by(shown.classes.window(*known))
+        classes = self._to_plan_by(shown, known)
         counts = self._sightings(shown)
         about: dict[str, Any] = {
             "reach": max(self._range, NEARBY + self.frame.resolution),
@@ -228,9 +228,9 @@ class Exploring:
             return self.spec.range
         return max(self.spec.range, self.most.range)
 
-    def _to_plan_by(self, classes: NDArray[np.uint8]) -> NDArray[np.uint8]:
-        """Return what a part of the team's map is taken to be where ways and frontiers are looked for."""
-        return classes
+    def _to_plan_by(self, shown: ShownMap, part: Extent) -> NDArray[np.uint8]:
+        """Return what a part of a map of the team is taken to be where frontiers are looked for."""
+        return shown.classes.window(*part)
 
     def _sightings(self, shown: ShownMap) -> NDArray[np.int64]:
         """``(ROWS, BINS)`` the team's sightings; where they are signed nobody's outweigh all others'."""
@@ -365,7 +365,7 @@ class Exploring:
         return self._visits.served(self.strategy)
 
     def _unknown_at(self, target: NDArray[np.float64]) -> int:
-        near = self._to_plan_by(self.fusion.classes.window(*around(self.frame, *target)))
+        near = self._to_plan_by(self.fusion, around(self.frame, *target))
         return int(np.count_nonzero(near == UNKNOWN))
 
     def reached(self, pose: Pose, mates: Sequence[Mate], now: float) -> bool:

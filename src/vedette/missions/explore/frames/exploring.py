@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
@@ -15,20 +16,26 @@ from vedette.agent.events import Pose, Scan, Sensed
 from vedette.agent.mates import Mate
 from vedette.agent.messages import FrameTold
 from vedette.agent.orders import OrderBook
-from vedette.domains.mapping.belief import MapBelief
+from vedette.domains.mapping.belief import Drawing, MapBelief
+from vedette.domains.mapping.left_alone import GivenUp
+from vedette.domains.mapping.prior import block_sum
+from vedette.domains.mapping.stops import LEFT_ALONE
+from vedette.fusion import ShownMap
 from vedette.fusion.frame_edges import FrameEdge, packed
 from vedette.fusion.framed import FramedMap
+from vedette.fusion.rendering import Frames
+from vedette.maps import UNKNOWN, GridFrame
 from vedette.maps.area import Area
+from vedette.maps.bounds import Extent
 from vedette.maps.leave import Leave
 from vedette.maps.transform import Transform
 from vedette.missions.explore.exploring import Exploring
-from vedette.missions.explore.frames.footprints import on_plane
 from vedette.missions.explore.frames.matching import Matcher
 from vedette.missions.explore.frames.meetings import Meetings
 from vedette.missions.explore.frames.rendezvous import chances, worth_more
 from vedette.missions.explore.frames.seen_moving import SeenMoving
 from vedette.missions.explore.frames.shared import SharedFrames
-from vedette.missions.explore.frames.walls import closed
+from vedette.missions.explore.frames.walls import closed, sealed
 from vedette.missions.explore.passers_by import Disc, PassersBy
 from vedette.missions.ordered import no_go_areas, priority_areas
 from vedette.problem import Reach
@@ -54,6 +61,7 @@ class FramedExploring(Exploring):
     _errands: int = 0
     _seen_moving: SeenMoving = field(init=False)
     _latest: tuple[Scan, Pose, float] | None = None  # scan, from where and when [s]
+    _counted: dict[GivenUp, int] = field(default_factory=dict)  # unknown cells near what mates left alone
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -177,9 +185,17 @@ class FramedExploring(Exploring):
 
     def hear_notes(self, notes: Sequence[Note]) -> None:
         """Leave alone what visits did not change of whoever is joined with this robot."""
-        if self.signed is not None:
-            super().hear_notes(notes)
-            return
+        if self.signed is None:
+            notes = self._in_own_frame(notes)
+        super().hear_notes(notes)
+        alone = self.platform.left_alone
+        told = {spot: self._unknown_when_told(spot) for spot in (*alone.told, *alone.hearsay)}
+        self._counted = told
+        alone.told = [replace(spot, unknown=told[spot]) for spot in alone.told]
+        alone.hearsay = [replace(spot, unknown=told[spot]) for spot in alone.hearsay]
+
+    def _in_own_frame(self, notes: Sequence[Note]) -> list[Note]:
+        """Return notes of those of whom it is known where their frames lie, moved."""
         moved = list[Note]()
         for x, y, number in notes:
             unknown, robot = divmod(number, NUMBERED)
@@ -187,10 +203,27 @@ class FramedExploring(Exploring):
             if there is not None:
                 at = there.place(x / 100.0, y / 100.0)
                 moved.append((round(100.0 * at[0]), round(100.0 * at[1]), unknown))
-        super().hear_notes(moved)
+        return moved
 
-    def _to_plan_by(self, classes: NDArray[np.uint8]) -> NDArray[np.uint8]:
-        return closed(classes)
+    def _unknown_when_told(self, spot: GivenUp) -> int:
+        """Return the unknown cells near what a mate left, in this robot's own map when it was told of it first.
+
+        Drawn in another frame a map has another number of them, which says nothing of what has changed.
+        """
+        for earlier, unknown in self._counted.items():
+            if earlier.unknown == spot.unknown and math.dist(earlier.at, spot.at) < LEFT_ALONE:
+                return unknown
+        return self._unknown_at(np.array(spot.at))
+
+    def _to_plan_by(self, shown: ShownMap, part: Extent) -> NDArray[np.uint8]:
+        classes = closed(super()._to_plan_by(shown, part))
+        if shown is not self.fusion:
+            return classes  # the plane, of which all who decide have to make the same
+        return self._sealed(classes, self.frame.window(*part), self.frames.evidence.frames)
+
+    def _sealed(self, classes: NDArray[np.uint8], window: GridFrame, frames: Frames) -> NDArray[np.uint8]:
+        """Return a part of a map in which contributors lie so, without the gaps that walls get by that."""
+        return sealed(classes, window, self.frame, self.frames.evidence.makers(frames))
 
     def freeze(self, t0: float) -> MapBelief:
         """Snapshot the plane, which all have alike, and beside it the map in the robot's own frame."""
@@ -207,13 +240,19 @@ class FramedExploring(Exploring):
     def prepare(
         self, belief: MapBelief, pose: Pose, mates: Sequence[Mate], blocked: bool, now: float
     ) -> None:
-        """Find the stops in the robot's own frame, and what they show on the plane."""
+        """Find the stops in the robot's own frame, by what they show on the plane."""
         assert self._local is not None
-        super().prepare(self._local, pose, mates, blocked, now)
-        there, stops = self.frames.plane.get(self.frames.key), self.platform.stops
+        there = self.frames.plane.get(self.frames.key)
+        valued = None if there is None else Drawing(self._to_value_by(belief), there)
+        super().prepare(replace(self._local, valued=valued), pose, mates, blocked, now)
         if there is None:  # the root has not heard of what this robot has seen
             self.platform.stand_by()
             self.strategy = self.platform.carry_over(self.strategy)
-        elif stops is not None:
-            shown = on_plane(stops.footprints, self._local.planning, there)
-            self.platform.stops = replace(stops, footprints=shown)
+
+    def _to_value_by(self, plane: MapBelief) -> MapBelief:
+        """Return the plane on which this robot's stops are worth what they show.
+
+        Of what a round is decided on all make the same; which stops it has a robot knows by itself.
+        """
+        classes = self._sealed(plane.classes, plane.frame, self.frames.plane)
+        return replace(plane, classes=classes, unknown=block_sum(classes == UNKNOWN, plane.factor))
