@@ -206,7 +206,7 @@ class FramedExploring(Exploring):
         return moved
 
     def _unknown_when_told(self, spot: GivenUp) -> int:
-        """Return the unknown cells near what a mate left, in this robot's own map when it was told of it first.
+        """Return the unknown cells near what a mate left, in this own map when it was told of it first.
 
         Drawn in another frame a map has another number of them, which says nothing of what has changed.
         """
