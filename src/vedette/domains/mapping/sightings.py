@@ -23,9 +23,7 @@ P_OCCUPIED = 0.5  # prior of an unknown cell
 class SightingModel:
     """Probability that a scan reveals an unknown cell that no known obstacle hides, by berth and depth."""
 
-    table: NDArray[
-        np.float32
-    ]  # (W, T) by the ray's berth, or one for all, and depth [cells]; the last entry holds beyond
+    table: NDArray[np.float32]  # (berths or 1, T) by depth [cells]; the last entry holds beyond
     by_distance: bool  # depth is the distance from the sensor; otherwise the unknown length crossed before
 
 
