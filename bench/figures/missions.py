@@ -31,6 +31,11 @@ MISSIONS: Mapping[str, Mission] = {
         {"willow.png": "progress.png"},
         map="willow-full",
     ),
+    "framed": Mission(
+        "vedette explore --frames unknown",
+        (*EXPLORED, "frames.error_m"),
+        {"framed.png": "progress.png"},
+    ),
     "storm": Mission(
         "vedette explore my-world/map.yaml --robots 3 --radio 6 --faults 4",
         EXPLORED,
