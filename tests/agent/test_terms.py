@@ -138,7 +138,7 @@ def test_an_older_version_is_told_in_one_line() -> None:
     old = [1, *msgspec.msgpack.decode(hello.payload[1:])[1:]]
     here.hear(1, HELLO + msgspec.msgpack.encode(old), 10.0)
     assert here.complaints[1] == (
-        "it speaks another version of the protocol (hello: version 1, not 6); update the older"
+        "it speaks another version of the protocol (hello: version 1, not 7); update the older"
     )
     assert here.malformed == 1
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from tests.support.grids import on_dense
@@ -63,6 +63,7 @@ def test_integrate_scan_equals_its_twin(seed: int) -> None:
 
 @settings(deadline=None, max_examples=80)
 @given(seeds, st.sampled_from([0.0, 0.05]), st.integers(1, 6), st.integers(1, 3))
+@example(2599, 0.0, 4, 1)  # a grid of two cells, and nothing occupied
 def test_count_sightings_equals_its_twin(seed: int, nudge: float, berths: int, step: int) -> None:
     place = random_place(seed)
     log_odds = place["rng"].choice([-3, 0, 0, 0, 3], place["shape"]).astype(np.int8)

@@ -54,7 +54,7 @@ def compare(runs: tuple[Path, ...], everything: bool, as_json: bool) -> None:
         click.echo(json_text({"runs": tuple(map(str, runs)), **figures}), nl=False)
         return
     if len(runs) > SHOWN:
-        raise InputError(f"a table holds {SHOWN} runs; got {len(runs)}: give fewer, or ask for --json")
+        raise InputError(f"{len(runs)} runs are too many for a table of {SHOWN}: give fewer, or --json")
     shown = [each for each in compared if everything or each.differs]
     if not shown:
         click.echo("the runs have the same figures")

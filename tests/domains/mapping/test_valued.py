@@ -38,7 +38,7 @@ def test_looks_show_on_a_drawing_what_looks_from_the_same_places_show_that_are_f
     own = stops_of(replace(frozen(classes), valued=Drawing(there, THERE)))
     found = stops_of(there, -0.5 + 7.3, 7.1 - 2.1)
     assert len(own) >= 4
-    assert np.allclose(own.targets + np.array((7.3, -2.1)), found.targets)
+    assert np.allclose(own.targets + np.array((7.3, -2.1)), found.targets, rtol=0.0, atol=1e-9)
     for one, other in zip(vars(own.footprints).values(), vars(found.footprints).values(), strict=True):
         assert np.array_equal(one, other)
     assert not np.array_equal(own.footprints.cells, stops_of(frozen(classes)).footprints.cells)

@@ -58,13 +58,14 @@ class LeftAlone:
     def judge(self, belief: MapBelief, team: Sequence[Place], now: float) -> None:
         """Give up frontiers that a visit did not change; take up again those whose surroundings changed.
 
-        A visit from afar that changed nothing calls for one from nearer.
+        A visit from afar that changed nothing calls for one from nearer. Two cells or an eighth of them are
+        no change, unless the robot sees so little that they are all that a look shows.
         """
-        much = 0.5 * enough_of_sight(self.spec) / belief.frame.resolution**2
+        much = 0.5 * enough_of_sight(self.spec) / belief.frame.resolution**2  # cells
 
         def unchanged(x: float, y: float, before: int) -> bool:
             seen = before - unknown_near(belief.classes, belief.frame, x, y)
-            return seen <= max(2, min(before // 8, much))
+            return seen <= min(much, max(2, before // 8))
 
         def still(spots: list[GivenUp]) -> list[GivenUp]:
             return [spot for spot in spots if unchanged(*spot.at, spot.unknown) and spot.stands(team)]

@@ -185,5 +185,5 @@ def _berth(log_odds: NDArray[np.int8], cell: int, step: int) -> int:
     """How many steps a cell is from the nearest occupied one."""
     row, col = divmod(cell, log_odds.shape[1])
     rows, cols = np.nonzero(log_odds > 0)
-    away = np.maximum(abs(rows - row), abs(cols - col)).min(initial=sum(log_odds.shape) * step)
+    away = np.maximum(abs(rows - row), abs(cols - col)).min(initial=np.iinfo(np.int64).max)
     return int((away - 1) // step)
