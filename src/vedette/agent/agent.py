@@ -30,6 +30,7 @@ from vedette.errors import PartError
 
 BEACON_PERIOD = 0.25  # [s]
 SHARE_PERIOD = 2.0  # evidence travels at least so often, rounds or not [s]
+SETTLED_PERIOD = 10.0  # one's own, of who is done: what flickers before it has time to reach everybody [s]
 
 
 def step(agent: Agent, events: Iterable[Event], now: float) -> list[Effect]:
@@ -167,7 +168,8 @@ def _go_on(agent: Agent, pose: Pose, now: float) -> list[Effect]:
     effects += agent.behaviour.look_out(agent, pose, now)
     shared = agent.signed is not None and now < agent.rounds.began + SHARE_PERIOD  # and a signature is dear
     if not shared and agent.is_due("share", SHARE_PERIOD, now) and not agent.rounds.busy:
-        agent.mission.publish(now)
+        if not agent.done or agent.is_due("settled", SETTLED_PERIOD, now):
+            agent.mission.publish(now)
         for neighbour in agent.rounds.tree.neighbours:
             effects += agent.rounds.news(neighbour, now)
     return effects

@@ -21,6 +21,7 @@ from vedette.record.explore.score import Reference
 from vedette.record.summary import Setting
 from vedette.sim.faults import Schedule
 from vedette.sim.faults.kinds import Heal, Partition
+from vedette.study.run import GeneratedWorld
 from vedette.team import PlatformSpec
 
 
@@ -104,6 +105,12 @@ def test_a_robot_that_sees_two_cells_beyond_its_rim_explores_a_room_and_says_wha
     assert 0.99 < summary.coverage < 1.0
     assert summary.outcome is Outcome.UNREACHED
     assert "unreached" in {spot.why for spot in summary.left_out}
+
+
+def test_robots_that_are_done_come_to_hold_one_map_though_cells_flicker_before_them() -> None:
+    world = GeneratedWorld("cave", 455, 30.0, 20.0, 0.1).build()
+    _, report = run(world, robots(3), planner="burgard")
+    assert report.summary.outcome is Outcome.COMPLETE
 
 
 @pytest.mark.parametrize("bent", [False, True])
