@@ -17,6 +17,7 @@ from tests.support.small_missions import robots, small_office
 from vedette.errors import InputError
 from vedette.fusion.frame_edges import EdgeKind, FrameEdge
 from vedette.fusion.link import Key
+from vedette.kernels.reference import coverage as reference_coverage
 from vedette.maps import FREE, UNKNOWN
 from vedette.maps.disc import cells_under
 from vedette.maps.transform import IDENTITY, TURN, Transform
@@ -214,6 +215,18 @@ def test_what_a_mate_left_alone_counts_as_this_robots_own_map_had_it_when_it_was
         assert math.dist(told.at, (x, y)) < 0.02
         assert told.unknown == 25
         classes.put(square(2), np.full(25, FREE, np.uint8))  # it is seen after all
+
+
+def test_berths_are_those_of_the_walls_that_looks_are_valued_with() -> None:
+    simulation = prepare(small_office(seed=1), robots(2), ExploreSetup(seed=7, frames="unknown"))
+    mission = cast(FramedExploring, simulation.missions[0])
+    while mission.frames.own(1) is None or simulation.now < 20.0:
+        simulation.step()
+    plane = mission.freeze(simulation.now)
+    valued = mission._to_value_by(plane)
+    most = int(plane.berths.max())
+    assert np.array_equal(valued.berths, reference_coverage.berths(valued.classes, 1, most))
+    assert not np.array_equal(valued.berths, plane.berths)  # walls were closed
 
 
 def test_a_mate_whose_frame_is_unknown_is_not_mapped_as_a_wall() -> None:

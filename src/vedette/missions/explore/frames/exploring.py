@@ -19,6 +19,7 @@ from vedette.agent.orders import OrderBook
 from vedette.domains.mapping.belief import Drawing, MapBelief
 from vedette.domains.mapping.left_alone import GivenUp
 from vedette.domains.mapping.prior import block_sum
+from vedette.domains.mapping.sightings import berths_in
 from vedette.domains.mapping.stops import LEFT_ALONE
 from vedette.fusion import ShownMap
 from vedette.fusion.frame_edges import FrameEdge, packed
@@ -206,7 +207,7 @@ class FramedExploring(Exploring):
         return moved
 
     def _unknown_when_told(self, spot: GivenUp) -> int:
-        """Return the unknown cells near what a mate left, in this own map when it was told of it first.
+        """Return the unknown cells near what a mate left, in this robot's map when it was told of it first.
 
         Drawn in another frame a map has another number of them, which says nothing of what has changed.
         """
@@ -255,4 +256,7 @@ class FramedExploring(Exploring):
         Of what a round is decided on all make the same; which stops it has a robot knows by itself.
         """
         classes = self._sealed(plane.classes, plane.frame, self.frames.plane)
-        return replace(plane, classes=classes, unknown=block_sum(classes == UNKNOWN, plane.factor))
+        berths = berths_in(classes, plane.frame.resolution)
+        return replace(
+            plane, classes=classes, berths=berths, unknown=block_sum(classes == UNKNOWN, plane.factor)
+        )
