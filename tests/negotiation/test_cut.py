@@ -9,7 +9,7 @@ from functools import reduce
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from tests.support.priced import PRICED, priced
@@ -25,6 +25,7 @@ from vedette.negotiation import (
     TokenNode,
     node_of,
 )
+from vedette.negotiation.fork import ForkNode
 from vedette.negotiation.messages import Gather, Stop, Tally, Token, Up
 from vedette.problem import Reach
 from vedette.problem.reach import behind
@@ -195,12 +196,34 @@ def play(run: Round) -> RoundOutcome:
     return run.finish()
 
 
+def let_the_refused_go_back(run: Round, counted: set[int]) -> None:
+    """Let those be as they are counted who fell silent before they heard that a fork takes them back."""
+    parents, back = run.tree.parents(), set[int]()
+    for i in sorted(counted, key=lambda i: len(_ancestors(parents, i))):
+        parent = parents[i]
+        node, above = run.nodes[i], None if parent is None else run.nodes[parent]
+        if not (isinstance(node, ForkNode) and isinstance(above, ForkNode)):
+            continue
+        if parent in back or (i in run.dead and i in above._refused):
+            run.team[i].adopt(node._before[0])
+            back.add(i)
+
+
+def _ancestors(parents: Sequence[int | None], i: int) -> list[int]:
+    found = []
+    while (parent := parents[i]) is not None:
+        found.append(i := parent)
+    return found
+
+
 @settings(deadline=None, max_examples=150)
 @given(seed=SEEDS, n=st.integers(2, 10), kind=st.sampled_from(KINDS))
+@example(seed=53, n=10, kind="fork, clipped")  # one is refused, and dies before it hears of it
 def test_whoever_is_left_ends_with_the_value_of_exactly_those_left(seed: int, n: int, kind: str) -> None:
     run, weights = round_of(np.random.default_rng(seed), n, kind)
     outcome = play(run)
     counted = joined(run)  # who dies unnoticed counts, but does not go back to Jacobi's best iterate
+    let_the_refused_go_back(run, counted)
     if kind != "jacobi" or not counted & run.dead:
         assert outcome.value == pytest.approx(run.value_of(counted, weights), abs=1e-9)
     assert counted & reached(run.tree, run.dead) <= run.ended() <= counted
